@@ -1,4 +1,4 @@
-import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarPose, TrackedFeet, UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import {
   copyHandShape,
   type HandShape,
@@ -7,7 +7,15 @@ import {
   mixHandShape,
 } from 'threepoint/core/body/hand-shape';
 import { type JointName, jointNames } from 'threepoint/core/body/joints';
-import { type MutableTrackedPose, makeTrackedPose, type TrackedPose } from 'threepoint/core/math/pose';
+import {
+  copyPose,
+  type MutablePose,
+  type MutableTrackedPose,
+  makePose,
+  makeTrackedPose,
+  type Pose,
+  type TrackedPose,
+} from 'threepoint/core/math/pose';
 import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
@@ -37,6 +45,7 @@ export class ShownPlayer implements Shown {
     leftHand: MutableTrackedPose | null;
     rightHand: MutableTrackedPose | null;
     body: MutableBody | null;
+    feet: TrackedFeet | undefined;
   };
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   placement: FloorPlacement | null = null;
@@ -45,11 +54,13 @@ export class ShownPlayer implements Shown {
     right: makeTrackedPose(),
   };
   private readonly body = makeBody();
+  private readonly ankles: Readonly<Record<Side, MutablePose<'floor'>>> = { left: makePose(), right: makePose() };
+  private readonly feet: Record<Side, Pose<'floor'> | null> = { left: null, right: null };
   private readonly placed = { position: vec3(0, 0, 0), heading: 0 };
   private readonly shapes = { left: makeHandShape(), right: makeHandShape() };
 
   constructor() {
-    this.pose = { head: makeTrackedPose(), leftHand: null, rightHand: null, body: null };
+    this.pose = { head: makeTrackedPose(), leftHand: null, rightHand: null, body: null, feet: undefined };
   }
 
   /** Copies a pose. */
@@ -58,6 +69,7 @@ export class ShownPlayer implements Shown {
     this.pose.leftHand = pose.leftHand && copyTracked(pose.leftHand, this.hands.left);
     this.pose.rightHand = pose.rightHand && copyTracked(pose.rightHand, this.hands.right);
     this.pose.body = pose.body && copyBody(pose.body, this.body);
+    this.mixFeet(pose, pose, 1);
     this.fingers.left = fingers.left && copyHandShape(fingers.left, this.shapes.left);
     this.fingers.right = fingers.right && copyHandShape(fingers.right, this.shapes.right);
     this.placement = mixPlacement(placement, placement, 1, this.placed);
@@ -71,16 +83,21 @@ export class ShownPlayer implements Shown {
   follow(samples: readonly PathSample[], fit: PathFit, a: Shown, b: Shown, t: number): this {
     const { pose, hands, fingers, shapes } = this;
     const next = (t < 1 ? a : b).pose;
-    fitTracked(samples, fit, 'head', pose.head);
+    fitPose(samples, fit, 'head', pose.head);
     pose.head.tracking = next.head.tracking;
-    if (allHave(samples, fit, 'leftHand')) pose.leftHand = fitTracked(samples, fit, 'leftHand', hands.left);
+    if (allHave(samples, fit, 'leftHand')) pose.leftHand = fitPose(samples, fit, 'leftHand', hands.left);
     else pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, hands.left);
-    if (allHave(samples, fit, 'rightHand')) pose.rightHand = fitTracked(samples, fit, 'rightHand', hands.right);
+    if (allHave(samples, fit, 'rightHand')) pose.rightHand = fitPose(samples, fit, 'rightHand', hands.right);
     else pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, hands.right);
     hands.left.tracking = next.leftHand?.tracking ?? 'tracked';
     hands.right.tracking = next.rightHand?.tracking ?? 'tracked';
     if (allHave(samples, fit, 'body')) pose.body = fitBody(samples, fit, this.body);
     else pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
+    this.showFeet(
+      fitFoot(samples, fit, 'leftFoot', this.ankles.left) ?? mixFoot(a.pose, b.pose, 'leftFoot', t, this.ankles.left),
+      fitFoot(samples, fit, 'rightFoot', this.ankles.right) ??
+        mixFoot(a.pose, b.pose, 'rightFoot', t, this.ankles.right),
+    );
     fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, shapes.left);
     fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, shapes.right);
     this.placement = mixPlacement(a.placement, b.placement, Math.min(t, 1), this.placed);
@@ -93,11 +110,32 @@ export class ShownPlayer implements Shown {
     this.pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, this.hands.left);
     this.pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, this.hands.right);
     this.pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
+    this.mixFeet(a.pose, b.pose, t);
     this.fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, this.shapes.left);
     this.fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, this.shapes.right);
     this.placement = mixPlacement(a.placement, b.placement, Math.min(t, 1), this.placed);
     return this;
   }
+
+  private mixFeet(a: AvatarPose, b: AvatarPose, t: number): void {
+    const { left, right } = this.ankles;
+    this.showFeet(mixFoot(a, b, 'leftFoot', t, left), mixFoot(a, b, 'rightFoot', t, right));
+  }
+
+  private showFeet(left: Pose<'floor'> | null, right: Pose<'floor'> | null): void {
+    this.feet.left = left;
+    this.feet.right = right;
+    this.pose.feet = left || right ? this.feet : undefined;
+  }
+}
+
+type FootPart = 'leftFoot' | 'rightFoot';
+type PosePart = 'head' | 'leftHand' | 'rightHand' | FootPart;
+
+function partOf(pose: AvatarPose, part: PosePart): Pose<'floor'> | null {
+  if (part === 'leftFoot') return pose.feet?.left ?? null;
+  if (part === 'rightFoot') return pose.feet?.right ?? null;
+  return pose[part];
 }
 
 function copyTracked(from: TrackedPose, target: MutableTrackedPose): MutableTrackedPose {
@@ -114,16 +152,15 @@ function mixTracked(a: TrackedPose, b: TrackedPose, t: number, target: MutableTr
   return target;
 }
 
-function allHave(
-  samples: readonly PathSample[],
-  { first, count }: PathFit,
-  part: 'leftHand' | 'rightHand' | 'body',
-): boolean {
-  for (let i = first; i < first + count; i++) if (!samples[i]!.packet.pose[part]) return false;
+function allHave(samples: readonly PathSample[], { first, count }: PathFit, part: PosePart | 'body'): boolean {
+  for (let i = first; i < first + count; i++) {
+    const { pose } = samples[i]!.packet;
+    if (!(part === 'body' ? pose.body : partOf(pose, part))) return false;
+  }
   return true;
 }
 
-// The sum of one call of fitTracked or fitBody.
+// The sum of one call of fitPose or fitBody.
 const sum = quat(0, 0, 0, 0);
 
 /** Adds `share` times q, or −q if that is nearer to `near`, to `sum`. */
@@ -135,23 +172,50 @@ function addShare(q: Quat, share: number, near: Quat): void {
   sum.w += k * q.w;
 }
 
-function fitTracked(
+function fitPose<Target extends MutablePose<'floor'>>(
   samples: readonly PathSample[],
   { first, count, shares }: PathFit,
-  part: 'head' | 'leftHand' | 'rightHand',
-  target: MutableTrackedPose,
-): MutableTrackedPose {
+  part: PosePart,
+  target: Target,
+): Target {
   const { position, orientation } = target;
-  const near = samples[first + count - 1]!.packet.pose[part]!.orientation;
+  const near = partOf(samples[first + count - 1]!.packet.pose, part)!.orientation;
   setVec3(position, 0, 0, 0);
   setQuat(sum, 0, 0, 0, 0);
   for (let i = 0; i < count; i++) {
-    const pose = samples[first + i]!.packet.pose[part]!;
+    const pose = partOf(samples[first + i]!.packet.pose, part)!;
     addScaled(position, pose.position, shares[i]!, position);
     addShare(pose.orientation, shares[i]!, near);
   }
   normaliseQuat(sum, orientation);
   return target;
+}
+
+/** Writes an ankle on its fitted path; null: a sample has none. */
+const fitFoot = (
+  samples: readonly PathSample[],
+  fit: PathFit,
+  foot: FootPart,
+  target: MutablePose<'floor'>,
+): Pose<'floor'> | null => (allHave(samples, fit, foot) ? fitPose(samples, fit, foot, target) : null);
+
+function mixFoot(
+  a: AvatarPose,
+  b: AvatarPose,
+  foot: FootPart,
+  t: number,
+  target: MutablePose<'floor'>,
+): Pose<'floor'> | null {
+  const from = partOf(a, foot);
+  const to = partOf(b, foot);
+  if (from && to) {
+    lerp(from.position, to.position, t, target.position);
+    slerp(from.orientation, to.orientation, t, target.orientation);
+    return target;
+  }
+  // An ankle is held like a hand.
+  const held = t < 1 ? from : to;
+  return held && copyPose(held, target);
 }
 
 function fitBody(samples: readonly PathSample[], { first, count, shares }: PathFit, target: MutableBody): MutableBody {

@@ -1,14 +1,18 @@
-import { type AvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import { type AvatarPose, makeUpperBodyPose, type TrackedFeet } from 'threepoint/core/body/avatar-pose';
 import { jointNames } from 'threepoint/core/body/joints';
 import {
+  type MutablePose,
   type MutableTrackedPose,
+  makePose,
   makeTrackedPose,
+  type Pose,
   type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
 } from 'threepoint/core/math/pose';
 import { copyQuat, multiply } from 'threepoint/core/math/quat';
+import type { Side } from 'threepoint/core/math/side';
 
 /** A buffer for a pose on a floor that the page has moved. */
 export class PlacedPose implements AvatarPose {
@@ -16,14 +20,18 @@ export class PlacedPose implements AvatarPose {
   leftHand: TrackedPose | null = null;
   rightHand: TrackedPose | null = null;
   body: AvatarPose['body'] = null;
+  feet: TrackedFeet | undefined;
   readonly #hands = { left: makeTrackedPose(), right: makeTrackedPose() };
   readonly #body = makeUpperBodyPose();
+  readonly #feet: Record<Side, Pose<'floor'> | null> = { left: null, right: null };
+  readonly #ankles: Readonly<Record<Side, MutablePose<'floor'>>> = { left: makePose(), right: makePose() };
 
   /** Writes a pose on the wearer's floor as one on the floor of the scene. */
-  place(sceneFromFloor: Transform<'floor', 'floor'>, { head, leftHand, rightHand, body }: AvatarPose): this {
+  place(sceneFromFloor: Transform<'floor', 'floor'>, { head, leftHand, rightHand, body, feet }: AvatarPose): this {
     placeTracked(sceneFromFloor, head, this.head);
     this.leftHand = leftHand && placeTracked(sceneFromFloor, leftHand, this.#hands.left);
     this.rightHand = rightHand && placeTracked(sceneFromFloor, rightHand, this.#hands.right);
+    this.feet = feet && this.#placeFeet(sceneFromFloor, feet);
     this.body = body && this.#body;
     if (!body) return this;
     const { hipsPosition, localRotations } = this.#body;
@@ -33,6 +41,12 @@ export class PlacedPose implements AvatarPose {
     }
     multiply(sceneFromFloor.orientation, body.localRotations.hips, localRotations.hips);
     return this;
+  }
+
+  #placeFeet(sceneFromFloor: Transform<'floor', 'floor'>, { left, right }: TrackedFeet): TrackedFeet {
+    this.#feet.left = left && transformPose(sceneFromFloor, left, this.#ankles.left);
+    this.#feet.right = right && transformPose(sceneFromFloor, right, this.#ankles.right);
+    return this.#feet;
   }
 }
 

@@ -15,5 +15,8 @@ export const withFingers = (of: { readonly pose: AvatarPose; readonly fingers: F
   get body() {
     return of.pose.body;
   },
+  get feet() {
+    return of.pose.feet;
+  },
   fingers: of.fingers,
 });

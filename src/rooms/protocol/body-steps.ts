@@ -8,6 +8,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import {
   angleBetween,
   conjugate,
+  fromAxisAngle,
   multiply,
   type Quat,
   quat,
@@ -47,6 +48,8 @@ import {
   stretchUnit,
   swivelBits,
   type TrunkSteps,
+  twistBits,
+  twistRange,
 } from './pose-steps';
 import { perpendicularAxes, toCentredStep, toDirectionSteps, toQuatSteps, toStep } from './quantise';
 import { armAxis, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
@@ -54,6 +57,11 @@ import { armAxis, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } f
 /** A wrist of the body within this of the tracked hand [m, rad] is drawn at the hand; otherwise it is sent itself. */
 const sameWrist = 0.003;
 const sameHand = (0.8 * Math.PI) / 180;
+/**
+ * A spine turned by more than this [rad] otherwise than by a twist against the hips is sent itself. Less moves the hips
+ * by a millimetre.
+ */
+const straightBack = (0.5 * Math.PI) / 180;
 /** If the rebuilt elbow is further off than this [m], the wrist is shifted by tenths of a millimetre instead. */
 const sameElbow = 0.002;
 
@@ -75,10 +83,10 @@ const acrossV = vec3(0, 0, 0);
 const difference = quat(0, 0, 0, 1);
 const bones = { upper: 0, lower: 0 };
 
-/** Returns the twist from one rotation to another about an axis, in steps. */
-function twistSteps(about: Vec3, from: Quat, to: Quat, range: number, bits: number): number {
+/** Returns the twist from one rotation to another about an axis [rad]. */
+function twistBetween(about: Vec3, from: Quat, to: Quat): number {
   multiply(conjugate(from, difference), to, difference);
-  return toStep(twistAngle(twistOf(difference, about, difference), about), range, bits);
+  return twistAngle(twistOf(difference, about, difference), about);
 }
 
 function writeTrunk(
@@ -90,12 +98,16 @@ function writeTrunk(
 ): void {
   const { hips } = body.localRotations;
   const { spine, chest, upperChest, neck } = joints;
+  const spineTwist = twistBetween(spineAxis(skeleton, axis), hips, spine.orientation);
+  fromAxisAngle(axis, clamp(spineTwist, -twistRange, twistRange), difference);
+  target.bent = angleBetween(multiply(hips, difference, difference), spine.orientation) > straightBack;
+  if (target.bent) toQuatSteps(spine.orientation, bits.trunk, target.spine);
+  target.spineTwist = toStep(spineTwist, twistRange, twistBits);
   toQuatSteps(hips, bits.trunk, target.hips);
   toQuatSteps(upperChest.orientation, bits.trunk, target.upperChest);
   toQuatSteps(neck.orientation, bits.trunk, target.neck);
-  target.spineTwist = twistSteps(spineAxis(skeleton, axis), hips, spine.orientation, Math.PI, bits.twist);
-  chestAxis(skeleton, axis);
-  target.chestTwist = twistSteps(axis, upperChest.orientation, chest.orientation, Math.PI, bits.twist);
+  const chestTwist = twistBetween(chestAxis(skeleton, axis), upperChest.orientation, chest.orientation);
+  target.chestTwist = toStep(chestTwist, twistRange, twistBits);
 }
 
 /** Returns whether the body's wrist differs from the hand in position or orientation. */
@@ -127,7 +139,8 @@ class Rebuilding {
   private readonly trunk = new RebuiltTrunk();
   private readonly arms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
 
-  write(sent: SentBody, skeleton: Skeleton, target: BodySteps): void {
+  /** Returns the hips as the receiver places them, floor frame [m]; the next call overwrites them. */
+  write(sent: SentBody, skeleton: Skeleton, target: BodySteps): Vec3 {
     const { body, joints, head, hands } = sent;
     const { left, right } = target.arms;
     left.free = isFree('left', joints, hands.left, skeleton);
@@ -138,6 +151,7 @@ class Rebuilding {
     this.trunk.place(head, target.trunk, bits, skeleton);
     this.writeArm('left', sent, skeleton, target);
     this.writeArm('right', sent, skeleton, target);
+    return this.trunk.hipsPosition;
   }
 
   private writeArm(side: Side, sent: SentBody, skeleton: Skeleton, target: BodySteps): void {
@@ -211,13 +225,8 @@ class Rebuilding {
     steps.swivel = toStep(Math.atan2(dot(pole, acrossV), dot(pole, acrossU)), Math.PI, swivelBits);
     steps.forearmTwist = 0;
     arm.bend(this.trunk, steps, skeleton);
-    steps.forearmTwist = twistSteps(
-      alongArm[side],
-      arm.rotations.lowerArm,
-      elbow.orientation,
-      forearmRange,
-      forearmBits,
-    );
+    const forearmTwist = twistBetween(alongArm[side], arm.rotations.lowerArm, elbow.orientation);
+    steps.forearmTwist = toStep(forearmTwist, forearmRange, forearmBits);
     const { restOffsets } = skeleton;
     rotate(arm.rotations.upperArm, side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm, towards);
     return distance(add(shoulder, towards, towards), elbow.position);
@@ -226,6 +235,9 @@ class Rebuilding {
 
 const rebuilding = new Rebuilding();
 
-/** Writes a body as steps, relative to the head and hands that the receiver decodes. */
-export const writeBodySteps = (sent: SentBody, skeleton: Skeleton, target: BodySteps): void =>
+/**
+ * Writes a body as steps, relative to the head and hands that the receiver decodes. Returns the hips as the receiver
+ * places them, floor frame [m]; the next call overwrites them.
+ */
+export const writeBodySteps = (sent: SentBody, skeleton: Skeleton, target: BodySteps): Vec3 =>
   rebuilding.write(sent, skeleton, target);

@@ -3,8 +3,9 @@ import type { BitReader, BitWriter } from './bits';
 import { placeUnit } from './quantise';
 
 /**
- * The position of a hand relative to the head, in 40 bits: steps of 0.25 mm within ±1.25 m on each axis, the reach of
- * people. The remaining codes have coarser steps within ±2.09 m, for controllers that are put down. A buffer.
+ * The position of a hand relative to the head, or of an ankle relative to the hips, in 40 bits. Steps of 0.25 mm reach
+ * ±1.25 m on each axis, as people do. The remaining codes have coarser steps within ±2.09 m, for controllers that are
+ * put down. A buffer.
  */
 export interface HandPlaceSteps {
   far: boolean;

@@ -8,7 +8,7 @@ import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, 
  * Rises with every incompatible change of messages, pose packets (which also have `poseVersion`) or frames of poses.
  * The server disconnects a client with another version.
  */
-export const protocolVersion = 9;
+export const protocolVersion = 10;
 
 /** The longest control message [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;

@@ -1,4 +1,4 @@
-import type { AvatarPose, UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarPose, TrackedFeet, UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
 import { isFiniteHand } from 'threepoint/core/body/hand-shape';
 import { jointNames } from 'threepoint/core/body/joints';
@@ -18,7 +18,7 @@ import { handShapeOf, toFingerSteps } from './finger-steps';
 import { packetMs } from './packet-time';
 import { readPacket, writePacket } from './pose-layout';
 import type { PointsPacket, PosePacket } from './pose-packet';
-import { handPose, handSteps, headPosition, headSteps, makePacketSteps, trackedBits } from './pose-steps';
+import { fromRelativePose, headPosition, headSteps, makePacketSteps, toRelativePose, trackedBits } from './pose-steps';
 import { fromQuatSteps } from './quantise';
 import { placeBody } from './rebuild-body';
 
@@ -40,16 +40,20 @@ function isFiniteBody({ hipsPosition, localRotations }: UpperBodyPose): boolean 
   return isFiniteVec3(hipsPosition);
 }
 
-const isFiniteAvatar = ({ head, leftHand, rightHand, body }: AvatarPose): boolean =>
-  isFinitePose(head) && isFinitePose(leftHand) && isFinitePose(rightHand) && (!body || isFiniteBody(body));
+const isFiniteAvatar = ({ head, leftHand, rightHand, body, feet }: AvatarPose): boolean =>
+  isFinitePose(head) &&
+  isFinitePose(leftHand) &&
+  isFinitePose(rightHand) &&
+  (!body || isFiniteBody(body)) &&
+  (!feet || (isFinitePose(feet.left) && isFinitePose(feet.right)));
 
 /**
- * Returns the packet's bytes, 64 at most; null if head, a hand or the body is not finite. The skeleton is the sender's
- * own; the body's head must be where the pose's head is, as with every estimator. Positions beyond the ranges of
- * `writePacket` are clamped.
+ * Returns the packet's bytes, `longestPose` at most; null if head, a hand, the body or a foot is not finite. The
+ * skeleton is the sender's own; the body's head must be where the pose's head is, as with every estimator. Feet are
+ * sent with a body. Positions beyond the ranges of `writePacket` are clamped.
  */
 export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array | null {
-  const { head, leftHand, rightHand, body } = packet.pose;
+  const { head, leftHand, rightHand, body, feet } = packet.pose;
   if (!isFiniteAvatar(packet.pose) || !Number.isFinite(packet.timeMs)) return null;
   steps.timeMs = packetMs(packet.timeMs);
   steps.jump = packet.jump;
@@ -61,7 +65,11 @@ export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array |
   writeHand('left', packet, leftHand);
   writeHand('right', packet, rightHand);
   steps.hasBody = body !== null;
-  if (body) writeBodySteps({ body, joints, head: headAsSent, hands: handsAsSent }, skeleton, steps.body);
+  if (body) {
+    const hips = writeBodySteps({ body, joints, head: headAsSent, hands: handsAsSent }, skeleton, steps.body);
+    writeFoot('left', feet, hips);
+    writeFoot('right', feet, hips);
+  }
   writeFingers('left', packet, leftHand);
   writeFingers('right', packet, rightHand);
   return writePacket(steps);
@@ -74,8 +82,8 @@ function writeHand(side: Side, { pose: { body } }: PosePacket, hand: TrackedPose
   target.tracking = hand?.tracking ?? 'lost';
   target.placed = shown !== null;
   if (!shown) return;
-  handSteps(headAsSent.position, shown, target.at);
-  handPose(headAsSent.position, target.at, handsAsSent[side]);
+  toRelativePose(headAsSent.position, shown, target.at);
+  fromRelativePose(headAsSent.position, target.at, handsAsSent[side]);
 }
 
 /** Returns the wrist of the body whose joints are in `joints`. */
@@ -84,6 +92,14 @@ function wristOf(side: Side): Pose<'floor'> {
   copyVec3(position, bodyWrist.position);
   multiply(orientation, conjugate(wristFromHandBone[side], inverse), bodyWrist.orientation);
   return bodyWrist;
+}
+
+/** Writes the ankle that a tracker pins, after the body. */
+function writeFoot(side: Side, feet: TrackedFeet | undefined, hips: Vec3): void {
+  const target = steps.feet[side];
+  const foot = feet?.[side];
+  target.pinned = Boolean(foot);
+  if (foot) toRelativePose(hips, foot, target.at);
 }
 
 /**
@@ -122,7 +138,7 @@ function handOf(side: Side, head: Vec3, target: MutableTrackedPose): TrackedPose
   const { placed, tracking, at } = steps.hands[side];
   if (!placed || tracking === 'lost') return null;
   target.tracking = tracking;
-  handPose(head, at, target);
+  fromRelativePose(head, at, target);
   return target;
 }
 
@@ -151,8 +167,18 @@ export function decodePose(bytes: Uint8Array, skeleton: Skeleton): PosePacket | 
   const fingers = { left: handShapeOf(steps.fingers.left), right: handShapeOf(steps.fingers.right) };
   const { head, leftHand, rightHand } = pose;
   if (!steps.hasBody) return { timeMs, jump, pose, fingers };
-  handPose(head.position, steps.hands.left.at, handsAsSent.left);
-  handPose(head.position, steps.hands.right.at, handsAsSent.right);
+  fromRelativePose(head.position, steps.hands.left.at, handsAsSent.left);
+  fromRelativePose(head.position, steps.hands.right.at, handsAsSent.right);
   const body = placeBody(head, handsAsSent, steps.body, skeleton);
-  return { timeMs, jump, pose: { head, leftHand, rightHand, body }, fingers };
+  return { timeMs, jump, pose: { head, leftHand, rightHand, body, feet: feetOf(body.hipsPosition) }, fingers };
+}
+
+/** Returns the feet in `steps`, from the decoded hips; undefined: no tracker pins one. */
+function feetOf(hips: Vec3): TrackedFeet | undefined {
+  const { left, right } = steps.feet;
+  if (!left.pinned && !right.pinned) return undefined;
+  return {
+    left: left.pinned ? fromRelativePose(hips, left.at, makePose()) : null,
+    right: right.pinned ? fromRelativePose(hips, right.at, makePose()) : null,
+  };
 }

@@ -14,10 +14,12 @@ import {
   heightBits,
   makePacketSteps,
   type PacketSteps,
+  type RelativePoseSteps,
   stretchBits,
   swivelBits,
   type Tracking,
   trackedBits,
+  twistBits,
 } from './pose-steps';
 import { readDirection, readQuat, readStep, writeDirection, writeQuat, writeStep } from './quantise';
 
@@ -37,6 +39,8 @@ const handStates: readonly HandState[] = [...lostStates, ...seenStates('emulated
 const firstState = { lost: 0, emulated: 2, tracked: 5 } as const;
 const stateBits = 3;
 const timeBits = 14;
+/** Bits that name what trackers pin: the back is bent, the left foot, the right foot. */
+const pinBits = 3;
 
 const writer = createBitWriter();
 const reader = createBitReader(new Uint8Array(0));
@@ -53,22 +57,26 @@ const readFlag = (): boolean => reader.read(1) === 1;
  * | 4, 1, 1, 1 | version; jump (the sender's space was re-anchored); has a body; head tracked, else emulated |
  * | 3 + 3 | state of the left and right hand: the index in `handStates` |
  * | 14 | time of the frame [ms] by the sender's clock, modulo 16,384 |
+ * | 1 | with a body: whether trackers bend its back or pin its feet |
+ * | 1, 1, 1 | only then: the back is bent; the left, the right foot is pinned |
  * | 16, 14, 16 | head x, y, z: 0.25 mm; x, z ±8.19 m, y −1 to 3.095 m |
  * | 35 | head orientation: two bits name the largest of x, y, z, w (made positive), 11 bits for each other one |
  * | 40 + 35 | each hand that has a place: `writeHandPlace`, orientation. A lost hand with a body: the body's wrist |
  * | 33 | each hand with fingers: `fingerFields` |
  * | 3 × 32 | with a body: hips, upper chest, neck against the floor, smallest three of 10 bits |
- * | 7 + 7 | twist of the spine against the hips, of the chest against the upper chest, ±180° |
+ * | 6 + 6 | twist of the spine against the hips, of the chest against the upper chest, ±90° |
+ * | 32 | a bent back, instead of the spine's twist: the spine against the floor, smallest three of 10 bits |
  * | 9 + 9 | each arm: swing of the clavicle, 1.3 · s · (1 + abs(s)) / 2 rad, s the share of the most steps |
  * | 11, 6 | swivel of the elbow from down and back, ±180°; twist of the forearm, ±90° |
  * | 4 | stretch: the wrist is this far beyond the hand, ±1.4 mm; only if the arm is not free |
  * | 19 + 7 + 20 | a free arm: direction of the wrist from the shoulder, flexion of the elbow, hand orientation |
+ * | 40 + 35 | each pinned foot: the ankle from the hips as `writeHandPlace`, orientation |
  *
- * An arm is free while its wrist is not at its hand. With one free arm the trunk has 9 bits a component and the twists
- * 6; with both it has 8 and 6, and the clavicles 8.
+ * An arm is free while its wrist is not at its hand. With one free arm the trunk has 9 bits a component; with both it
+ * has 8, and the clavicles too.
  */
 export function writePacket(packet: PacketSteps): Uint8Array {
-  const { head, hands, fingers, body, hasBody } = packet;
+  const { head, hands, fingers, body, feet, hasBody } = packet;
   writer.clear();
   writer.write(poseVersion, 4);
   writeFlag(packet.jump);
@@ -79,34 +87,51 @@ export function writePacket(packet: PacketSteps): Uint8Array {
     writer.write(firstState[hands[side].tracking] + (free ? 1 : fingers[side].known ? 2 : 0), stateBits);
   }
   writer.write(packet.timeMs, timeBits);
+  if (hasBody) writePins(packet);
   writeStep(writer, head.position.x, headBits);
   writeStep(writer, head.position.y, heightBits);
   writeStep(writer, head.position.z, headBits);
   writeQuat(writer, head.orientation, trackedBits);
   for (const side of sides) {
     const { placed, at } = hands[side];
-    if (!placed) continue;
-    writeHandPlace(writer, at.place);
-    writeQuat(writer, at.orientation, trackedBits);
+    if (placed) writeRelativePose(at);
   }
   for (const side of sides) {
     const { known, levels } = fingers[side];
     if (!known) continue;
     for (let i = 0; i < fingerFields.length; i++) writer.write(levels[i]!, fingerFields[i]!.bits);
   }
-  if (hasBody) writeBody(writer, body);
+  if (hasBody) {
+    writeBody(writer, body);
+    for (const side of sides) if (feet[side].pinned) writeRelativePose(feet[side].at);
+  }
   return writer.bytes();
+}
+
+function writeRelativePose({ place, orientation }: RelativePoseSteps): void {
+  writeHandPlace(writer, place);
+  writeQuat(writer, orientation, trackedBits);
+}
+
+function writePins({ body, feet }: PacketSteps): void {
+  const { bent } = body.trunk;
+  const pinned = bent || feet.left.pinned || feet.right.pinned;
+  writeFlag(pinned);
+  if (!pinned) return;
+  writeFlag(bent);
+  for (const side of sides) writeFlag(feet[side].pinned);
 }
 
 /** A buffer with which `lengthWith` measures packets. */
 const template = makePacketSteps();
-/** Lengths of packets by their nine flags [bytes]; 0: invalid flags. */
+/** Lengths of packets by their nine flags, whether something is pinned, and what [bytes]; 0: invalid flags. */
 const lengths: (number | undefined)[] = [];
+const bodyFlag = 1 << 7;
 
-function lengthWith(flags: number): number {
-  const flag = (bit: number): boolean => ((flags >> bit) & 1) === 1;
-  template.hasBody = flag(7);
+function lengthWith(flags: number, pinned: boolean, pins: number): number {
+  template.hasBody = (flags & bodyFlag) !== 0;
   if (!takeState(template, 'left', flags >> stateBits) || !takeState(template, 'right', flags)) return 0;
+  if (!takePins(template, pinned, pins)) return 0;
   template.body.bits = bodyBitsFor(template.body.arms);
   return writePacket(template).length;
 }
@@ -121,19 +146,33 @@ function takeState({ hands, fingers, body, hasBody }: PacketSteps, side: Side, b
   return hasBody || !free;
 }
 
+/** Applies what trackers pin. Returns false where something is pinned and nothing is named. */
+function takePins({ body, feet }: PacketSteps, pinned: boolean, pins: number): boolean {
+  body.trunk.bent = pinned && (pins & 4) !== 0;
+  feet.left.pinned = pinned && (pins & 2) !== 0;
+  feet.right.pinned = pinned && (pins & 1) !== 0;
+  return !pinned || pins !== 0;
+}
+
 /** Returns the length of the packet that begins at this byte, by its flags alone [bytes]; 0: not a packet. */
 export function packetLengthAt(bytes: Uint8Array, at: number): number {
   const flags = (((bytes[at]! & 0x0f) << 8) | (bytes[at + 1] ?? 0)) >> 3;
-  lengths[flags] ??= lengthWith(flags);
-  return lengths[flags];
+  // The flags of pinned joints follow the time: bits 27 to 30.
+  const last = bytes[at + 3] ?? 0;
+  const pinned = (flags & bodyFlag) !== 0 && (last & 0x10) !== 0;
+  const pins = pinned ? (last >> 1) & 7 : 0;
+  const key = (flags << (pinBits + 1)) | (pinned ? (1 << pinBits) | pins : 0);
+  lengths[key] ??= lengthWith(flags, pinned, pins);
+  return lengths[key];
 }
 
 function writeBody(to: BitWriter, { bits, trunk, arms }: BodySteps): void {
   writeQuat(to, trunk.hips, bits.trunk);
   writeQuat(to, trunk.upperChest, bits.trunk);
   writeQuat(to, trunk.neck, bits.trunk);
-  writeStep(to, trunk.spineTwist, bits.twist);
-  writeStep(to, trunk.chestTwist, bits.twist);
+  if (trunk.bent) writeQuat(to, trunk.spine, bits.trunk);
+  else writeStep(to, trunk.spineTwist, twistBits);
+  writeStep(to, trunk.chestTwist, twistBits);
   for (const side of sides) {
     const { clavicleU, clavicleV, swivel, forearmTwist, stretch, free, direction, flexion, hand } = arms[side];
     writeStep(to, clavicleU, bits.clavicle);
@@ -155,19 +194,23 @@ export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
   if (bytes.length > longestPose) return false;
   reader.open(bytes);
   if (reader.read(4) !== poseVersion) return false;
-  const { fingers, body } = packet;
+  const { fingers, body, feet } = packet;
   packet.jump = readFlag();
   packet.hasBody = readFlag();
   packet.headTracking = readFlag() ? 'tracked' : 'emulated';
   for (const side of sides) if (!takeState(packet, side, reader.read(stateBits))) return false;
   packet.timeMs = reader.read(timeBits);
-  if (!readHead(packet) || !readHand(packet, 'left') || !readHand(packet, 'right')) return false;
+  const pinned = packet.hasBody && readFlag();
+  if (!takePins(packet, pinned, pinned ? reader.read(pinBits) : 0)) return false;
+  if (!readHead(packet) || !readHand(packet.hands.left) || !readHand(packet.hands.right)) return false;
   for (const side of sides) {
     const { known, levels } = fingers[side];
     if (!known) continue;
     for (let i = 0; i < fingerFields.length; i++) levels[i] = reader.read(fingerFields[i]!.bits);
   }
-  return (!packet.hasBody || readBody(reader, body)) && reader.ended();
+  if (packet.hasBody && !readBody(reader, body)) return false;
+  for (const side of sides) if (feet[side].pinned && !readRelativePose(feet[side].at)) return false;
+  return reader.ended();
 }
 
 function readHead({ head: { position, orientation } }: PacketSteps): boolean {
@@ -182,11 +225,10 @@ function readHead({ head: { position, orientation } }: PacketSteps): boolean {
   return true;
 }
 
-function readHand({ hands }: PacketSteps, side: Side): boolean {
-  const hand = hands[side];
-  if (!hand.placed) return true;
-  return readHandPlace(reader, hand.at.place) && readQuat(reader, trackedBits, hand.at.orientation) !== null;
-}
+const readHand = ({ placed, at }: PacketSteps['hands'][Side]): boolean => !placed || readRelativePose(at);
+
+const readRelativePose = ({ place, orientation }: RelativePoseSteps): boolean =>
+  readHandPlace(reader, place) && readQuat(reader, trackedBits, orientation) !== null;
 
 function readBody(from: BitReader, body: BodySteps): boolean {
   const { trunk, arms } = body;
@@ -195,9 +237,11 @@ function readBody(from: BitReader, body: BodySteps): boolean {
   const hips = readQuat(from, bits.trunk, trunk.hips);
   const upperChest = readQuat(from, bits.trunk, trunk.upperChest);
   const neck = readQuat(from, bits.trunk, trunk.neck);
-  const spineTwist = readStep(from, bits.twist);
-  const chestTwist = readStep(from, bits.twist);
+  const spine = trunk.bent ? readQuat(from, bits.trunk, trunk.spine) : null;
+  const spineTwist = trunk.bent ? 0 : readStep(from, twistBits);
+  const chestTwist = readStep(from, twistBits);
   if (!hips || !upperChest || !neck || spineTwist === null || chestTwist === null) return false;
+  if (trunk.bent && !spine) return false;
   trunk.spineTwist = spineTwist;
   trunk.chestTwist = chestTwist;
   return readArm(from, body, 'left') && readArm(from, body, 'right');

@@ -6,10 +6,10 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
  * Rises with every change of the layout, or of the body proportions that packets are relative to. Other versions are
  * rejected.
  */
-export const poseVersion = 4;
+export const poseVersion = 5;
 
-/** The longest packet [bytes]. */
-export const longestPose = 64;
+/** The longest packet [bytes]: fingers of both hands, a bent back and both feet. Without trackers it has 64 at most. */
+export const longestPose = 87;
 
 /** The place of the sender's floor in the scene, to which the page has moved its wearer. */
 export interface FloorPlacement {
@@ -32,7 +32,7 @@ export interface PosePacket {
   readonly placement?: FloorPlacement | null;
 }
 
-/** Head and hands of a packet, floor frame, without body and fingers. */
+/** Head and hands of a packet, floor frame, without body, feet and fingers. */
 export type PointsPacket = Omit<PosePacket, 'pose' | 'fingers' | 'placement'> & {
   readonly pose: AvatarPose & { readonly body: null };
 };

@@ -41,7 +41,9 @@ export const stretchUnit = 0.0002;
 /** Bits that remain for the trunk, by the number of free arms. */
 const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
 const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
-const twistBitsFor = (freeArms: number): number => (freeArms > 0 ? 6 : 7);
+/** Bits and range [rad] of the twists of spine and chest: steps of 2.9°. */
+export const twistBits = 6;
+export const twistRange = Math.PI / 2;
 /** Range of a forearm's twist [rad], a quarter turn each way. */
 export const forearmRange = Math.PI / 2;
 
@@ -51,8 +53,8 @@ interface HeadSteps {
   readonly orientation: QuatSteps;
 }
 
-/** The pose of a hand relative to the head. */
-interface HandPoseSteps {
+/** The pose of a hand relative to the head, or of an ankle relative to the hips. */
+export interface RelativePoseSteps {
   readonly place: HandPlaceSteps;
   readonly orientation: QuatSteps;
 }
@@ -91,18 +93,21 @@ export interface TrunkSteps {
   readonly hips: QuatSteps;
   readonly upperChest: QuatSteps;
   readonly neck: QuatSteps;
+  /** Whether the spine is turned otherwise than by a twist against the hips, as trackers bend it. */
+  bent: boolean;
+  /** The spine of a bent trunk; others have `spineTwist`. */
+  readonly spine: QuatSteps;
   spineTwist: number;
   chestTwist: number;
 }
 
 export interface BodyBits {
   readonly trunk: number;
-  readonly twist: number;
   readonly clavicle: number;
 }
 
 const bitsByFreeArms = [0, 1, 2].map(
-  (count): BodyBits => ({ trunk: trunkBitsFor(count), twist: twistBitsFor(count), clavicle: clavicleBitsFor(count) }),
+  (count): BodyBits => ({ trunk: trunkBitsFor(count), clavicle: clavicleBitsFor(count) }),
 );
 
 export interface BodySteps {
@@ -121,13 +126,21 @@ interface HandSteps {
   tracking: Tracking;
   /** Whether it has a position: a lost hand has that of the body's wrist. */
   placed: boolean;
-  readonly at: HandPoseSteps;
+  readonly at: RelativePoseSteps;
 }
+
+interface FootSteps {
+  /** Whether a tracker pins the ankle. */
+  pinned: boolean;
+  readonly at: RelativePoseSteps;
+}
+
+const makeRelativePose = (): RelativePoseSteps => ({ place: makeHandPlaceSteps(), orientation: makeQuatSteps() });
 
 const makeHandSteps = (): HandSteps => ({
   tracking: 'lost',
   placed: false,
-  at: { place: makeHandPlaceSteps(), orientation: makeQuatSteps() },
+  at: makeRelativePose(),
 });
 
 /** A packet as integers. A buffer: fields that a flag excludes have no meaning. */
@@ -140,6 +153,7 @@ export interface PacketSteps {
   readonly fingers: Readonly<Record<Side, FingerSteps>>;
   hasBody: boolean;
   readonly body: BodySteps;
+  readonly feet: Readonly<Record<Side, FootSteps>>;
 }
 
 export const makePacketSteps = (): PacketSteps => ({
@@ -152,9 +166,18 @@ export const makePacketSteps = (): PacketSteps => ({
   hasBody: false,
   body: {
     bits: bitsByFreeArms[0]!,
-    trunk: { hips: makeQuatSteps(), upperChest: makeQuatSteps(), neck: makeQuatSteps(), spineTwist: 0, chestTwist: 0 },
+    trunk: {
+      hips: makeQuatSteps(),
+      upperChest: makeQuatSteps(),
+      neck: makeQuatSteps(),
+      bent: false,
+      spine: makeQuatSteps(),
+      spineTwist: 0,
+      chestTwist: 0,
+    },
     arms: { left: makeArmSteps(), right: makeArmSteps() },
   },
+  feet: { left: { pinned: false, at: makeRelativePose() }, right: { pinned: false, at: makeRelativePose() } },
 });
 
 const heightCentre = lowestHead + mostSteps(heightBits) * placeUnit;
@@ -179,22 +202,26 @@ export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>,
 }
 
 /**
- * Writes the nearest steps of a hand, floor frame, relative to the head as the receiver decodes it [m]; see
- * `toHandPlace` for the range.
+ * Writes the nearest steps of a hand or ankle, floor frame, relative to the head or hips as the receiver decodes them
+ * [m]; see `toHandPlace` for the range.
  */
-export function handSteps(head: Vec3, { position, orientation }: Pose<'floor'>, target: HandPoseSteps): HandPoseSteps {
-  toHandPlace(head, position, target.place);
+export function toRelativePose(
+  origin: Vec3,
+  { position, orientation }: Pose<'floor'>,
+  target: RelativePoseSteps,
+): RelativePoseSteps {
+  toHandPlace(origin, position, target.place);
   toQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }
 
-/** Writes the pose of a hand from its steps, floor frame, relative to the decoded head [m]. */
-export function handPose(
-  head: Vec3,
-  { place, orientation }: HandPoseSteps,
+/** Writes the pose of a hand or ankle from its steps, floor frame, relative to the decoded head or hips [m]. */
+export function fromRelativePose(
+  origin: Vec3,
+  { place, orientation }: RelativePoseSteps,
   target: MutablePose<'floor'>,
 ): MutablePose<'floor'> {
-  fromHandPlace(head, place, target.position);
+  fromHandPlace(origin, place, target.position);
   fromQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }

@@ -42,6 +42,8 @@ import {
   stretchUnit,
   swivelBits,
   type TrunkSteps,
+  twistBits,
+  twistRange,
 } from './pose-steps';
 import { fromCentredStep, fromDirectionSteps, fromQuatSteps, fromStep, perpendicularAxes } from './quantise';
 
@@ -86,8 +88,9 @@ export class RebuiltTrunk {
     fromQuatSteps(steps.hips, bits.trunk, hips);
     fromQuatSteps(steps.upperChest, bits.trunk, upperChest);
     fromQuatSteps(steps.neck, bits.trunk, neck);
-    twisted(hips, spineAxis(skeleton, axis), fromStep(steps.spineTwist, Math.PI, bits.twist), spine);
-    twisted(upperChest, chestAxis(skeleton, axis), fromStep(steps.chestTwist, Math.PI, bits.twist), chest);
+    if (steps.bent) fromQuatSteps(steps.spine, bits.trunk, spine);
+    else twisted(hips, spineAxis(skeleton, axis), fromStep(steps.spineTwist, twistRange, twistBits), spine);
+    twisted(upperChest, chestAxis(skeleton, axis), fromStep(steps.chestTwist, twistRange, twistBits), chest);
 
     headJointOf(head, eyesInHead, joint);
     subtract(joint, rotate(neck, offsets.head, turn), joint);

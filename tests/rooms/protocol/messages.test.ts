@@ -218,8 +218,8 @@ test('a change of packets or frames is told to older pages as a change of messag
   // reason when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
-    protocolVersion: 9,
-    poseVersion: 4,
+    protocolVersion: 10,
+    poseVersion: 5,
     seatAndFlags: 0x50,
   });
 });

@@ -2,22 +2,23 @@ import fc from 'fast-check';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { flatHand, relaxedHand, unknownFingers } from 'threepoint/core/body/hand-shape';
-import { jointNames, parentOf } from 'threepoint/core/body/joints';
+import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration, wristFromHandBone } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { angleBetween, identity, multiply } from 'threepoint/core/math/quat';
+import { angleBetween, fromAxisAngle, identity, multiply, type Quat } from 'threepoint/core/math/quat';
 import { nextRandom } from 'threepoint/core/math/random';
-import { distance, vec3 } from 'threepoint/core/math/vec3';
+import { add, distance, right, vec3 } from 'threepoint/core/math/vec3';
 import { fingerFields } from 'threepoint-rooms/protocol/finger-steps';
 import { decodePoints, decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { packetLengthAt } from 'threepoint-rooms/protocol/pose-layout';
 import { longestPose, type PosePacket, poseVersion } from 'threepoint-rooms/protocol/pose-packet';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { cases, isNightly } from '../../nightly';
 import { seed } from '../../threepoint/core/arbitraries';
 import { openShippedModel } from '../../threepoint/core/estimation/shipped-models';
 import { numbersIn } from '../../threepoint/core/numbers-in';
-import { packetOf, senders } from './sent-bodies';
+import { packetOf, pinnedPacketOf, pinnedSenders, type SentPacket, senders } from './sent-bodies';
 
 const degrees = 180 / Math.PI;
 const sides = ['left', 'right'] as const;
@@ -36,14 +37,15 @@ function worstOf() {
  * What the receiver may be off by, for any person in any movement, hands seen, lost, guessed, coming back, out of reach
  * or wrung.
  */
-async function measure(
+async function measure<Person>(
   worst: ReturnType<typeof worstOf>,
-  create: Parameters<typeof packetOf>[1] | undefined,
+  people: fc.Arbitrary<Person>,
+  packetFrom: (person: Person) => Promise<SentPacket>,
   numRuns: number,
 ): Promise<void> {
   await fc.assert(
-    fc.asyncProperty(senders, async (sender) => {
-      const { packet, skeleton } = await packetOf(sender, create);
+    fc.asyncProperty(people, async (person) => {
+      const { packet, skeleton } = await packetFrom(person);
       const bytes = encodePose(packet, skeleton)!;
       worst.take('bytes', bytes.length);
       const back = decodePose(bytes, skeleton)!;
@@ -79,6 +81,15 @@ async function measure(
         worst.take('joints [mm]', 1000 * distance(sent[joint].position, shown[joint].position));
         worst.take('joints [°]', degrees * angleBetween(sent[joint].orientation, shown[joint].orientation));
       }
+      for (const joint of ['hips', 'chest', 'leftLowerArm', 'rightLowerArm'] as const)
+        worst.take(`${joint} [mm]`, 1000 * distance(sent[joint].position, shown[joint].position));
+      for (const side of sides) {
+        const [foot, shownFoot] = [packet.pose.feet?.[side] ?? null, back.pose.feet?.[side] ?? null];
+        expect(shownFoot === null).toBe(foot === null);
+        if (!foot || !shownFoot) continue;
+        worst.take('feet [mm]', 1000 * distance(foot.position, shownFoot.position));
+        worst.take('feet [°]', degrees * angleBetween(foot.orientation, shownFoot.orientation));
+      }
     }),
     { seed, numRuns },
   );
@@ -98,14 +109,27 @@ describe('a body on the wire', () => {
     const worst = worstOf();
     const create =
       name && ((calibration: typeof defaultCalibration) => createEstimator(name, calibration, learned.regressor));
-    await measure(worst, create, runs);
+    await measure(worst, senders, (sender) => packetOf(sender, create), runs);
     console.log(`pose codec, ${name ?? 'ik'}, ${runs} bodies, worst: ${worst.told()}`);
-    expect(worst.of('bytes')).toBeLessThanOrEqual(longestPose);
+    expect(worst.of('bytes')).toBeLessThanOrEqual(64);
     expect(worst.of('head and hands [mm]')).toBeLessThan(1);
     expect(worst.of('head and hands [°]')).toBeLessThan(0.5);
     expect(worst.of('wrists at their hands [mm]')).toBeLessThan(1);
     expect(worst.of('joints [mm]')).toBeLessThan(10);
     expect(worst.of('joints [°]')).toBeLessThan(4);
+  });
+
+  test('pinned by trackers arrives as exactly, with its feet, in 87 bytes', async () => {
+    const worst = worstOf();
+    const runs = cases(100);
+    await measure(worst, pinnedSenders, pinnedPacketOf, runs);
+    console.log(`pose codec, pinned, ${runs} bodies, worst: ${worst.told()}`);
+    expect(worst.of('bytes')).toBeLessThanOrEqual(longestPose);
+    expect(worst.of('head and hands [mm]')).toBeLessThan(1);
+    expect(worst.of('wrists at their hands [mm]')).toBeLessThan(1);
+    expect(worst.of('joints [mm]')).toBeLessThan(10);
+    expect(worst.of('joints [°]')).toBeLessThan(4);
+    expect(worst.of('feet [°]')).toBeLessThan(0.5);
   });
 
   test('keeps the lengths of its bones', async () => {
@@ -198,7 +222,7 @@ const binary = (value: number, bits: number): string => value.toString(2).padSta
 describe('bytes', () => {
   test('are those that writePacket documents, bit by bit', () => {
     const expected = bytesOf([
-      '0100', // version 4
+      '0101', // version 5
       '0', // no jump
       '0', // no body
       '1', // head tracked
@@ -232,25 +256,28 @@ describe('bytes', () => {
     expect(back.fingers.right!.middle.middle).toBeLessThan(0.05);
   });
 
-  test('of a T-pose are these, until the version changes', () => {
-    const localRotations = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
-      (typeof jointNames)[number],
-      typeof identity
-    >;
-    const body = { hipsPosition: skeleton.restOffsets.hips, localRotations };
-    const head = forwardKinematics(skeleton, body).head.position;
-    const eyes = vec3(head.x, head.y + skeleton.eyesInHead.y, head.z + skeleton.eyesInHead.z);
-    const packet: PosePacket = {
-      ...handsOnly,
-      timeMs: 0,
-      pose: { head: { ...handsOnly.pose.head, position: eyes }, leftHand: null, rightHand: null, body },
+  /** A T-pose, its lower back bent by this angle about +X [rad] and the thorax turned back. */
+  function restPose(bend: number): PosePacket {
+    const localRotations = {
+      ...(Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<JointName, Quat>),
+      spine: fromAxisAngle(right, bend),
+      chest: fromAxisAngle(right, -bend),
     };
+    const body = { hipsPosition: skeleton.restOffsets.hips, localRotations };
+    const eyes = add(forwardKinematics(skeleton, body).head.position, skeleton.eyesInHead);
+    const pose = { head: { ...handsOnly.pose.head, position: eyes }, leftHand: null, rightHand: null, body };
+    return { ...handsOnly, timeMs: 0, pose };
+  }
+
+  test('of a T-pose are these, until the version changes', () => {
+    const packet = restPose(0);
+    const { body } = packet.pose;
     const hex = [...encodePose(packet, skeleton)!].map((byte) => byte.toString(16).padStart(2, '0')).join('');
     expect(hex).toBe(
-      '4600000ffff43e3eeeeffdffbff2e61608d49dffffe7ff74c0e21e0fbff000fff7fdff7ff7fdff7ff7fdff7fdfbf7fbfeb53f0ff7fa947e0',
+      '56000007fffa1f1f7777feffdff9730b046a4efffff3ffba60710f07dff8007ffbfeffbffbfeffbffbfeffbfefbeff7fd6a7e1feff528fc0',
     );
     const shown = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
-    const sent = forwardKinematics(skeleton, body);
+    const sent = forwardKinematics(skeleton, body!);
     for (const joint of jointNames) {
       expect(distance(shown[joint].position, sent[joint].position)).toBeLessThan(0.002);
     }
@@ -291,6 +318,17 @@ describe('bytes', () => {
     expect(withBits(10, 11, 12)).toBeNull();
   });
 
+  test('that say that something is pinned, and not what, are no pose', () => {
+    const bent = restPose(0.1);
+    const bytes = encodePose(bent, skeleton)!;
+    expect(decodePose(bytes, skeleton)).not.toBeNull();
+    // Bits 27 and 28: something is pinned, the back is bent.
+    expect(bytes[3]! & 0x1e).toBe(0x18);
+    bytes[3]! &= ~0x08;
+    expect(decodePose(bytes, skeleton)).toBeNull();
+    expect(packetLengthAt(bytes, 0)).toBe(0);
+  });
+
   test('are none at all for a person who is not a number', () => {
     const { head } = handsOnly.pose;
     const nowhere = { ...head, position: vec3(Number.NaN, 1, 0) };
@@ -326,13 +364,17 @@ test('100,000 bad packets (a million at night) decode to null or to a finite pos
     const { packet, skeleton: own } = await packetOf(sender);
     good.push(encodePose(packet, own)!);
   }
+  for (const pinned of fc.sample(pinnedSenders, { seed, numRuns: 30 })) {
+    const { packet, skeleton: own } = await pinnedPacketOf(pinned);
+    good.push(encodePose(packet, own)!);
+  }
   good.push(encodePose(handsOnly, skeleton)!);
   const noise = (length: number): Uint8Array => Uint8Array.from({ length }, () => below(256));
   const bad = (): Uint8Array => {
     const sort = chance();
-    if (sort < 0.1) return noise(below(80));
+    if (sort < 0.1) return noise(below(100));
     if (sort < 0.4) {
-      const bytes = noise(25 + below(40));
+      const bytes = noise(25 + below(63));
       bytes[0] = (poseVersion << 4) | (bytes[0]! & 0xf);
       return bytes;
     }
@@ -351,7 +393,8 @@ test('100,000 bad packets (a million at night) decode to null or to a finite pos
     if (pose === null) continue;
     accepted += 1;
     const finite = numbersIn(pose).every(Number.isFinite);
-    const turns = [pose.pose.head, pose.pose.leftHand, pose.pose.rightHand]
+    const { head, leftHand, rightHand, feet } = pose.pose;
+    const turns = [head, leftHand, rightHand, feet?.left, feet?.right]
       .flatMap((hand) => (hand ? [hand.orientation] : []))
       .concat(Object.values(pose.pose.body?.localRotations ?? {}));
     const unit = turns.every(({ x, y, z, w }) => Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-6);

@@ -4,10 +4,10 @@ import { mostSeats } from 'threepoint-rooms/protocol/messages';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame, encodeFrame, frameLength, type SeatPose, writeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { packetOf, senders } from './sent-bodies';
+import { packetOf, pinnedPacketOf, pinnedSenders, senders } from './sent-bodies';
 
 const seed = 20261122;
-/** Packets of people in any movement, with and without bodies, hands and fingers. */
+/** Packets of people in any movement, with and without bodies, hands, fingers and trackers. */
 const packets: Uint8Array[] = [];
 
 beforeAll(async () => {
@@ -18,9 +18,13 @@ beforeAll(async () => {
       packets.push(encodePose(sent, skeleton)!);
     }
   }
+  for (const pinned of fc.sample(pinnedSenders, { seed, numRuns: 30 })) {
+    const { packet, skeleton } = await pinnedPacketOf(pinned);
+    packets.push(encodePose(packet, skeleton)!);
+  }
 });
 
-const onSeats = fc.array(fc.tuple(fc.nat(mostSeats - 1), fc.nat(359)), { minLength: 1, maxLength: 24 });
+const onSeats = fc.array(fc.tuple(fc.nat(mostSeats - 1), fc.nat(389)), { minLength: 1, maxLength: 24 });
 const posesOf = (choices: readonly (readonly [number, number])[]): SeatPose[] =>
   choices.map(([seat, index]) => ({ seat, bytes: packets[index]! })).sort((a, b) => a.seat - b.seat);
 const plain = (poses: readonly SeatPose[] | null) => poses?.map(({ seat, bytes }) => [seat, [...bytes]]);

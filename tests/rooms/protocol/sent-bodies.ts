@@ -1,18 +1,22 @@
 import fc from 'fast-check';
+import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
+import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
-import { up, vec3 } from 'threepoint/core/math/vec3';
+import { add, up, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
 import { evenly, rotation, standpoint, vector } from '../../threepoint/core/arbitraries';
-import { show } from '../../threepoint/core/estimation/drawn';
+import { type Joints, poseOf, showAll } from '../../threepoint/core/estimation/drawn';
 import { movingPerson, transformFrame, withHand } from '../../threepoint/core/estimation/moving-person';
+import { type TrueJoints, trackersOn, withOffsets } from '../../threepoint/core/estimation/tracked-body';
+import { fromEulerYxz } from '../../threepoint/core/euler-angles';
 
 export const calibrationOf = fc
   .tuple(evenly(0.95, 2.1), evenly(0.82, 1.05))
@@ -86,23 +90,78 @@ export function framesOf(sender: Sender): readonly TrackingFrame[] {
   });
 }
 
+export interface SentPacket {
+  readonly packet: PosePacket;
+  readonly skeleton: Skeleton;
+}
+
+const sentPacket = ({ start, jump, fingers, calibration }: Sender, pose: AvatarPose): SentPacket => ({
+  packet: { timeMs: packetMs(start * 1000), jump, pose, fingers },
+  skeleton: skeletonFromCalibration(calibration),
+});
+
 /** Returns the packet of a person with a body that this estimator solves (default: IK). */
-export async function packetOf(
+export const packetOf = async (
   sender: Sender,
   create: (calibration: Calibration) => PoseEstimator = createIk,
-): Promise<{ packet: PosePacket; skeleton: ReturnType<typeof skeletonFromCalibration> }> {
-  const estimator = create(sender.calibration);
-  let pose: PosePacket['pose'] | null = null;
-  for (const frame of framesOf(sender)) {
-    pose = await show(estimator, frame);
-  }
-  return {
-    packet: {
-      timeMs: packetMs(sender.start * 1000),
-      jump: sender.jump,
-      pose: pose!,
-      fingers: sender.fingers,
-    },
-    skeleton: skeletonFromCalibration(sender.calibration),
+): Promise<SentPacket> => sentPacket(sender, await showAll(create(sender.calibration), framesOf(sender)));
+
+/** The way from a drawn joint to where its tracker is: a few centimetres aside, and turned. */
+const beside = fc.option(
+  fc.record({
+    to: vector(0.05),
+    about: fc.record({ x: evenly(-0.3, 0.3), y: evenly(-0.5, 0.5), z: evenly(-0.3, 0.3) }),
+  }),
+  { nil: null },
+);
+/** An ankle by its way from the floor under the hips: raised by half a metre at most. */
+const ankle = fc.option(
+  fc.record({ x: evenly(-0.5, 0.5), y: evenly(0.05, 0.6), z: evenly(-0.5, 0.5), turned: rotation }),
+  {
+    nil: null,
+  },
+);
+
+/** A person with trackers: seen in all frames, lost on the way, or found just before the frame that is sent. */
+export const pinnedSenders = fc.record({
+  sender: senders,
+  hips: beside,
+  chest: beside,
+  leftFoot: ankle,
+  rightFoot: ankle,
+  seen: fc.constantFrom('always', 'always', 'lost', 'found'),
+});
+
+export type PinnedSender = typeof pinnedSenders extends fc.Arbitrary<infer T> ? T : never;
+
+/** Returns the joints that the trackers of a frame report. */
+function pinnedJoints({ hips, chest, leftFoot, rightFoot }: PinnedSender, free: Joints): TrueJoints {
+  const trunk = (name: 'hips' | 'chest', way: typeof hips): TrueJoints => {
+    if (!way) return {};
+    const { position, orientation } = free[name];
+    return { [name]: { position: add(position, way.to), orientation: multiply(orientation, fromEulerYxz(way.about)) } };
   };
+  const foot = (name: 'leftFoot' | 'rightFoot', at: typeof leftFoot): TrueJoints => {
+    if (!at) return {};
+    const { x, z } = free.hips.position;
+    return { [name]: { position: vec3(x + at.x, at.y, z + at.z), orientation: at.turned } };
+  };
+  return {
+    ...trunk('hips', hips),
+    ...trunk('chest', chest),
+    ...foot('leftFoot', leftFoot),
+    ...foot('rightFoot', rightFoot),
+  };
+}
+
+/** Returns the packet of a person with trackers, whose body IK solves. */
+export async function pinnedPacketOf(pinned: PinnedSender): Promise<SentPacket> {
+  const { sender, seen } = pinned;
+  const [plain, estimator] = [createIk(sender.calibration), createIk(withOffsets(sender.calibration))];
+  const frames = framesOf(sender).map((frame, i): TrackingFrame => {
+    const free = forwardKinematics(skeletonFromCalibration(sender.calibration), poseOf(plain, frame).body!);
+    const isSeen = { always: true, lost: i < framesBefore - 5, found: i > framesBefore - 5 }[seen];
+    return isSeen ? { ...frame, trackers: trackersOn(pinnedJoints(pinned, free)) } : frame;
+  });
+  return sentPacket(sender, await showAll(estimator, frames));
 }

@@ -7,12 +7,13 @@ import { distance } from 'threepoint/core/math/vec3';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { longestPose } from 'threepoint-rooms/protocol/pose-packet';
 import { expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
-import { packetOf, senders } from '../protocol/sent-bodies';
+import { packetOf, pinnedPacketOf, pinnedSenders, senders } from '../protocol/sent-bodies';
 import { createTestRoom } from './test-room';
 
 /** Bodies of the least and greatest measures that a message may carry. */
@@ -29,9 +30,10 @@ function reachOf(bytes: Uint8Array, calibration: Calibration): number {
   const skeleton = skeletonFromCalibration(calibration);
   const packet = decodePose(bytes, skeleton);
   if (!packet || !numbersIn(packet).every(Number.isFinite)) return Number.NaN;
-  const { head, body } = packet.pose;
+  const { head, body, feet } = packet.pose;
   if (!body) return 0;
-  const joints = Object.values(forwardKinematics(skeleton, body));
+  const ankles = [feet?.left ?? null, feet?.right ?? null].filter((foot) => foot !== null);
+  const joints = [...Object.values(forwardKinematics(skeleton, body)), ...ankles];
   return Math.max(...joints.map(({ position }) => distance(position, head.position)));
 }
 
@@ -45,15 +47,19 @@ async function mutations(chance: () => number) {
       valid.push(encodePose({ ...packet, pose: { ...packet.pose, body } }, skeleton)!);
     }
   }
+  for (const pinned of fc.sample(pinnedSenders, { seed, numRuns: 60 })) {
+    const { packet, skeleton } = await pinnedPacketOf(pinned);
+    valid.push(encodePose(packet, skeleton)!);
+  }
   const some = () => Uint8Array.from(valid[below(valid.length)]!);
   const ways: readonly (() => Uint8Array)[] = [
     // A bit to four, anywhere; in the head of the packet, which says how long it is; bytes; cut off; put together from
     // two.
     () => flipped(some(), () => below(40 * 8)),
-    () => flipped(some(), () => below(13)),
+    () => flipped(some(), () => below(31)),
     () => some().map((byte) => (chance() < 0.05 ? below(256) : byte)),
-    () => some().slice(0, below(65)),
-    () => Uint8Array.from([...some(), ...some().slice(0, below(40))]).slice(0, 64),
+    () => some().slice(0, below(longestPose + 1)),
+    () => Uint8Array.from([...some(), ...some().slice(0, below(40))]).slice(0, longestPose),
   ];
   function flipped(bytes: Uint8Array, bit: () => number): Uint8Array {
     for (let flips = 1 + below(4); flips > 0; flips--) {

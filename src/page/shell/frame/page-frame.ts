@@ -152,12 +152,13 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   /** Returns the pose with the drawn fingers, in an object that the next frame overwrites. */
-  #withFingers({ head, leftHand, rightHand, body }: AvatarPose): AvatarPose {
+  #withFingers({ head, leftHand, rightHand, body, feet }: AvatarPose): AvatarPose {
     const drawn = this.#drawn;
     drawn.head = head;
     drawn.leftHand = leftHand;
     drawn.rightHand = rightHand;
     drawn.body = body;
+    drawn.feet = feet;
     return drawn as AvatarPose;
   }
 
