@@ -10,7 +10,7 @@ import { expect, test } from 'vitest';
 import { type BoneTurns, builtFbx } from './built-fbx';
 import { rigJoints } from './built-rig';
 import { fbxBinary, fbxText } from './fbx-file';
-import { changed, type GltfJson, partsOf } from './glb';
+import { changed, type GltfJson, glbOf, partsOf } from './glb';
 import { mixamo } from './rig-namings';
 
 const frames = 90;
@@ -97,6 +97,23 @@ test('a skin that was bound in T-pose counts as rest where the file shows anothe
     new Uint8Array(glb),
   );
   await expectTruth(posed, 'wave.glb');
+});
+
+test('a skin that was bound to ends of chains that lie a hundredfold off is read all the same', async () => {
+  const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  const { json, binary } = partsOf(new Uint8Array(glb));
+  const skin = json.skins[0]! as { joints: number[]; inverseBindMatrices: number };
+  const { byteOffset = 0 } = json.bufferViews[json.accessors[skin.inverseBindMatrices]!.bufferView!]!;
+  for (const [i, joint] of skin.joints.entries()) {
+    const node = json.nodes[joint]!;
+    if (node.children || !/Thumb|Index|Middle|Ring|Pinky/.test(node.name)) continue;
+    node.name += '_end';
+    for (const row of [12, 13, 14]) {
+      const at = byteOffset + 64 * i + 4 * row;
+      binary.writeFloatLE(100 * binary.readFloatLE(at), at);
+    }
+  }
+  await expectTruth(glbOf(json, binary), 'wave.glb');
 });
 
 test('numbers in another file are refused in a sentence', async () => {

@@ -1,3 +1,5 @@
+import { calibrationComplaint, defaultCalibration, statureFromEyeHeight } from '../body/calibration';
+import { armLength as personArmLength } from '../body/skeleton';
 import {
   conjugate,
   fromAxisAngle,
@@ -11,7 +13,6 @@ import {
 import {
   add,
   addScaled,
-  distance,
   lerp,
   type MutableVec3,
   right,
@@ -24,8 +25,8 @@ import {
   zero,
 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
-import { armLength, cmu, units } from './mocap-rules.json';
-import { checkRest, type RestPose } from './rest-pose';
+import { armLength, cmu, eyesFromHeadJoint, units } from './mocap-rules.json';
+import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestPose } from './rest-pose';
 import {
   type BetweenJoints,
   type MappedSkeleton,
@@ -54,28 +55,10 @@ export const positionsWidth = 3 * truthJoints.length;
 export const rotationsWidth = 4 * trackedJoints.length;
 const framesPerStep = 64;
 
-/** Metres per unit: the map's, else the one that makes the arm at rest a person's. */
-function metresPerUnit({ scale: given }: MappedSkeleton, restOf: (joint: TruthJoint) => Vec3): number {
-  if (given) return given;
-  const arm =
-    distance(restOf('leftUpperArm'), restOf('leftLowerArm')) + distance(restOf('leftLowerArm'), restOf('leftHand'));
-  const [least, most] = armLength as [number, number];
-  const unit = units.find((metres) => least < arm * metres && arm * metres < most);
-  if (unit === undefined) throw new Error(`an arm of ${arm.toPrecision(3)} units fits no known unit`);
-  return unit;
-}
-
 const unitNames: Readonly<Record<string, string>> = {
   ...{ 0.001: 'millimetres', 0.1: 'decimetres', 0.0254: 'inches', 0.3048: 'feet' },
   [cmu.metresPerUnit]: 'the CMU database (5.6 cm)',
 };
-
-/** States the unit that was assumed for a file where it is neither metres nor centimetres; null: it is, or is given. */
-export function unitNote(file: FileMotion, skeleton: MappedSkeleton): string | null {
-  if (skeleton.scale) return null;
-  const name = unitNames[metresPerUnit(skeleton, (joint) => file.rest[skeleton.columns[joint]!]!)];
-  return name === undefined ? null : `its unit was taken to be that of ${name}`;
-}
 
 /** What takes the rotation of a hand since rest to that of its wrist, whose −Z points to the knuckles. */
 function wristFromRest(side: 'left' | 'right', rest: RestPose): Quat {
@@ -114,6 +97,50 @@ function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number):
   return rest;
 }
 
+/** Whether joints at rest [m] have the size of a person. */
+function isPersonSized(rest: RestPose): boolean {
+  const [least, most] = armLength as [number, number];
+  const arm = armAtRest(rest, 'left');
+  const eyeHeight = eyeHeightAtRest(rest);
+  if (!(least < arm && arm < most)) return false;
+  return eyeHeight === null || calibrationComplaint({ eyeHeight, armSpan: armSpanAtRest(rest) }) === null;
+}
+
+/**
+ * Returns metres per unit: the map's, else the first known unit in which the body has a person's size, else the scale
+ * that gives it an average height, or average arms if it has no legs. `note`: what was assumed; null: metres,
+ * centimetres or the map's.
+ */
+export function unitOf(
+  file: FileMotion,
+  skeleton: MappedSkeleton,
+): { readonly metres: number; readonly note: string | null } {
+  if (skeleton.scale) return { metres: skeleton.scale, note: null };
+  const known = units.find((metres) => isPersonSized(restInMetres(file, skeleton, metres)));
+  if (known !== undefined) {
+    const name = unitNames[known];
+    return { metres: known, note: name === undefined ? null : `its unit was taken to be that of ${name}` };
+  }
+  const rest = restInMetres(file, skeleton, 1);
+  const head = headHeightAtRest(rest);
+  const arm = personArmLength(defaultCalibration);
+  const metres =
+    head === null ? arm / armAtRest(rest, 'left') : (defaultCalibration.eyeHeight - eyesFromHeadJoint[1]!) / head;
+  if (!(metres > 0 && metres < Infinity)) throw new Error('its bones have no length');
+  const scaled = restInMetres(file, skeleton, metres);
+  const complaint =
+    head === null
+      ? null
+      : calibrationComplaint({ eyeHeight: eyeHeightAtRest(scaled)!, armSpan: armSpanAtRest(scaled) });
+  const size =
+    head === null
+      ? `arms of ${arm.toFixed(2)} m`
+      : `a height of ${statureFromEyeHeight(defaultCalibration.eyeHeight).toFixed(2)} m`;
+  if (complaint)
+    throw new Error(`its unit is unknown, and its body is no person’s when it is scaled to ${size}: ${complaint}`);
+  return { metres, note: `its unit is unknown: its body was scaled to ${size}` };
+}
+
 /**
  * Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is no
  * person's.
@@ -121,7 +148,7 @@ function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number):
 export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedSkeleton): Generator<number, OurMotion> {
   const { columns, between, floor, motionFloor } = skeleton;
   const restFromFloor = conjugate(floor);
-  const unit = metresPerUnit(skeleton, (joint) => file.rest[columns[joint]!]!);
+  const unit = unitOf(file, skeleton).metres;
   const rest = restInMetres(file, skeleton, unit);
   checkRest(rest, skeleton);
   const wrists: Partial<Record<TrackedJoint, Quat>> = {

@@ -1,12 +1,12 @@
 import type { Calibration } from '../body/calibration';
 import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
 import { sides } from '../math/side';
-import { mean, median, quantile } from '../math/statistics';
-import { distance, forward, length, right, subtract, vec3 } from '../math/vec3';
+import { median, quantile } from '../math/statistics';
+import { forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import { eyesFromHeadJoint } from './mocap-rules.json';
 import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
-import type { RestPose } from './rest-pose';
+import { armSpanAtRest, eyeHeightAtRest } from './rest-pose';
 import { type TruthJoint, truthJoints } from './skeleton-map';
 
 /** Frames of a motion, from one to before another. */
@@ -15,10 +15,6 @@ export interface Piece {
   readonly to: number;
 }
 
-/**
- * The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
- */
-const soleOfLeg = 0.039 / 0.491;
 /** A trunk that deviates less from upright (as a cosine) than this is. */
 const upright = 0.94;
 /**
@@ -36,28 +32,11 @@ function* heightsOf({ positions }: OurMotion, pieces: readonly Piece[], joint: T
     for (let frame = from; frame < to; frame++) yield positions[frame * positionsWidth + columnOf(joint) + 1]!;
 }
 
-/** Eye height [m] with straight legs and the trunk as at rest; null: a file without legs. */
-function standingEyeHeight(rest: RestPose): number | null {
-  const legs = sides.flatMap((side) => {
-    const [hip, knee, ankle] = (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => rest.get(`${side}${part}`));
-    return hip && knee && ankle ? [distance(hip, knee) + distance(knee, ankle)] : [];
-  });
-  if (!rest.has('leftFoot') || legs.length === 0) return null;
-  const hips = sides.flatMap((side) => rest.get(`${side}UpperLeg`)?.y ?? []);
-  const leg = mean(legs);
-  return leg + soleOfLeg * leg + rest.get('head')!.y - mean(hips) + eyesFromHeadJoint[1]!;
-}
-
 /** What a calibration would find of the person in a motion. */
 export function measuresOf(motion: OurMotion, pieces: readonly Piece[]): Calibration {
   const { rest } = motion;
-  const between = (a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
-  const arm = (side: 'left' | 'right'): number =>
-    between(`${side}UpperArm`, `${side}LowerArm`) + between(`${side}LowerArm`, `${side}Hand`);
-  return {
-    eyeHeight: standingEyeHeight(rest) ?? quantile([...heightsOf(motion, pieces, 'head')], 0.9) + eyesFromHeadJoint[1]!,
-    armSpan: between('leftUpperArm', 'rightUpperArm') + arm('left') + arm('right'),
-  };
+  const eyesInMotion = () => quantile([...heightsOf(motion, pieces, 'head')], 0.9) + eyesFromHeadJoint[1]!;
+  return { eyeHeight: eyeHeightAtRest(rest) ?? eyesInMotion(), armSpan: armSpanAtRest(rest) };
 }
 
 /** The head's rotation when this person looks ahead: its median pitch and roll over frames with an upright trunk. */

@@ -13,7 +13,7 @@ import { cutAtLeaps, evenClip } from './even-clip';
 import { floorFromFile, fromMappedRest } from './mapped-motion';
 import { type MatchedMotion, matchSkeleton } from './match-skeleton';
 import { cmu, rateHz } from './mocap-rules.json';
-import { type OurMotion, toOurJoints, unitNote } from './our-joints';
+import { type OurMotion, toOurJoints, unitOf } from './our-joints';
 import { floorHeight, measuresOf, neutralHead } from './person';
 import { readSkeletonMap } from './read-skeleton-map';
 import { simulateTrackers } from './simulate-trackers';
@@ -164,7 +164,7 @@ export function* readOurMotion(
         `it has ${Number(rate.toPrecision(3))} frames a second; motion of ${lowestRateHz} to ${highestRateHz} is read`,
       );
     const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton), 0.75, 1);
-    const unit = unitNote(file, skeleton);
+    const unit = unitOf(file, skeleton).note;
     return { motion, notes: [...file.notes, ...notes, ...(unit === null ? [] : [unit])], doubts: doubtsOf(motion) };
   } catch (error) {
     throw faultIn(source.name, error);

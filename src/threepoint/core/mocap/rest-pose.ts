@@ -1,7 +1,7 @@
 import { sideSign } from '../body/skeleton';
-import { sides } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
-import { shortestBone } from './mocap-rules.json';
+import { eyesFromHeadJoint, shortestBone } from './mocap-rules.json';
 import type { MappedSkeleton, TruthJoint } from './skeleton-map';
 
 /** The joints at rest [m], +Y up, facing −Z, without those that a file lacks. */
@@ -12,6 +12,39 @@ const trunk = [
   ['chest', 'neck'],
   ['neck', 'head'],
 ] as const;
+
+/**
+ * The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
+ */
+const soleOfLeg = 0.039 / 0.491;
+
+const between = (rest: RestPose, a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
+
+/** Returns the length of an arm from shoulder to wrist. */
+export const armAtRest = (rest: RestPose, side: Side): number =>
+  between(rest, `${side}UpperArm`, `${side}LowerArm`) + between(rest, `${side}LowerArm`, `${side}Hand`);
+
+/** Returns the distance from wrist to wrist with straight arms. */
+export const armSpanAtRest = (rest: RestPose): number =>
+  between(rest, 'leftUpperArm', 'rightUpperArm') + armAtRest(rest, 'left') + armAtRest(rest, 'right');
+
+/** Returns the height of the head joint above the soles, with straight legs; null: a file without legs. */
+export function headHeightAtRest(rest: RestPose): number | null {
+  const legs = sides.flatMap((side) => {
+    const [hip, knee, ankle] = (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => rest.get(`${side}${part}`));
+    return hip && knee && ankle ? [distance(hip, knee) + distance(knee, ankle)] : [];
+  });
+  if (!rest.has('leftFoot') || legs.length === 0) return null;
+  const hips = sides.flatMap((side) => rest.get(`${side}UpperLeg`)?.y ?? []);
+  const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
+  return (1 + soleOfLeg) * mean(legs) + rest.get('head')!.y - mean(hips);
+}
+
+/** Returns the eye height [m] with straight legs and the trunk as at rest; null: a file without legs. */
+export function eyeHeightAtRest(rest: RestPose): number | null {
+  const head = headHeightAtRest(rest);
+  return head === null ? null : head + eyesFromHeadJoint[1]!;
+}
 
 const direction = (v: Vec3): Vec3 => normalise(v, zero);
 

@@ -25,14 +25,18 @@ function bindPoses(description: Json, binary: Uint8Array): ReadonlyMap<number, B
   return bound;
 }
 
-/** Returns the length of all bones between joints that are bound [the unit of `place`]. */
-function lengthOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>, place: (node: number) => Vec3): number {
-  let sum = 0;
-  for (const node of bound.keys()) {
+/**
+ * Returns how much longer bones are as shown than as bound: the median, since some exporters bind the ends of chains a
+ * hundredfold off.
+ */
+function sizeOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>, shown: JointPoses): number {
+  const ratios = [...bound].flatMap(([node, { position }]) => {
     const { parent } = clip.nodes[node]!;
-    if (bound.has(parent)) sum += distance(place(node), place(parent));
-  }
-  return sum;
+    const above = bound.get(parent);
+    const length = above ? distance(position, above.position) : 0;
+    return length > 0 ? [distance(shown.positions[node]!, shown.positions[parent]!) / length] : [];
+  });
+  return ratios.sort((a, b) => a - b)[ratios.length >> 1] ?? 1;
 }
 
 /**
@@ -52,8 +56,7 @@ function restOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>): JointPoses {
       0,
     );
   const [turn] = [identity, shown.rotations[above] ?? identity].sort((a, b) => off(a) - off(b)) as [Quat];
-  const length = lengthOf(clip, bound, (node) => bound.get(node)!.position);
-  const size = length > 0 ? lengthOf(clip, bound, (node) => shown.positions[node]!) / length : 1;
+  const size = sizeOf(clip, bound, shown);
   const rest = makeJointPoses(all.length);
   for (const node of clip.order) {
     const { parent } = clip.nodes[node]!;

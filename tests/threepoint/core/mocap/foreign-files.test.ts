@@ -1,4 +1,5 @@
 import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { angleBetween, conjugate, multiply, quat } from 'threepoint/core/math/quat';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
@@ -82,6 +83,18 @@ describe('a BVH is read alike with', () => {
   test('a unit that is neither metres nor centimetres, which is said', () => {
     expect(prepare(madeBvh({ unit: 0.1 })).notes.join()).toMatch(/its unit was taken to be that of decimetres/);
     expect(prepare(madeBvh({ unit: 0.01 })).notes).toEqual([]);
+  });
+
+  test('a unit that fits no person: the body gets an average height, or average arms if it has no legs', () => {
+    const { clips, notes } = prepare(madeBvh({ unit: 4.2 }));
+    const { eyeHeight, armSpan } = clips[0]!.calibration;
+    expect(notes.join()).toMatch(/its unit is unknown: its body was scaled to a height of 1\.70 m/);
+    expect(eyeHeight).toBeCloseTo(defaultCalibration.eyeHeight, 6);
+    expect(armSpan / expected.calibration.armSpan).toBeCloseTo(eyeHeight / expected.calibration.eyeHeight, 2);
+    const without = ['Left', 'Right'].flatMap((side) => ['UpLeg', 'Leg', 'Foot', 'Toe'].map((part) => side + part));
+    const legless = prepare(madeBvh({ unit: 4.2, without }));
+    expect(legless.notes.join()).toMatch(/its unit is unknown: its body was scaled to arms of 0\.\d\d m/);
+    expect(Math.abs(legless.clips[0]!.calibration.armSpan / defaultCalibration.armSpan - 1)).toBeLessThan(0.1);
   });
 
   test.each<[string, string, RegExp | null]>([
