@@ -1,5 +1,6 @@
 import { fileURLToPath } from 'node:url';
 import { expect, type Page } from '@playwright/test';
+import { drawSeldom } from './draw-seldom';
 import { type EmulatedHeadset, emulatedHeadset, type Placement } from './emulated-headset';
 
 const iwer = fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url));
@@ -58,8 +59,9 @@ export function complaintsOf(page: Page): readonly string[] {
   return complaints;
 }
 
-/** Gives the page an emulated headset, from its next document on. */
+/** Gives the page an emulated headset, from its next document on, and draws it seldom. */
 export async function emulateHeadset(page: Page): Promise<void> {
+  await drawSeldom(page);
   await page.addInitScript({ path: iwer });
   await page.addInitScript(() => {
     const device = new window.IWER.XRDevice(window.IWER.metaQuest3, { stereoEnabled: false });

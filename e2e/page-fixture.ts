@@ -5,6 +5,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { serve } from 'threepoint-http/web-server';
 import type { Probe } from 'threepoint-page/shell/probe';
 import { createPageHandler } from '../server/page';
+import { drawSeldom, screenshot } from './draw-seldom';
 import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 
@@ -205,8 +206,7 @@ const artifacts = fileURLToPath(new URL('../artifacts/screenshots/', import.meta
 /** Saves a screenshot for people to look at: artifacts/screenshots/NAME.png. */
 export async function keepPicture(page: Page, name: string): Promise<void> {
   mkdirSync(artifacts, { recursive: true });
-  await page.evaluate(() => window.drivenTime?.drawn());
-  await page.screenshot({ path: `${artifacts}${name}.png` });
+  await screenshot(page, `${artifacts}${name}.png`);
 }
 
 /** The errors of the page that a test causes on purpose, as patterns. */
@@ -215,11 +215,12 @@ export interface ExpectedComplaints {
 }
 
 /**
- * Opens a page in a new context that logs violations of its content security policy. Addresses are relative to `base`;
- * `kept` allows the service worker.
+ * Opens a page in a new context that logs violations of its content security policy and is drawn seldom. Addresses are
+ * relative to `base`; `kept` allows the service worker.
  */
 export async function newPage(browser: Browser, base: string, kept = false): Promise<Page> {
   const context = await browser.newContext({ baseURL: base, serviceWorkers: kept ? 'allow' : 'block' });
+  await drawSeldom(context);
   const page = await context.newPage();
   await page.addInitScript(() => {
     document.addEventListener('securitypolicyviolation', (event) => {

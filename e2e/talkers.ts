@@ -2,6 +2,8 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test as base, chromium, expect, type Page } from '@playwright/test';
+import type { VoicesProbe } from 'threepoint-page/ball/voices-state';
+import { drawSeldom } from './draw-seldom';
 import type { VoicesProbe } from 'threepoint-page/ball/voices/voices-state';
 import { writeFakeVoice } from './fake-voice';
 import { joinedRoom, probe } from './page-fixture';
@@ -24,15 +26,12 @@ export interface TalkerOptions {
   readonly viewport?: { readonly width: number; readonly height: number };
   /** The environment of a browser that uses the machine's audio devices instead of the fake microphone. */
   readonly device?: Readonly<Record<string, string>>;
-  /** Computes four frames a second and draws almost none, for tests that only need this page's voice. */
+  /** Computes four frames a second, for tests that only need this page's voice. */
   readonly seldomDrawn?: boolean;
 }
 
-/**
- * Computes four frames a second and draws one a minute; runs in the page. With software rendering several pages would
- * starve each other, and voices do not depend on drawing.
- */
-function drawSeldom(): void {
+/** Computes four frames a second; runs in the page. Several pages would starve each other, and voices need no frames. */
+function computeSeldom(): void {
   const waiting = new Map<number, FrameRequestCallback>();
   let last = 0;
   window.requestAnimationFrame = (callback) => {
@@ -41,29 +40,11 @@ function drawSeldom(): void {
     return last;
   };
   window.cancelAnimationFrame = (handle) => void waiting.delete(handle);
-  let frames = 0;
   setInterval(() => {
-    frames += 1;
     const now = [...waiting.values()];
     waiting.clear();
     for (const callback of now) callback(performance.now());
   }, 250);
-  const { prototype } = WebGL2RenderingContext;
-  for (const name of [
-    'clear',
-    'drawArrays',
-    'drawElements',
-    'drawArraysInstanced',
-    'drawElementsInstanced',
-    'blitFramebuffer',
-  ] as const) {
-    const draw = prototype[name] as (...given: unknown[]) => void;
-    Object.assign(prototype, {
-      [name](this: WebGL2RenderingContext, ...given: unknown[]) {
-        if (frames % 240 === 0) draw.apply(this, given);
-      },
-    });
-  }
 }
 
 /** Flags that draw 2D canvases on the CPU: on a software GPU the text of the game's boards costs most of a frame. */
@@ -126,7 +107,8 @@ export const test = base.extend<VoicesFixtures, { voiceFile: string }>({
       const context = await browser.newContext({ viewport, serviceWorkers: 'block' });
       await context.grantPermissions(microphone === 'refused' ? [] : ['microphone'], { origin });
       const page = await context.newPage();
-      if (seldomDrawn) await page.addInitScript(drawSeldom);
+      await drawSeldom(context);
+      if (seldomDrawn) await page.addInitScript(computeSeldom);
       if (inPage) await page.addInitScript(inPage);
       const address = new URLSearchParams({
         ...{ play: 'ball', room: 'meadow', panel: 'off', quality: 'low', estimator: 'ik', overlay: 'off', bots: 'off' },

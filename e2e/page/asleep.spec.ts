@@ -2,6 +2,7 @@ import { chromium, type Page } from '@playwright/test';
 import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { processesOf } from '../browser-processes';
+import { drawSeldom } from '../draw-seldom';
 import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
 import { test } from '../study-participant';
 
@@ -76,6 +77,7 @@ for (const { asleep, name, tag } of sleeps) {
     const browserServer = await chromium.launchServer(launchOptions);
     try {
       const page = await (await chromium.connect(browserServer.wsEndpoint())).newPage();
+      await drawSeldom(page);
       await withClocks(page);
       const { errors } = collectErrors(page, origin);
       const { seat } = await inMatch(page, origin, `asleep-${crypto.randomUUID().slice(0, 8)}`);

@@ -2,6 +2,7 @@ import { EventEmitter, once } from 'node:events';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { changed, mannequin } from '../../tests/threepoint/avatar/glb';
 import { serveCrossOrigin } from '../cross-origin-server';
+import { drawSeldom } from '../draw-seldom';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
 
@@ -126,6 +127,7 @@ freshTest(
   async ({ browser }) => {
     const elsewhere = await serveCrossOrigin(mannequin(), 'other.vrm');
     const context = await browser.newContext({ ignoreHTTPSErrors: true, serviceWorkers: 'block' });
+    await drawSeldom(context);
     /** The name of the avatar that stands there, once the page has opened the other one or has said why not. */
     async function shownBy(settings: Record<string, string>): Promise<string> {
       const server = await serveStudies(settings);

@@ -2,6 +2,7 @@ import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
 import type { CourtProbe } from 'threepoint-page/ball/court-activity';
+import { drawSeldom } from '../draw-seldom';
 import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { driveTime, goOn, holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
@@ -133,6 +134,7 @@ async function join(browser: Browser, port: number, room: string, query: string)
   // A browser each: pages of one browser would all be drawn by one process, one after the other.
   const own = await browser.browserType().launch(test.info().project.use.launchOptions);
   const page = await own.newPage({ viewport: { width: 240, height: 150 } });
+  await drawSeldom(page);
   await page.goto(
     `http://localhost:${port}/?play=ball&room=${room}&panel=off&quality=low&estimator=ik&overlay=off&${query}`,
   );

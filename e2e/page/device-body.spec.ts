@@ -45,7 +45,7 @@ const askSwitch = (page: Page) => page.getByRole('switch', { name: 'Use the head
 const press = (page: Page, role: 'button' | 'radio', name: string) =>
   page.getByRole(role, { name, exact: true, includeHidden: true }).dispatchEvent('click');
 
-test('a headset’s own body is asked for on wish alone, drawn, compared, recorded, and the truth of an evaluation @realtime', async ({
+test('a headset’s own body is asked for on wish alone, drawn, compared, recorded, and the truth of an evaluation @full', async ({
   page,
 }, testInfo) => {
   await openOnTrackingHeadset(page);
@@ -84,7 +84,7 @@ test('a headset’s own body is asked for on wish alone, drawn, compared, record
   await keepPicture(page, 'device-body-difference');
 });
 
-test('a headset that was not asked, or has no body, is said to have none, and the learned body is drawn @realtime', async ({
+test('a headset that was not asked, or has no body, is said to have none, and the learned body is drawn @full', async ({
   page,
 }) => {
   await open(page, 'emulate&quality=low&estimator=device');

@@ -2,6 +2,7 @@ import { fileURLToPath } from 'node:url';
 import { serve } from 'threepoint-http/web-server';
 import { createPageHandler } from '../../server/page';
 import { reportFigures } from '../../tests/reliability/report-figures';
+import { drawEveryFrame } from '../draw-seldom';
 import { emulatedHeadset, frames } from '../emulated-headset';
 import { enterVr, expect, freshTest, open, probe, test } from '../page-fixture';
 
@@ -49,6 +50,7 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
 }) => {
   complaints.allow(/context lost/i);
   await open(page, 'play=archery&seed=7&panel=off&quality=low');
+  await drawEveryFrame(page);
   const figures: Record<string, string> = {};
 
   await page.waitForFunction(

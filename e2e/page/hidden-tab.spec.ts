@@ -2,6 +2,7 @@ import type { Page } from '@playwright/test';
 import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { startTabbedBrowser } from '../background-tab';
+import { drawSeldom } from '../draw-seldom';
 import { countsOf, megabytes } from '../memory-usage';
 import { collectErrors, expect, joinedRoom, newPage, probe } from '../page-fixture';
 import { test } from '../study-participant';
@@ -56,6 +57,7 @@ for (const [seconds, suite] of [
     try {
       const room = `hidden-${crypto.randomUUID().slice(0, 8)}`;
       const page = tabs.firstTab;
+      await drawSeldom(page);
       const { errors } = collectErrors(page, origin);
       await play(page, origin, room, 'ann');
       await play(other, origin, room, 'ben');

@@ -107,7 +107,7 @@ function publishNewer(folder: string): { readonly oldArchery: string } {
 }
 
 for (const [where, host] of Object.entries(hosts)) {
-  test(`after one visit to ${where}, archery is played in VR with neither network nor host @realtime`, async ({
+  test(`after one visit to ${where}, archery is played in VR with neither network nor host @full`, async ({
     browser,
     folder,
   }) => {
@@ -139,7 +139,7 @@ for (const [where, host] of Object.entries(hosts)) {
   });
 }
 
-test('nothing is kept of a server, and a study is served by it as ever @realtime', async ({ browser, folder }) => {
+test('nothing is kept of a server, and a study is served by it as ever @full', async ({ browser, folder }) => {
   const served = await serveOurs(folder);
   const page = await newPage(browser, served.address, true);
   await visit(page);
@@ -171,7 +171,7 @@ test('nothing is kept of a server, and a study is served by it as ever @realtime
   await served.close();
 });
 
-test('a page in use goes on with the files it began with; the next visit has the newer version, and then its copy too @realtime', async ({
+test('a page in use goes on with the files it began with; the next visit has the newer version, and then its copy too @full', async ({
   browser,
   folder,
 }) => {
@@ -217,7 +217,7 @@ test('a page in use goes on with the files it began with; the next visit has the
   await later.context().close();
 });
 
-test('a browser that can store too little shows the page as ever, and keeps no half of it @realtime', async ({
+test('a browser that can store too little shows the page as ever, and keeps no half of it @full', async ({
   browser,
   folder,
 }) => {
@@ -242,7 +242,7 @@ test('a browser that can store too little shows the page as ever, and keeps no h
   await served.close();
 });
 
-test('files that are not those of one version are not kept @realtime', async ({ browser, folder }) => {
+test('files that are not those of one version are not kept @full', async ({ browser, folder }) => {
   const contract = join(folder, 'models/paper.json');
   writeFileSync(contract, readFileSync(contract, 'utf8').replace('{', '{ '));
   const served = await serveStatic(folder, '/threepoint/');

@@ -40,7 +40,7 @@ const test = base.extend<{ built: string; address: string; complaints: readonly 
   ],
 });
 
-test('from a folder of a host of files: the learned body in VR, archery, and a sentence where rooms would be @realtime', async ({
+test('from a folder of a host of files: the learned body in VR, archery, and a sentence where rooms would be @full', async ({
   page,
 }) => {
   test.setTimeout(180_000);
@@ -60,7 +60,7 @@ test('from a folder of a host of files: the learned body in VR, archery, and a s
   await expect(page.getByRole('button', { name: 'Play with others' })).toBeHidden();
 });
 
-test.describe('built for one folder @realtime', () => {
+test.describe('built for one folder @full', () => {
   const out = join(tmpdir(), `threepoint-page-${process.pid}`);
   test.use({ built: out });
   test.beforeAll(async () => {
@@ -69,7 +69,7 @@ test.describe('built for one folder @realtime', () => {
   });
   test.afterAll(() => rmSync(out, { recursive: true, force: true }));
 
-  test('the page draws the learned body, and the study pages say in a sentence that there is no server @realtime', async ({
+  test('the page draws the learned body, and the study pages say in a sentence that there is no server @full', async ({
     page,
     address,
   }) => {
@@ -91,7 +91,7 @@ test.describe('built for one folder @realtime', () => {
     await keepPicture(page, 'static-host-experimenter');
   });
 
-  test('a link to a room opens one’s own court @realtime', async ({ page }) => {
+  test('a link to a room opens one’s own court @full', async ({ page }) => {
     await page.goto('?play=ball&room=friends&quality=low&panel=off');
     await page.waitForFunction(() => window.threepoint?.probe().game, undefined, { timeout: 60_000 });
     await expect(page.getByText('Your own room')).toBeVisible();

@@ -3,6 +3,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium, type Page } from '@playwright/test';
 import { reportFigures } from '../../tests/reliability/report-figures';
+import { drawSeldom } from '../draw-seldom';
 import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
 import { fillInDemographics, reaches, recordsOf, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
@@ -18,6 +19,7 @@ async function inClosedBrowser(origin: string, launch: object, body: (page: Page
   writeFileSync(join(profile, 'Default/Preferences'), JSON.stringify(blocked));
   const context = await chromium.launchPersistentContext(profile, launch);
   try {
+    await drawSeldom(context);
     const page = await context.newPage();
     await page.goto(`${origin}/withdraw`);
     const refused = await page.evaluate(() => {

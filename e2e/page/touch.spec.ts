@@ -1,7 +1,7 @@
 import AxeBuilder from '@axe-core/playwright';
 import { devices, type Page } from '@playwright/test';
 import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
-import { drawNothing } from '../draw-nothing';
+import { drawSeldom } from '../draw-seldom';
 import { driveTime, endDrivenTime } from '../driven-time';
 import { collectErrors, expect, keepPicture, probe, freshTest as test } from '../page-fixture';
 
@@ -33,6 +33,7 @@ test.describe('on a phone', () => {
   }) => {
     test.setTimeout(240_000);
     const context = await browser.newContext({ ...pixel, baseURL: origin, serviceWorkers: 'block' });
+    await drawSeldom(context);
     const page = await context.newPage();
     const { errors } = collectErrors(page, origin);
     const button = (name: string | RegExp) => page.getByRole('button', { name });
@@ -117,7 +118,7 @@ test('axe finds nothing at the mirror, its controls, in the games and the previe
   page,
 }) => {
   test.setTimeout(90_000);
-  await drawNothing(page);
+  await drawSeldom(page, 3_600_000);
   const found: string[] = [];
   const check = async (view: string, part = 'html') => {
     const { violations } = await new AxeBuilder({ page }).include(part).analyze();

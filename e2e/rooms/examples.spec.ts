@@ -4,6 +4,7 @@ import { readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { type Browser, type BrowserContext, expect, type Page, test } from '@playwright/test';
 import { buildExample, pack, roomExampleNames } from '../../scripts/build-examples.mjs';
+import { screenshot } from '../draw-seldom';
 import type { EmulatedHeadset, Placement, Point } from '../emulated-headset';
 import { emulateHeadset, enterExample, faultsOf, ownJoint } from '../example-page';
 import { freePort } from '../free-port';
@@ -240,7 +241,7 @@ test.describe('examples of other people @realtime', () => {
       const [program, ...otherPrograms] = serversOf(name);
       const meeting = await Meeting.start([browser, secondBrowser], own, program);
       await meeting.seeEachOther();
-      await meeting.ann.page.screenshot({ path: `artifacts/examples/${name}.png` });
+      await screenshot(meeting.ann.page, `artifacts/examples/${name}.png`);
       if (hasSeats(name)) await meeting.reloadKeepsSeat();
       await meeting.leaveAndReturn(hasSeats(name) ? 1 : 0);
       await meeting.end();

@@ -35,7 +35,7 @@ test('a newcomer alone reads rules, what is waited for and a clock that stands a
 
 // A page of its own: it goes on asking this server when the server is gone.
 freshTest(
-  'a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @realtime',
+  'a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @full',
   async ({ page, complaints }) => {
     test.setTimeout(240_000);
     const server = await serveStudies();

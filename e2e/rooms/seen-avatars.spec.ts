@@ -4,6 +4,7 @@ import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
 import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
 import { serveCrossOrigin } from '../cross-origin-server';
+import { drawSeldom } from '../draw-seldom';
 import type { GuestAnswer, GuestOrder } from '../guest-process';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
@@ -128,12 +129,13 @@ const shows = (page: Page, name: string, avatar: string) =>
   expect.poll(() => drawnAs(page, name), { timeout: 60_000, message: `${name} is drawn as ${avatar}` }).toBe(avatar);
 
 freshTest(
-  'what a player has on is what the others see, until they leave or would rather see mannequins @realtime',
+  'what a player has on is what the others see, until they leave or would rather see mannequins @full',
   async ({ page, complaints, browser }) => {
     test.setTimeout(240_000);
     const server = await serveStudies();
     complaints.allow(new RegExp(`asked ${server.origin}:`));
     const other = await browser.newPage({ baseURL: server.origin, viewport: { width: 960, height: 600 } });
+    await drawSeldom(other);
     try {
       const file = blue();
       await other.route(
@@ -174,6 +176,7 @@ freshTest(
     const server = await serveStudies();
     // Two browsers: what is chosen in one is not remembered by the other.
     const contexts = [await browser.newContext(), await browser.newContext()];
+    for (const context of contexts) await drawSeldom(context);
     try {
       const [ben, ann] = (await Promise.all(contexts.map((context) => context.newPage()))) as [Page, Page];
       await enter(ben, server.origin, 'meadow', '&name=Ben');
@@ -202,7 +205,7 @@ freshTest(
 );
 
 freshTest(
-  'an avatar of a server that ours names is seen by the others, and stored nowhere else @realtime',
+  'an avatar of a server that ours names is seen by the others, and stored nowhere else @full',
   async ({ browser }) => {
     test.setTimeout(240_000);
     const file = blue();
@@ -213,6 +216,7 @@ freshTest(
       ignoreHTTPSErrors: true,
       serviceWorkers: 'block',
     });
+    await drawSeldom(context);
     try {
       const [ben, ann] = [await context.newPage(), await context.newPage()];
       await enter(ben, server.origin, 'meadow', '&name=Ben');
@@ -231,7 +235,7 @@ freshTest(
 );
 
 freshTest(
-  'a malicious avatar changes nothing for the others but that its owner is a mannequin @realtime',
+  'a malicious avatar changes nothing for the others but that its owner is a mannequin @full',
   async ({ page, complaints }) => {
     test.setTimeout(300_000);
     const server = await serveStudies();

@@ -31,7 +31,7 @@ async function pastTheCode(page: Page): Promise<void> {
   await expect(page.getByLabel(/Age/)).toBeVisible();
 }
 
-test('the back button leads out of a study and the forward button back to where it was, at every kind of step @realtime', async ({
+test('the back button leads out of a study and the forward button back to where it was, at every kind of step @full', async ({
   page,
   origin,
 }) => {

@@ -16,7 +16,7 @@ const choose = (page: Page, study: object) =>
 
 test.use({ viewport: { width: 1280, height: 860 } });
 
-test('a plan is remarked upon, simulated to its results, and the simulation deleted @realtime', async ({
+test('a plan is remarked upon, simulated to its results, and the simulation deleted @full', async ({
   page,
   origin,
 }) => {
@@ -54,7 +54,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   expect(names).not.toContain('latency-simulated');
 });
 
-test('a plan with participants changes as a new version, which the experimenter is told and results keep apart @realtime', async ({
+test('a plan with participants changes as a new version, which the experimenter is told and results keep apart @full', async ({
   page,
   origin,
   complaints,

@@ -7,7 +7,7 @@ import { experimenter } from '../study-server';
 
 test.use({ viewport: { width: 1280, height: 800 } });
 
-test('every screen of a plan, in the headset and at the desk, in both languages, and nothing is recorded @realtime', async ({
+test('every screen of a plan, in the headset and at the desk, in both languages, and nothing is recorded @full', async ({
   page,
   origin,
 }) => {
@@ -63,7 +63,7 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   expect(await studies()).toEqual(before);
 });
 
-test('a participant who reads German meets no English of the page, and nothing that is cut @realtime', async ({
+test('a participant who reads German meets no English of the page, and nothing that is cut @full', async ({
   page,
   origin,
 }) => {

@@ -1,4 +1,5 @@
 import type { Page } from '@playwright/test';
+import { drawSeldom } from '../draw-seldom';
 import { type EmulatedHeadset, emulatedHeadset, frames } from '../emulated-headset';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
@@ -34,7 +35,11 @@ test('three participants play the ball game together, each in a headset of their
   await experimenter(origin).begin(shortBallStudy('trio', matchSeconds), true);
   const people = ['P01', 'P02', 'P03'];
   const pages = await Promise.all(
-    people.map(async () => (await browser.newContext({ viewport: { width: 320, height: 220 } })).newPage()),
+    people.map(async () => {
+      const context = await browser.newContext({ viewport: { width: 320, height: 220 } });
+      await drawSeldom(context);
+      return context.newPage();
+    }),
   );
   // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw
   // often enough.

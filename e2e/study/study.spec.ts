@@ -19,7 +19,7 @@ import {
 } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
-test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @realtime', async ({
+test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @full', async ({
   page,
   origin,
   complaints,

@@ -3,6 +3,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { expect, type Page, test } from '@playwright/test';
 import { buildExample, exampleNames, pack } from '../../scripts/build-examples.mjs';
+import { screenshot } from '../draw-seldom';
 import { type EmulatedHeadset, emulatedHeadset } from '../emulated-headset';
 import { complaintsOf, type Drawn, emulateHeadset, enterExample, ownJoint } from '../example-page';
 import { freePort } from '../free-port';
@@ -111,7 +112,7 @@ function built(name: string): Promise<string> {
 /** The examples with tests of their own. */
 const special = ['babylon', 'bundlers', 'next'];
 
-test.describe('examples of the package @realtime', () => {
+test.describe('examples of the package @full', () => {
   test('are short', () => {
     const scripts = ['main.js', 'main.jsx', 'app/scene.jsx'];
     for (const name of exampleNames) {
@@ -129,7 +130,7 @@ test.describe('examples of the package @realtime', () => {
       const server = await serveStatic(existsSync(dist) ? dist : example);
       const complaints = complaintsOf(page);
       const headset = await drawsTheWearer(page, server.address);
-      await page.screenshot({ path: `artifacts/examples/${name}.png` });
+      await screenshot(page, `artifacts/examples/${name}.png`);
       if (name === 'react-three-xr') await sharesItsBody(page, headset);
       expect(complaints).toEqual([]);
       await server.close();
@@ -200,7 +201,7 @@ test.describe('examples of the package @realtime', () => {
     const [byIk, byDefault] = [await elbowOf('?estimator=ik'), await elbowOf('')];
     console.log(`the elbow by IK ${byIk.toFixed(1)} mm, by default ${byDefault.toFixed(1)} mm`);
     expect(Math.abs(byDefault - byIk), 'the network moves the elbow [mm]').toBeGreaterThan(5);
-    await page.screenshot({ path: 'artifacts/examples/babylon.png' });
+    await screenshot(page, 'artifacts/examples/babylon.png');
     expect(complaints).toEqual([]);
     await server.close();
   });

@@ -278,7 +278,7 @@ export const attackRows = {
     ],
   },
   'mutated-avatars': {
-    inject: '100,000 mutated avatar files and as many FBX files (3,000 and 1,000 by day)',
+    inject: '100,000 mutated avatar files and as many FBX files (1,000 and 250 by day)',
     sees: 'A sentence that names the file, or a finite body',
     target: '0 other exceptions, 0 NaN, no file over 1 s; GLB in three times its memory',
     shows: ['longest work on one check [ms of the processor]'],
@@ -289,7 +289,7 @@ export const attackRows = {
     ],
   },
   'mutated-motion': {
-    inject: '100,000 BVH files and as many VRM Animations with changes (8,000 and 2,000 by day)',
+    inject: '100,000 BVH files and as many VRM Animations with changes (2,000 and 500 by day)',
     sees: 'A sentence that names the file, or finite trackers',
     target: '0 other exceptions, 0 NaN, no file over 1 s or three times its memory',
     shows: ['longest work on one bvh [ms of the processor]'],

@@ -12,7 +12,7 @@ import { vroid } from './rig-namings';
 import { smallOldVrm, smallVrm } from './small-vrms';
 
 const name = 'person.vrm';
-const files = mutatedFiles(3000);
+const files = mutatedFiles(1000);
 
 const picture = Buffer.alloc(64);
 picture.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
