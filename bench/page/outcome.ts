@@ -7,7 +7,7 @@ declare global {
   }
 }
 
-/** Does the work of this page, and tells the bench what comes of it. */
+/** Does the work of this page; what comes of it is for the bench to read. */
 export async function tellOutcome(work: () => Promise<unknown>): Promise<void> {
   try {
     // Workers of the build are refused without.

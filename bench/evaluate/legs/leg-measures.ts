@@ -15,9 +15,10 @@ const ballHeight = 0.32;
 const onFloor = 0.01;
 
 /**
- * Sums over feet and frames of some clips. standing: frames of feet that truly stand; skate, trueSkate, float: the drawn
- * and the true foot's speed [m/s] and the height of the drawn sole [m] in them; drawnStanding, slide: frames of drawn
- * feet that stand, and their speed [m/s]; agreed: frames in which drawn and true foot agree on whether they stand.
+ * Sums over feet and frames of some clips. standing: frames of feet that truly stand; skate, trueSkate, float: the
+ * drawn and the true foot's speed [m/s] and the height of the drawn sole [m] in them; drawnStanding, slide: frames of
+ * drawn feet that stand, and their speed [m/s]; agreed: frames in which drawn and true foot agree on whether they
+ * stand.
  */
 const sums = [
   'feet',

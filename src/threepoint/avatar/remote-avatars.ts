@@ -104,8 +104,8 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
 /**
  * The bodies of other people. Copies of one body share its graphics memory. Bodies are made when they are first needed
  * and kept for the next person who comes. Files are loaded one at a time, and whose file is on its way, or refused, has
- * the plain body on. What could not be had is asked for again: a person who was away for long names their file before it
- * is in the store again.
+ * the plain body on. What could not be had is asked for again: a person who was away for long names their file before
+ * it is in the store again.
  */
 export class RemoteAvatars {
   readonly object = new Group();
