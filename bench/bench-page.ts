@@ -36,7 +36,7 @@ export async function withServed<T>(
   }
 }
 
-/** What a page of the bench told of its work, which it does for so long at most [ms]. */
+/** Returns what came of the work of a page of the bench, which takes so long at most [ms]. */
 export async function outcomeOf<Result>(page: Page, longestMs: number): Promise<Result> {
   await page.waitForFunction(() => window.benchOutcome, null, { timeout: longestMs });
   const outcome = await page.evaluate(() => window.benchOutcome);

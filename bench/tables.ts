@@ -6,6 +6,7 @@ import type { MeasuredNetwork } from './networks';
 import type { FrameTimes } from './page/frame-times';
 import type { PageResult } from './page/main';
 import { type PairedRatio, pairedRatio } from './paired-ratio';
+import { tableRow } from './table-row';
 
 /** What opening the real page afresh took, and what had to travel for it, as unpacked. */
 export interface Visit {
@@ -14,8 +15,7 @@ export interface Visit {
   readonly bytes: Readonly<Record<'app' | 'wasm' | 'models' | 'avatars', number>>;
 }
 
-const row = (label: string, cells: readonly (string | number)[]) =>
-  console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
+const row = (label: string, cells: readonly (string | number)[]) => console.log(tableRow(label, cells));
 
 export function printAllocations({ bytes }: Allocations): void {
   console.log('\nWhat a frame leaves to the collector [kB]');

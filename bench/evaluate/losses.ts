@@ -33,35 +33,14 @@ export interface LossReport {
   readonly atReturn: LongestStep;
 }
 
-interface Sums {
-  all: number;
-  allSeen: number;
-  joints: number;
-  elbow: number;
-  elbowSeen: number;
-  elbows: number;
-}
-const noSums = (): Sums => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
+const noSums = () => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
+type Sums = ReturnType<typeof noSums>;
 
-interface StepTally {
-  step: number;
-  joint: string;
-  excess: number;
-  excessJoint: string;
-  over: number;
-}
-const noSteps = (): StepTally => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
+const noSteps = () => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
+type StepTally = ReturnType<typeof noSteps>;
 
 /** What losses of one kind did; add clip by clip, then report. */
-export interface LossTally {
-  losses: number;
-  lostSeconds: number;
-  readonly during: Sums;
-  readonly after: Sums;
-  readonly atLoss: StepTally;
-  readonly atReturn: StepTally;
-}
-export const emptyLossTally = (): LossTally => ({
+export const emptyLossTally = () => ({
   losses: 0,
   lostSeconds: 0,
   during: noSums(),
@@ -69,6 +48,7 @@ export const emptyLossTally = (): LossTally => ({
   atLoss: noSteps(),
   atReturn: noSteps(),
 });
+export type LossTally = ReturnType<typeof emptyLossTally>;
 
 /** Estimates of the frames with losses and with both hands seen. */
 interface Estimated {

@@ -1,5 +1,6 @@
 import { estimatedJoints } from 'threepoint/core/body/joints';
 import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
+import { sides } from 'threepoint/core/math/side';
 import { mean } from 'threepoint/core/math/statistics';
 import { distance, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import { recordOf } from 'threepoint/core/records';
@@ -37,36 +38,28 @@ export interface Report {
 /** An arm straighter than this [m from the elbow to the shoulder-wrist line] has no swivel to speak of. */
 const straightArm = 0.03;
 
+/** Sums over the frames of some clips [mm for hands, cm for the network's own errors]. */
+const sums = ['jerk', 'truthJerk', 'handError', 'hands', 'rawError', 'rawCount'] as const;
+
 /** What one estimator did with some clips; add clip by clip, merge people, then report. */
-export interface Measures {
+export interface Measures extends Record<(typeof sums)[number], number> {
   readonly errors: number[][];
   /** Sums over frames and coordinates by joint [cm², cm]. */
   readonly squares: number[];
   readonly absolutes: number[];
-  swivels: number[];
-  jerk: number;
-  truthJerk: number;
+  readonly swivels: number[];
   boneVariation: number;
-  handError: number;
   handErrorMax: number;
-  hands: number;
-  rawError: number;
-  rawCount: number;
 }
 
 export const emptyMeasures = (): Measures => ({
+  ...recordOf(sums, () => 0),
   errors: estimatedJoints.map(() => []),
   squares: estimatedJoints.map(() => 0),
   absolutes: estimatedJoints.map(() => 0),
   swivels: [],
-  jerk: 0,
-  truthJerk: 0,
   boneVariation: 0,
-  handError: 0,
   handErrorMax: 0,
-  hands: 0,
-  rawError: 0,
-  rawCount: 0,
 });
 
 /** One frame of one clip as estimated, beside its truth. Floor frame [m]. */
@@ -123,7 +116,7 @@ export function addClip(measures: Measures, frames: readonly MeasuredFrame[], ra
         measures.rawCount += 1;
       }
     });
-    for (const side of ['left', 'right'] as const) {
+    for (const side of sides) {
       const wrist = wrists[side];
       if (wrist) {
         const miss = distance(jointOf(joints, `${side}Hand`), wrist) * 1000;
@@ -178,7 +171,7 @@ export function addMeasures(whole: Measures, part: Measures): void {
       whole[key][index] = (whole[key][index] ?? 0) + sum;
     });
   }
-  for (const key of ['jerk', 'truthJerk', 'handError', 'hands', 'rawError', 'rawCount'] as const) {
+  for (const key of sums) {
     whole[key] += part[key];
   }
   whole.boneVariation = Math.max(whole.boneVariation, part.boneVariation);
@@ -193,19 +186,19 @@ function spread(values: readonly number[]): Spread {
   return { mean: rounded(mean(sorted), 3), median: rounded(quantile(0.5), 3), p95: rounded(quantile(0.95), 3) };
 }
 
-const sum = (values: readonly number[]): number => values.reduce((total, value) => total + value, 0);
+const sumOf = (values: readonly number[]): number => values.reduce((total, value) => total + value, 0);
 const byJoint = <Figure>(figure: (index: number) => Figure): ByJoint<Figure> =>
   recordOf(reportNames, (_, index) => figure(index));
 
 export function report(measures: Measures): Report {
   /** Coordinates of one joint. */
   const coordinates = (index: number): number => 3 * (measures.errors[index]?.length ?? 0);
-  const all = sum(reportNames.map((_, index) => coordinates(index)));
+  const all = sumOf(reportNames.map((_, index) => coordinates(index)));
   return {
     mpjpeCm: spread(measures.errors.flat()),
     joints: byJoint((index) => spread(measures.errors[index] ?? [])),
-    mseCm2: rounded(sum(measures.squares) / all, 3),
-    maeCm: rounded(sum(measures.absolutes) / all, 3),
+    mseCm2: rounded(sumOf(measures.squares) / all, 3),
+    maeCm: rounded(sumOf(measures.absolutes) / all, 3),
     jointMseCm2: byJoint((index) => rounded((measures.squares[index] ?? 0) / coordinates(index), 3)),
     jointMaeCm: byJoint((index) => rounded((measures.absolutes[index] ?? 0) / coordinates(index), 3)),
     swivelDeg: rounded(mean(measures.swivels), 2),

@@ -1,5 +1,6 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { sides } from 'threepoint/core/math/side';
 import { distance, length } from 'threepoint/core/math/vec3';
 import { rounded } from './measures';
 import type { RecordedFrame } from './recordings';
@@ -22,7 +23,7 @@ export const emptyReach = (): Reach => ({ wrists: 0, beyond: 0, furthest: 0 });
 
 export function addReach(reach: Reach, calibration: Calibration, frames: readonly RecordedFrame[]): void {
   const { restOffsets } = skeletonFromCalibration(calibration);
-  for (const side of ['left', 'right'] as const) {
+  for (const side of sides) {
     const arm = length(restOffsets[`${side}LowerArm`]) + length(restOffsets[`${side}Hand`]);
     for (const { frame, truth } of frames) {
       const wrist = frame[`${side}Hand`]?.position;

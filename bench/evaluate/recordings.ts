@@ -1,6 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Calibration } from 'threepoint/core/body/calibration';
+import { estimatedJoints } from 'threepoint/core/body/joints';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import type { Quat } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
@@ -34,18 +35,7 @@ export const readIndex = (folder: string): RecordingIndex =>
   v.parse(indexSchema, JSON.parse(readFileSync(join(folder, 'index.json'), 'utf8')));
 
 /** Joints of the truth that the measures and figures use. */
-export const truthJoints = [
-  'leftLowerArm',
-  'rightLowerArm',
-  'leftUpperArm',
-  'rightUpperArm',
-  'chest',
-  'hips',
-  'leftHand',
-  'rightHand',
-  'neck',
-  'head',
-] as const;
+export const truthJoints = [...estimatedJoints, 'leftHand', 'rightHand', 'neck', 'head'] as const;
 export type TruthJoint = (typeof truthJoints)[number];
 
 export interface RecordedFrame {

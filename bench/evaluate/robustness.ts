@@ -24,6 +24,7 @@ import { createDriver, drive, type MeasuredMethod } from './drive';
 import { addLosses, emptyLossTally, type LongestStep, type LossReport, reportLosses } from './losses';
 import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
 import type { RecordedFrame } from './recordings';
+import { methodRow } from './report-text';
 import { measureTremble, standing } from './response';
 
 /** One clip with what its person calibrated. */
@@ -181,7 +182,7 @@ export async function measureRobustness<
     all.deviceNoise,
     ...[...all.offsets, ...all.heights, ...all.spans, ...all.rates].map(({ condition }) => condition),
   ];
-  const measures = methods.map(() => new Map<Condition, Measures>(listed.map((c) => [c, emptyMeasures()])));
+  const measures = methods.map(() => new Map(listed.map((condition) => [condition, emptyMeasures()])));
   const tallies = methods.map(() => lossKinds.map(emptyLossTally));
   const total = clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
@@ -194,15 +195,14 @@ export async function measureRobustness<
         const frames = condition.frames(clip, rateHz);
         const driven = await drive(name, condition.calibration(clip.calibration), regressor, frames);
         if (condition === all.clean) seen = driven;
-        const of = measures[number]?.get(condition) ?? emptyMeasures();
         // Errors as the device would show them; jerk at the recording's rate, or rates would not compare.
-        addErrorsAndJerk(of, driven, condition.rateHz, rateHz);
+        addErrorsAndJerk(measures[number]!.get(condition)!, driven, condition.rateHz, rateHz);
       }
       for (const [which, { key, lengthOf }] of lossKinds.entries()) {
         const losses = scheduleLosses(clip.frames.length, rateHz, lengthOf, seedOf(`${clip.name} ${key}`));
         if (losses.length === 0) continue;
         const lossy = await drive(name, clip.calibration, regressor, loseHands(clip.frames, losses));
-        addLosses(tallies[number]?.[which] ?? emptyLossTally(), { lossy, seen }, losses, rateHz);
+        addLosses(tallies[number]![which]!, { lossy, seen }, losses, rateHz);
       }
     }
     done += listedClip.frames;
@@ -213,30 +213,28 @@ export async function measureRobustness<
     methods.map((name) => measureTrembles(name, regressors.get(name) ?? null, tracking.noise)),
   );
   const rows = methods.map((name, number): [Method, MethodRobustness] => {
-    const figures = ({ condition }: { readonly condition: Condition }) => {
-      const { mpjpeCm, jerkRatio } = report(measures[number]?.get(condition) ?? emptyMeasures());
+    const figures = (condition: Condition) => {
+      const { mpjpeCm, jerkRatio } = report(measures[number]!.get(condition)!);
       return { mpjpeCm: mpjpeCm.mean, jerkRatio };
     };
-    const error = (row: { readonly condition: Condition }) => figures(row).mpjpeCm;
+    const withError = <Row extends { readonly condition: Condition }>({ condition, ...row }: Row) => ({
+      ...row,
+      mpjpeCm: figures(condition).mpjpeCm,
+    });
     return [
       name,
       {
-        ...figures({ condition: all.clean }),
+        ...figures(all.clean),
         losses: lossesOf(number).slice(0, lossSeconds.length),
         handTracking: lossesOf(number).at(-1)!,
         noises: [all.clean, all.deviceNoise].map((condition, which) => ({
-          ...figures({ condition }),
+          ...figures(condition),
           ...trembles[number]![which]!,
         })),
-        offsets: all.offsets.map((row) => ({
-          tracker: row.tracker,
-          axis: row.axis,
-          offsetCm: row.offsetCm,
-          mpjpeCm: error(row),
-        })),
-        heights: all.heights.map((row) => ({ percent: row.percent, mpjpeCm: error(row) })),
-        spans: all.spans.map((row) => ({ percent: row.percent, mpjpeCm: error(row) })),
-        rates: all.rates.map((row) => ({ hz: row.hz, ...figures(row) })),
+        offsets: all.offsets.map(withError),
+        heights: all.heights.map(withError),
+        spans: all.spans.map(withError),
+        rates: all.rates.map(({ hz, condition }) => ({ hz, ...figures(condition) })),
       },
     ];
   });
@@ -293,10 +291,15 @@ export function robustnessText<Method extends MeasuredMethod>(
     `Robustness: ${people.join(', ')}; ${clips} clips, ${(frames / rateHz / 60).toFixed(1)} minutes; MPJPE [cm]`,
   ];
   const row = (label: string, cell: (method: MethodRobustness) => string) =>
-    lines.push(`  ${label.padEnd(34)}${methods.map((name) => cell(estimators[name]).padStart(22)).join('')}`.trimEnd());
+    lines.push(
+      methodRow(
+        label,
+        methods.map((name) => cell(estimators[name])),
+      ),
+    );
   const added = (cm: number, clean: number) =>
     `${cm.toFixed(2)} (${cm < clean ? '−' : '+'}${Math.abs(cm - clean).toFixed(2)})`;
-  lines.push(`  ${''.padEnd(34)}${methods.map((name) => name.padStart(22)).join('')}`);
+  lines.push(methodRow('', methods));
   row('undisturbed', (m) => m.mpjpeCm.toFixed(2));
   const lossRows = (label: string, of: (m: MethodRobustness) => LossReport) => {
     const times = (a: number, b: number) => `${a.toFixed(2)} (${(a / b).toFixed(2)} ×)`;

@@ -1,4 +1,3 @@
-import { PerspectiveCamera } from 'three';
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { Mirror } from 'threepoint/avatar/mirror';
@@ -8,11 +7,10 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
 import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
-import { createRenderer } from 'threepoint-page/scene/renderer';
-import { createStudio } from 'threepoint-page/studio/studio';
 import { Court } from './court';
 import { tellOutcome } from './outcome';
 import { createSenders } from './senders';
+import { openStudio } from './stage';
 import { trackedHandsDevice } from './tracked-hands';
 
 /**
@@ -53,12 +51,7 @@ async function estimates(name: 'ik' | 'paper' | 'learned'): Promise<FrameOf> {
 }
 
 function picture() {
-  const canvas = document.querySelector('canvas');
-  if (!canvas) throw new Error('no canvas');
-  const renderer = createRenderer(canvas, 'low');
-  renderer.setSize(480, 270, false);
-  const studio = createStudio(renderer, 'low');
-  const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
+  const { renderer, studio, camera } = openStudio();
   camera.position.set(1.2, 2.1, 3.4);
   camera.lookAt(0, 0.9, -2.5);
   return { renderer, studio, camera, draw: () => renderer.render(studio.scene, camera) };
@@ -146,4 +139,4 @@ async function start(): Promise<void> {
     });
 }
 
-void tellOutcome(start());
+void tellOutcome(start);

@@ -192,4 +192,4 @@ async function countWorlds(): Promise<Record<World, WorldCounts>> {
   };
 }
 
-void tellOutcome(countWorlds());
+void tellOutcome(countWorlds);

@@ -275,4 +275,4 @@ const measuredParts = {
 export type PagePart = keyof typeof measuredParts;
 export type PageResult<Part extends PagePart> = Awaited<ReturnType<(typeof measuredParts)[Part]>>;
 
-void tellOutcome(measuredParts[new URLSearchParams(location.search).get('part') as PagePart]());
+void tellOutcome(measuredParts[new URLSearchParams(location.search).get('part') as PagePart]);

@@ -81,4 +81,4 @@ async function graphicsDevice(): Promise<string> {
   return [vendor, architecture, description].filter(Boolean).join(' ') || 'unnamed';
 }
 
-void tellOutcome(measure(new URLSearchParams(location.search).get('way') as NetworkWay));
+void tellOutcome(() => measure(new URLSearchParams(location.search).get('way') as NetworkWay));

@@ -1,3 +1,5 @@
+import { allowOwnScripts } from 'threepoint-ui/own-scripts';
+
 declare global {
   interface Window {
     /** What came of the work of a page of the bench; absent: it goes on. */
@@ -5,10 +7,12 @@ declare global {
   }
 }
 
-/** Tells the bench what comes of the work of this page. */
-export async function tellOutcome(work: Promise<unknown>): Promise<void> {
+/** Does the work of this page; what comes of it is for the bench to read. */
+export async function tellOutcome(work: () => Promise<unknown>): Promise<void> {
   try {
-    window.benchOutcome = { result: await work };
+    // Workers of the build are refused without.
+    allowOwnScripts();
+    window.benchOutcome = { result: await work() };
   } catch (error) {
     window.benchOutcome = { error: error instanceof Error ? (error.stack ?? error.message) : String(error) };
   }

@@ -12,20 +12,24 @@ import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { createRenderer } from 'threepoint-page/scene/renderer';
 import { createStudio } from 'threepoint-page/studio/studio';
 
-/** What is drawn in every frame, as on the page. */
-export async function openPicture() {
+/** The studio in the page's canvas, as small as software rendering needs it. */
+export function openStudio() {
   const canvas = document.querySelector('canvas');
   if (!canvas) throw new Error('no canvas');
   const renderer = createRenderer(canvas, 'low');
   renderer.setSize(480, 270, false);
-  const studio = createStudio(renderer, 'low');
+  return { renderer, studio: createStudio(renderer, 'low'), camera: new PerspectiveCamera(42, 480 / 270, 0.05, 90) };
+}
+
+/** What is drawn in every frame, as on the page. */
+export async function openPicture() {
+  const { renderer, studio, camera } = openStudio();
   // The page's settings for software rendering.
   const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
   const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   studio.scene.add(mirror.object, avatar.object);
   avatar.setCalibration(defaultCalibration);
-  const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.9, 1.5, 2.75);
   camera.lookAt(0, 1, -0.4);
   return { renderer, studio, mirror, avatar, camera, mannequin };

@@ -15,6 +15,7 @@ import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
+import { thirdDifference } from '../evaluate/measures';
 
 /** A way from one page over the relay to another. */
 export interface Way {
@@ -83,8 +84,7 @@ class Jerk {
     const [a, b, c, d] = this.#last;
     if (!a || !b || !c || !d) return;
     for (let i = 0; i < joints.length; i++) {
-      const along = (axis: 'x' | 'y' | 'z') => d[i]![axis] - 3 * c[i]![axis] + 3 * b[i]![axis] - a[i]![axis];
-      this.sum += Math.hypot(along('x'), along('y'), along('z'));
+      this.sum += thirdDifference(a[i]!, b[i]!, c[i]!, d[i]!);
     }
   }
 }

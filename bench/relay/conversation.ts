@@ -2,16 +2,20 @@
 
 export type RelaySort = 'ours' | 'plain';
 
-/** The first message to the clients: the relay to connect to. */
-export interface Meeting {
+/** What is searched for: the most clients of one relay, in rooms of one size at one rate. */
+export interface Cell {
   readonly relay: RelaySort;
-  readonly port: number;
-  /** Signs the passes that ours asks for. */
-  readonly secret: string;
   /** Avatars in each room. */
   readonly room: number;
   /** Poses that each avatar sends per second. */
   readonly hz: number;
+}
+
+/** The first message to the clients: the relay to connect to. */
+export interface Meeting extends Cell {
+  readonly port: number;
+  /** Signs the passes that ours asks for. */
+  readonly secret: string;
   /** Everyone is ready for a round of an hour, which runs as long as they are there. */
   readonly plays?: boolean;
 }
@@ -48,5 +52,21 @@ export type Farewell = 'leave';
 /** From the clients: all are there, and the seconds that are measured begin; how it went. */
 export type ClientAnswer = 'measuring' | PoseLatencies;
 
-/** To a relay: `cpu` asks for its CPU time so far. */
-export type RelayAnswer = { readonly port: number } | { readonly cpuMicroseconds: number; readonly rssBytes: number };
+/** From a relay: first where it listens, then on each message what it took so far. */
+export interface RelayGreeting {
+  readonly port: number;
+}
+/** See RelayGreeting. */
+export interface RelayUsage {
+  readonly cpuMicroseconds: number;
+  readonly rssBytes: number;
+}
+
+/** Greets the bench, and answers it from then on. */
+export function answerAsRelay(port: number): void {
+  process.on('message', () => {
+    const { user, system } = process.cpuUsage();
+    process.send?.({ cpuMicroseconds: user + system, rssBytes: process.memoryUsage.rss() } satisfies RelayUsage);
+  });
+  process.send?.({ port } satisfies RelayGreeting);
+}

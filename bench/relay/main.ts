@@ -5,8 +5,8 @@ import { availableParallelism, cpus } from 'node:os';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { parseArgs } from 'node:util';
 import { seenOver, tremors, ways } from './ages';
-import type { RelaySort } from './conversation';
-import { bound, type Cell, type Found, search } from './search';
+import type { Cell, RelaySort } from './conversation';
+import { bound, type Found, search } from './search';
 
 const { values: options } = parseArgs({
   options: {

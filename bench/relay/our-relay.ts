@@ -7,11 +7,7 @@ import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { countingKind, countingPolicy } from '../../tests/rooms/room/counting-game';
-import type { RelayAnswer } from './conversation';
-
-const tell = (answer: RelayAnswer): void => {
-  process.send?.(answer);
-};
+import { answerAsRelay } from './conversation';
 
 const configuration = relayConfigurationFrom(process.env);
 const connectionLimiter = createConnectionLimiter({
@@ -26,8 +22,4 @@ const server = await serve(createRouter([relay.service], noPage), {
   upgrade: relay.upgrade,
   connectionLimiter,
 });
-process.on('message', () => {
-  const { user, system } = process.cpuUsage();
-  tell({ cpuMicroseconds: user + system, rssBytes: process.memoryUsage.rss() });
-});
-tell({ port: server.port });
+answerAsRelay(server.port);

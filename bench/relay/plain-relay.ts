@@ -2,11 +2,7 @@
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { Server } from 'socket.io';
-import type { RelayAnswer } from './conversation';
-
-const tell = (answer: RelayAnswer): void => {
-  process.send?.(answer);
-};
+import { answerAsRelay } from './conversation';
 
 const server = createServer();
 const io = new Server(server, { path: '/relay', transports: ['websocket'], serveClient: false });
@@ -17,8 +13,4 @@ io.on('connection', (socket) => {
     socket.to(String(room)).emit('pose', Number(seat), bytes);
   });
 });
-process.on('message', () => {
-  const { user, system } = process.cpuUsage();
-  tell({ cpuMicroseconds: user + system, rssBytes: process.memoryUsage.rss() });
-});
-server.listen(0, '127.0.0.1', () => tell({ port: (server.address() as AddressInfo).port }));
+server.listen(0, '127.0.0.1', () => answerAsRelay((server.address() as AddressInfo).port));

@@ -1,13 +1,7 @@
 import { type ChildProcess, fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import type { ClientAnswer, Load, Meeting, PoseLatencies, RelayAnswer, RelaySort } from './conversation';
-
-/** What is searched for: the most clients of one relay, in rooms of one size at one rate. */
-export interface Cell {
-  readonly relay: RelaySort;
-  readonly room: number;
-  readonly hz: number;
-}
+import { heardFrom } from '../../tests/server/child-process';
+import type { Cell, ClientAnswer, Load, Meeting, PoseLatencies, RelayGreeting, RelayUsage } from './conversation';
 
 /** How one load went. */
 export interface Trial {
@@ -61,15 +55,6 @@ const start = (name: string): ChildProcess =>
       THREEPOINT_CONNECTIONS_PER_ADDRESS: '100000',
     },
   });
-const nextMessage = <Message>(child: ChildProcess): Promise<Message> =>
-  new Promise((resolve, reject) => {
-    const ended = (code: number | null): void => reject(new Error(`bench/relay: a process ended with ${code}`));
-    child.once('exit', ended);
-    child.once('message', (message) => {
-      child.off('exit', ended);
-      resolve(message as Message);
-    });
-  });
 
 /** A relay and its clients, each a process of its own, under one load after another. */
 class Drive {
@@ -85,9 +70,8 @@ class Drive {
   }
 
   async begin(): Promise<void> {
-    const hello = await nextMessage<RelayAnswer>(this.#relay);
-    if (!('port' in hello)) throw new Error('bench/relay: the relay reported no port');
-    this.#clients.send({ ...this.#cell, port: hello.port, secret } satisfies Meeting);
+    const { port } = await heardFrom<RelayGreeting>(this.#relay);
+    this.#clients.send({ ...this.#cell, port, secret } satisfies Meeting);
   }
 
   end(): void {
@@ -98,9 +82,9 @@ class Drive {
   async trial(rooms: number): Promise<Trial> {
     const { room } = this.#cell;
     this.#clients.send({ rooms, warmUpSeconds, seconds: this.#seconds } satisfies Load);
-    await nextMessage<ClientAnswer>(this.#clients);
+    await heardFrom<ClientAnswer>(this.#clients);
     const before = await this.#usage();
-    const result = await nextMessage<PoseLatencies>(this.#clients);
+    const result = await heardFrom<PoseLatencies>(this.#clients);
     const after = await this.#usage();
     const used = after.cpuMicroseconds - before.cpuMicroseconds;
     return {
@@ -117,11 +101,9 @@ class Drive {
     };
   }
 
-  async #usage(): Promise<Extract<RelayAnswer, { cpuMicroseconds: number }>> {
-    this.#relay.send('cpu');
-    const answer = await nextMessage<RelayAnswer>(this.#relay);
-    if (!('cpuMicroseconds' in answer)) throw new Error('bench/relay: the relay answered something else');
-    return answer;
+  #usage(): Promise<RelayUsage> {
+    this.#relay.send('usage');
+    return heardFrom(this.#relay);
   }
 }
 

@@ -2,9 +2,9 @@ import {
   type DownloadOptions,
   downloadLimited,
   type FileKind,
-  nameOfAddress,
   tooLarge,
 } from 'threepoint/avatar/file/limited-download';
+import { nameOfAddress } from 'threepoint/core/files';
 
 export type { FileKind } from 'threepoint/avatar/file/limited-download';
 

@@ -6,6 +6,7 @@ import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import * as v from 'valibot';
+import { tableRow } from '../../table-row';
 import { readIndex } from '../recordings';
 import { compareTables, type Difference, type GoldenTable } from './golden-figures';
 import { compareFrames, type FrameTable, readFrames, writeFrames } from './golden-frames';
@@ -109,20 +110,15 @@ const shown = new Set([
 ]);
 
 function printDifferences(differences: readonly Difference[], all: boolean): void {
-  const line = (cells: readonly string[]) =>
-    console.log(
-      `${cells[0]?.padEnd(52)}${cells[1]?.padEnd(20)}${cells
-        .slice(2)
-        .map((c) => c.padStart(10))
-        .join('')}`,
-    );
-  line(['', 'figure', 'frozen', 'now', 'ratio']);
+  const line = (row: string, figure: string, cells: readonly (string | number)[]) =>
+    console.log(tableRow(row.padEnd(52) + figure, cells, 72, 10));
+  line('', 'figure', ['frozen', 'now', 'ratio']);
   let before = '';
   for (const { row, figure, frozen, now, worse } of differences) {
     if (!all && !worse && !shown.has(figure)) continue;
     const ratio = frozen === now ? '1' : (now / frozen).toFixed(4);
     const title = row === before ? '' : row;
-    line([title, figure, `${frozen}`, `${now}`, ratio, worse ? 'WORSE' : '']);
+    line(title, figure, [frozen, now, ratio, worse ? 'WORSE' : '']);
     before = row;
   }
 }
@@ -134,11 +130,10 @@ function printFrames(frozen: FrameTable | null, now: FrameTable, folder: string)
     );
     return;
   }
-  console.log(`\n${'Joints frame by frame [mm]'.padEnd(52)}      mean       p99       max  largest at`);
+  console.log(`\n${tableRow('Joints frame by frame [mm]', ['mean', 'p99', 'max'], 52, 10)}  largest at`);
   for (const { row, meanMm, p99Mm, maxMm, worst } of compareFrames(frozen, now)) {
-    console.log(
-      `${row.padEnd(52)}${[meanMm, p99Mm, maxMm].map((mm) => mm.toFixed(2).padStart(10)).join('')}  ${worst}`,
-    );
+    const cells = [meanMm, p99Mm, maxMm].map((mm) => mm.toFixed(2));
+    console.log(`${tableRow(row, cells, 52, 10)}  ${worst}`);
   }
 }
 

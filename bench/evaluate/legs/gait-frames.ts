@@ -1,11 +1,13 @@
 // What training/threepoint_training/train_gait.py reads: the inputs of a gait network as the page makes them, and the
 // true feet, frame by frame.
+
 import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { gaitOutputCount } from 'threepoint/core/estimation/gait/gait';
 import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estimation/gait/gait-features';
+import { sides } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { loadRegressors } from '../networks';
 import { readIndex } from '../recordings';
@@ -29,7 +31,7 @@ function framesOf(clip: DrivenLegs, driver: (typeof drivers)[number], rateHz: nu
     const yaw = yawOfHips(hips.orientation);
     const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
     const level = ({ x, z }: Vec3) => [c * x - s * z, s * x + c * z] as const;
-    const feet = (['left', 'right'] as const).map((side) => {
+    const feet = sides.map((side) => {
       const { ankle, ball } = truth[side];
       const [x, z] = level({ x: ankle.x - hips.position.x, y: 0, z: ankle.z - hips.position.z });
       const [toesX, toesZ] = level({ x: ball.x - ankle.x, y: 0, z: ball.z - ankle.z });

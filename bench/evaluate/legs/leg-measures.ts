@@ -1,14 +1,12 @@
 import type { LegPose, LegPosture, LegProportions } from 'threepoint/avatar/legs/leg-posture';
 import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
+import { type Side, sides } from 'threepoint/core/math/side';
 import { mean } from 'threepoint/core/math/statistics';
 import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { recordOf } from 'threepoint/core/records';
 import { rounded } from '../measures';
 import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
-
-const sides = ['left', 'right'] as const;
 
 /** The ball of the mannequin's foot: ahead of the ankle and over the floor, in heights of its ankle. */
 const ballAhead = 1.58;
@@ -16,42 +14,28 @@ const ballHeight = 0.32;
 /** A drawn foot stands where its sole is no higher than this [m]. */
 const onFloor = 0.01;
 
-/** Sums over feet and frames of some clips. */
-export interface LegMeasures {
-  feet: number;
-  pelvis: number;
-  knee: number;
-  ankle: number;
-  /**
-   * Frames of feet that truly stand, the drawn and the true foot's speed [m/s] and the height of the drawn sole [m] in
-   * them.
-   */
-  standing: number;
-  skate: number;
-  trueSkate: number;
-  float: number;
-  /** Frames of drawn feet that stand, and their speed [m/s]. */
-  drawnStanding: number;
-  slide: number;
-  sink: number;
-  /** Frames in which drawn and true foot agree on whether they stand. */
-  agreed: number;
-}
-
-export const emptyLegMeasures = (): LegMeasures => ({
-  feet: 0,
-  pelvis: 0,
-  knee: 0,
-  ankle: 0,
-  standing: 0,
-  skate: 0,
-  trueSkate: 0,
-  float: 0,
-  drawnStanding: 0,
-  slide: 0,
-  sink: 0,
-  agreed: 0,
-});
+/**
+ * Sums over feet and frames of some clips. standing: frames of feet that truly stand; skate, trueSkate, float: the
+ * drawn and the true foot's speed [m/s] and the height of the drawn sole [m] in them; drawnStanding, slide: frames of
+ * drawn feet that stand, and their speed [m/s]; agreed: frames in which drawn and true foot agree on whether they
+ * stand.
+ */
+const sums = [
+  'feet',
+  'pelvis',
+  'knee',
+  'ankle',
+  'standing',
+  'skate',
+  'trueSkate',
+  'float',
+  'drawnStanding',
+  'slide',
+  'sink',
+  'agreed',
+] as const;
+export type LegMeasures = Record<(typeof sums)[number], number>;
+export const emptyLegMeasures = (): LegMeasures => recordOf(sums, () => 0);
 
 /** What is drawn of one leg, floor frame [m]. */
 interface Drawn {
@@ -148,37 +132,26 @@ function addFoot(measures: LegMeasures, foot: FootFrame): void {
   if (drawnStands === stands) measures.agreed += 1;
 }
 
-export interface LegReport {
-  readonly pelvisCm: number;
-  readonly kneeCm: number;
-  readonly footCm: number;
-  /** The speed of drawn and true feet while the true foot stands, and of drawn feet while they stand [cm/s]. */
-  readonly skateCmS: number;
-  readonly trueSkateCmS: number;
-  readonly slideCmS: number;
-  /** The height of the drawn sole while the true foot stands, and its depth below the floor at any time [cm]. */
-  readonly floatCm: number;
-  readonly sinkCm: number;
-  /** Feet that truly stand, and feet of which drawn and truth agree on that [share]. */
-  readonly standing: number;
-  readonly agreed: number;
-}
-
-export function legReport(m: LegMeasures): LegReport {
+export function legReport(m: LegMeasures) {
   const cm = (sum: number, count: number): number => rounded((sum / Math.max(1, count)) * 100, 2);
   return {
     pelvisCm: cm(m.pelvis, m.feet),
     kneeCm: cm(m.knee, m.feet),
     footCm: cm(m.ankle, m.feet),
+    /** The speed of drawn and true feet while the true foot stands, and of drawn feet while they stand [cm/s]. */
     skateCmS: cm(m.skate, m.standing),
     trueSkateCmS: cm(m.trueSkate, m.standing),
     slideCmS: cm(m.slide, m.drawnStanding),
+    /** The height of the drawn sole while the true foot stands, and its depth below the floor at any time [cm]. */
     floatCm: cm(m.float, m.standing),
     sinkCm: cm(m.sink, m.feet),
+    /** Feet that truly stand, and feet of which drawn and truth agree on that [share]. */
     standing: rounded(m.standing / Math.max(1, m.feet), 3),
     agreed: rounded(m.agreed / Math.max(1, m.feet), 3),
   };
 }
+
+export type LegReport = Readonly<ReturnType<typeof legReport>>;
 
 /** All people alike: the mean over people of each figure. */
 export function meanReport(reports: readonly LegReport[]): LegReport {

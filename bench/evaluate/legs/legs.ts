@@ -4,22 +4,21 @@ import { parseArgs } from 'node:util';
 import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait/gait';
+import { recordOf } from 'threepoint/core/records';
+import { tableRow } from '../../table-row';
 import { mannequinLegs } from '../leg-proportions';
 import { loadRegressors } from '../networks';
 import { readIndex } from '../recordings';
 import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
-import { addLegs, emptyLegMeasures, type LegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
-
-type ByDriver<T> = Record<LegDriver, T>;
-const byDriver = <T>(of: (driver: LegDriver) => T): ByDriver<T> =>
-  Object.fromEntries(legDrivers.map((driver) => [driver, of(driver)])) as ByDriver<T>;
+import { addLegs, emptyLegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
 
 function print(title: string, reports: readonly (readonly [string, LegReport])[]): void {
   console.log(`\n${title}`);
   const keys = Object.keys(reports[0]?.[1] ?? {}) as (keyof LegReport)[];
-  console.log(`  ${''.padEnd(12)}${keys.map((key) => key.padStart(13)).join('')}`);
+  console.log(tableRow('', keys));
   for (const [name, report] of reports) {
-    console.log(`  ${name.padEnd(12)}${keys.map((key) => report[key].toFixed(2).padStart(13)).join('')}`);
+    const cells = keys.map((key) => report[key].toFixed(2));
+    console.log(tableRow(name, cells));
   }
 }
 
@@ -37,7 +36,7 @@ function gaitsOf(folder: string | undefined): (person: string) => GaitNetwork {
   return (person) => [shippedGait, ...networks].find(({ trainedOn }) => !trainedOn.includes(person)) ?? shippedGait;
 }
 
-interface PersonLegs extends ByDriver<LegReport> {
+interface PersonLegs extends Record<LegDriver, LegReport> {
   /** Whether the body's network, and the gait network, were trained on this person. */
   readonly seen: boolean;
   readonly gaitSeen: boolean;
@@ -57,7 +56,7 @@ async function main(): Promise<void> {
   const legsOf = await mannequinLegs();
   const people: Record<string, PersonLegs> = {};
   for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
-    const measures: ByDriver<LegMeasures> = byDriver(emptyLegMeasures);
+    const measures = recordOf(legDrivers, emptyLegMeasures);
     const clips = await driveLegs(recordings, index, person, learned);
     const network = gaitOf(person);
     for (const clip of clips) {
@@ -74,7 +73,7 @@ async function main(): Promise<void> {
         seen: seen.has(person),
         gaitSeen: network.trainedOn.includes(person),
         minutes: frames / index.rateHz / 60,
-        ...byDriver((driver) => legReport(measures[driver])),
+        ...recordOf(legDrivers, (driver) => legReport(measures[driver])),
       };
   }
   const reports = Object.entries(people);

@@ -1,4 +1,5 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
+
 import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
 import { workerCheck } from '../avatar/file/worker-check';
@@ -8,6 +9,7 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
+import { nameOfAddress } from '../core/files';
 import type { BoneMap } from '../core/humanoid/bones';
 import { type BodyTrackers, demandPinning, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
@@ -90,12 +92,9 @@ export async function avatarMotion(
 
 async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayBuffer }> {
   if (source instanceof ArrayBuffer) return { name: 'the avatar', bytes: source };
-  if (ArrayBuffer.isView(source)) {
-    const { buffer, byteOffset, byteLength } = source;
-    return { name: 'the avatar', bytes: new Uint8Array(buffer, byteOffset, byteLength).slice().buffer };
-  }
-  if (source instanceof Blob) {
-    return { name: source instanceof File ? source.name : 'the avatar', bytes: await source.arrayBuffer() };
+  if (ArrayBuffer.isView(source) || source instanceof Blob) {
+    const name = source instanceof File ? source.name : 'the avatar';
+    return { name, bytes: await new Blob([source as BlobPart]).arrayBuffer() };
   }
   if (typeof source !== 'string' && !(source instanceof URL)) {
     throw new TypeError(
@@ -103,7 +102,7 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
     );
   }
   const address = String(source);
-  const name = address.split(/[?#]/)[0]?.split('/').at(-1) || address;
+  const name = nameOfAddress(address);
   const response = await fetch(address).catch((error: unknown) => {
     throw new Error(`${name}: could not be fetched (${reasonOf(error)})`);
   });

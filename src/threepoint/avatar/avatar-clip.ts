@@ -1,15 +1,15 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import type { BoneName } from '../core/humanoid/bones';
+import { type JointPoses, makeJointPoses } from '../core/motion/file-motion';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
-import { type Motion, makePosedBones, type PosedBones, poseBones } from '../core/motion/motion';
+import { type Motion, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
-import type { Decoders } from './decoders/decoder-set';
 import { chunksOf } from './file/glb-chunks';
 import { glbOfFile } from './file/glb-of-file';
 import { inspectAvatar } from './file/inspect-avatar';
 import { boneNode } from './humanoid/needed-bones';
-import { type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
+import { type Decoders, type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
 
 interface FileNode {
   matrix?: number[];
@@ -87,7 +87,7 @@ const turned = new Quaternion();
 const carried = new Quaternion();
 
 /** The rotation of a driven node in a posed frame, in the file's own axes. */
-function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }: PosedBones): Quaternion {
+function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }: JointPoses): Quaternion {
   const { x, y, z, w } = rotations[bone]!;
   turned.set(x, y, z, w);
   if (above >= 0) {
@@ -125,7 +125,7 @@ function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, re
   const rotations = driven.map(() => new Float32Array(4 * count));
   const hips = new Float32Array(3 * count);
   const place = hipsPlacer(avatar.vrm, motion);
-  const posed = makePosedBones(motion);
+  const posed = makeJointPoses(motion.bones.length);
   for (let frame = 0; frame < count; frame++) {
     poseBones(motion, frame, posed);
     const { x, y, z } = posed.positions[0]!;

@@ -1,5 +1,5 @@
 import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
-import { Group, type Mesh, type Object3D } from 'three';
+import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { SkinTone } from '../core/body/avatar-ref';
@@ -21,6 +21,7 @@ import { HandFingers } from './hands/hand-fingers';
 import { betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
+import { meshesOf } from './meshes-of';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { tieLooseParts } from './rig/loose-parts';
@@ -117,11 +118,8 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
  * hidden.
  */
 function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
-  const all: Mesh[] = [];
-  scene.traverse((node) => {
-    if ('isMesh' in node) all.push(node as Mesh);
-  });
-  for (const { meshes, type } of firstPerson?.meshAnnotations ?? [{ meshes: all, type: 'auto' as const }]) {
+  const unnamed = () => [{ meshes: meshesOf(scene), type: 'auto' as const }];
+  for (const { meshes, type } of firstPerson?.meshAnnotations ?? unnamed()) {
     for (const mesh of meshes) {
       yield;
       new VRMFirstPerson(humanoid, [{ meshes: [mesh], type }]).setup();

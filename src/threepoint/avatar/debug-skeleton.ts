@@ -9,6 +9,7 @@ import {
   PointsMaterial,
 } from 'three';
 import { parentOf } from '../core/body/joints';
+import { sides } from '../core/math/side';
 import type { Vec3 } from '../core/math/vec3';
 
 /** Lines from joint to joint, drawn through the skin. */
@@ -22,7 +23,7 @@ export interface DebugSkeleton {
 
 const bonesDrawn: readonly (readonly [string, string])[] = [
   ...Object.entries(parentOf).flatMap(([joint, parent]) => (parent ? [[parent, joint] as const] : [])),
-  ...(['left', 'right'] as const).flatMap((side) => [
+  ...sides.flatMap((side) => [
     ['hips', `${side}UpperLeg`] as const,
     [`${side}UpperLeg`, `${side}LowerLeg`] as const,
     [`${side}LowerLeg`, `${side}Foot`] as const,

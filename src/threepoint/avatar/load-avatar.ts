@@ -3,7 +3,6 @@ import type { Object3D } from 'three';
 import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
 import type { BoneMap } from '../core/humanoid/bones';
-import type { Decoders } from './decoders/decoder-set';
 import type { CheckedAvatar } from './file/check-avatar';
 import { validExpressionBinds } from './file/expression-binds';
 import { chunksOf } from './file/glb-chunks';
@@ -24,6 +23,9 @@ export interface LoadedAvatar {
   /** Returns the index of an object's node in the file. */
   readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
+
+/** Means to unpack what is compressed, by the name of the extension. */
+export type Decoders = Readonly<Record<string, (loader: GLTFLoader) => Promise<void>>>;
 
 export interface ParseOptions {
   /** The bones of a humanoid, instead of those that a VRM states and that are found in other files. */

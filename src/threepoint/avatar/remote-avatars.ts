@@ -16,6 +16,7 @@ import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
+import { meshesOf } from './meshes-of';
 
 /** Another person to draw in this frame. */
 export interface SeenPerson {
@@ -86,20 +87,13 @@ interface Refusal {
 
 /** Lets the second body draw from the first one's graphics memory: only bones and colours are its own. */
 function shareGeometry(from: Object3D, to: Object3D): void {
-  const sources: Mesh[] = [];
-  from.traverse((node) => {
-    if ('isMesh' in node) sources.push(node as Mesh);
-  });
-  let next = 0;
-  to.traverse((node) => {
-    if (!('isMesh' in node)) return;
-    const source = sources[next]?.geometry;
-    next += 1;
+  const sources = meshesOf(from);
+  for (const [index, { geometry }] of meshesOf(to).entries()) {
+    const source = sources[index]?.geometry;
     if (!source) throw new Error('avatar/remote-avatars: two bodies from one file differ');
-    const { geometry } = node as Mesh;
     for (const name of Object.keys(source.attributes)) geometry.setAttribute(name, source.getAttribute(name));
     geometry.setIndex(source.index);
-  });
+  }
 }
 
 function isAmong(people: readonly SeenPerson[], id: number): boolean {
@@ -110,8 +104,8 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
 /**
  * The bodies of other people. Copies of one body share its graphics memory. Bodies are made when they are first needed
  * and kept for the next person who comes. Files are loaded one at a time, and whose file is on its way, or refused, has
- * the plain body on. What could not be had is asked for again: a person who was away for long names their file before it
- * is in the store again.
+ * the plain body on. What could not be had is asked for again: a person who was away for long names their file before
+ * it is in the store again.
  */
 export class RemoteAvatars {
   readonly object = new Group();

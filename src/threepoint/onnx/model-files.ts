@@ -1,5 +1,6 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract } from '../core/estimation/networks/pose-regressor';
+import { joinBytes, nameOfAddress } from '../core/files';
 import { parseContract } from './model-contract';
 
 /** The entry of a contract for a file beside it. */
@@ -7,7 +8,7 @@ export type StatedFile = Pick<ModelContract, 'file' | 'bytes' | 'sha256'>;
 
 /** Loads the contract at this address; rejects with a sentence that names the file and its fault. */
 export async function fetchContract(url: string): Promise<ModelContract> {
-  return parseContract(fileName(url), new TextDecoder().decode(await download(url)));
+  return parseContract(nameOfAddress(url), new TextDecoder().decode(await download(url)));
 }
 
 /**
@@ -34,8 +35,6 @@ export const fetchStated = (
 /** Returns the address of a file beside another, without the other's query. */
 const beside = (url: string, file: string): string => url.replace(/[?#].*$/, '').replace(/[^/]*$/, file);
 
-const fileName = (url: string): string => url.split(/[?#]/)[0]?.split('/').at(-1) ?? url;
-
 /** Returns the error with a message that begins with the file's name. */
 export const named = (file: string, error: unknown): Error => {
   const text = reasonOf(error);
@@ -53,7 +52,7 @@ function filesOfNode(): { readFile(url: URL): Promise<Uint8Array> } | undefined 
 
 /** Loads the whole file at this address; throws a sentence where that fails. */
 async function download(url: string, onProgress?: (share: number) => void): Promise<Uint8Array> {
-  const file = fileName(url);
+  const file = nameOfAddress(url);
   const onDisk = url.startsWith('file:') ? filesOfNode() : undefined;
   if (onDisk) {
     const bytes = await onDisk.readFile(new URL(url)).catch((error: unknown) => {
@@ -83,13 +82,7 @@ async function download(url: string, onProgress?: (share: number) => void): Prom
     if (total > 0) onProgress?.(Math.min(1, received / total));
   }
   onProgress?.(1);
-  const whole = new Uint8Array(received);
-  let offset = 0;
-  for (const piece of pieces) {
-    whole.set(piece, offset);
-    offset += piece.length;
-  }
-  return whole;
+  return joinBytes(pieces);
 }
 
 async function verify({ file, bytes, sha256 }: StatedFile, model: Uint8Array): Promise<void> {

@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { avatarLimits } from '../file/inspect-avatar';
-import type { Decoders } from './decoder-set';
+import type { Decoders } from '../load-avatar';
 import type { DracoAnswer, DracoQuestion } from './draco-worker';
 import { WorkerClient } from './worker-client';
 

@@ -1,14 +1,12 @@
 import { PassingFault } from '../../core/errors/passing-fault';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { joinBytes, nameOfAddress } from '../../core/files';
 
 /** What a file is to be, with its article, and how much of it this page reads. */
 export interface FileKind {
   readonly what: string;
   readonly megabytes: number;
 }
-
-/** Returns what sentences call an address: its last part. */
-export const nameOfAddress = (url: string): string => url.split(/[?#]/)[0]?.split('/').at(-1) || url;
 
 export interface DownloadOptions {
   /** Called with the share [0, 1] that has arrived. */
@@ -71,11 +69,5 @@ export async function downloadLimited(
     if (received > most) return refuse(tooLarge(name, kind));
     if (total > 0) onProgress?.(Math.min(1, received / total));
   }
-  const whole = new Uint8Array(received);
-  let offset = 0;
-  for (const piece of pieces) {
-    whole.set(piece, offset);
-    offset += piece.length;
-  }
-  return whole.buffer;
+  return joinBytes(pieces).buffer;
 }

@@ -1,12 +1,6 @@
-import {
-  BufferAttribute,
-  type BufferGeometry,
-  type InterleavedBufferAttribute,
-  type Mesh,
-  type Object3D,
-  type TypedArray,
-} from 'three';
+import { BufferAttribute, type InterleavedBufferAttribute, type Object3D, type TypedArray } from 'three';
 import type { Steps } from '../in-steps';
+import { meshesOf } from '../meshes-of';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
@@ -35,13 +29,8 @@ export function* makeGeometryPlain(scene: Object3D): Steps<void> {
     known.set(attribute, made);
     return made;
   };
-  const meshes: Object3D[] = [];
-  scene.traverse((node) => {
-    if ('isMesh' in node) meshes.push(node);
-  });
-  for (const node of meshes) {
+  for (const { geometry } of meshesOf(scene)) {
     yield;
-    const geometry = (node as Mesh).geometry as BufferGeometry;
     for (const [name, attribute] of Object.entries(geometry.attributes)) geometry.setAttribute(name, plain(attribute));
     for (const [name, targets] of Object.entries(geometry.morphAttributes)) {
       geometry.morphAttributes[name as 'position'] = (targets as Attribute[]).map(plain);

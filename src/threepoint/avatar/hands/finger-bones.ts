@@ -1,5 +1,5 @@
 import type { VRM } from '@pixiv/three-vrm';
-import { type Bone, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
+import { type Bone, type Object3D, Quaternion, Vector3 } from 'three';
 import { fingerBonesOf } from '../../core/body/finger-bones';
 import {
   bendOfPoints,
@@ -30,6 +30,7 @@ import {
   vec3,
 } from '../../core/math/vec3';
 import { boneNode } from '../humanoid/needed-bones';
+import { skinnedMeshesOf } from '../meshes-of';
 
 export type BoneIndex = 0 | 1 | 2;
 
@@ -157,12 +158,11 @@ function restPoints(nodes: readonly (Object3D | null)[], hand: Object3D, side: S
 function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | null {
   const found: Vector3[] = [];
   if (!node) return null;
-  scene.traverse((object) => {
-    if (!(object instanceof SkinnedMesh)) return;
+  for (const object of skinnedMeshesOf(scene)) {
     const bone = object.skeleton.bones.indexOf(node as Bone);
-    if (bone < 0) return;
+    if (bone < 0) continue;
     const { skinIndex, skinWeight, position } = object.geometry.attributes;
-    if (!skinIndex || !skinWeight || !position) return;
+    if (!skinIndex || !skinWeight || !position) continue;
     for (let v = 0; v < position.count; v++) {
       let share = 0;
       for (let slot = 0; slot < 4; slot++) {
@@ -170,7 +170,7 @@ function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | nu
       }
       if (share > 0.5) found.push(object.getVertexPosition(v, new Vector3()).applyMatrix4(object.matrixWorld));
     }
-  });
+  }
   return found.length >= 4 ? found : null;
 }
 

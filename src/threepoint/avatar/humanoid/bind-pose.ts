@@ -1,4 +1,5 @@
-import { Matrix4, type Object3D, type SkinnedMesh } from 'three';
+import { Matrix4, type Object3D } from 'three';
+import { skinnedMeshesOf } from '../meshes-of';
 
 /**
  * A posed bone lies further than this from where its skin was bound to it [share of the body's size, and of a turn].
@@ -8,16 +9,15 @@ const posed = 1e-3;
 /** Returns each bone's matrix when its skin was bound to it, in one space for all skins. */
 function bindMatrices(scene: Object3D): Map<Object3D, Matrix4> {
   const bound = new Map<Object3D, Matrix4>();
-  scene.traverse((node) => {
-    if (!('isSkinnedMesh' in node)) return;
-    const { bones, boneInverses } = (node as SkinnedMesh).skeleton;
+  for (const { skeleton } of skinnedMeshesOf(scene)) {
+    const { bones, boneInverses } = skeleton;
     const own = bones.map((bone, index) => [bone, boneInverses[index]?.clone().invert()] as const);
     // Two skins may have been bound in different spaces; a shared bone connects them.
     const shared = own.find(([bone, matrix]) => bound.has(bone) && matrix && matrix.determinant() !== 0);
     const across = new Matrix4();
     if (shared?.[1]) across.multiplyMatrices(bound.get(shared[0]) as Matrix4, shared[1].clone().invert());
     for (const [bone, matrix] of own) if (matrix && !bound.has(bone)) bound.set(bone, matrix.premultiply(across));
-  });
+  }
   return bound;
 }
 

@@ -1,9 +1,10 @@
 import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/three-vrm';
-import { type Group, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import { type Group, type Object3D, Vector3 } from 'three';
 import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
+import { meshesOf, skinnedMeshesOf } from '../meshes-of';
 import { demandBones } from './needed-bones';
 import { fileBones, UnknownBones } from './unknown-bones';
 
@@ -20,13 +21,8 @@ function nodesByName(scene: Group, among: (node: Object3D) => boolean): Map<stri
   return nodes;
 }
 
-function skinBones(scene: Group): Set<Object3D> {
-  const bones = new Set<Object3D>();
-  scene.traverse((node) => {
-    if ('isSkinnedMesh' in node) for (const bone of (node as SkinnedMesh).skeleton.bones) bones.add(bone);
-  });
-  return bones;
-}
+const skinBones = (scene: Group): Set<Object3D> =>
+  new Set(skinnedMeshesOf(scene).flatMap(({ skeleton }) => skeleton.bones));
 
 /**
  * The nodes that may be bones: those that move skin, with what lies between them; of a file without skins all.
@@ -51,18 +47,16 @@ function candidatesOf(scene: Group, known: Iterable<Object3D>): readonly Object3
 /** The sums of the skin weights by bone; empty: no mesh has a skin. */
 function skinWeights(scene: Group): Map<Object3D, number> {
   const sums = new Map<Object3D, number>();
-  scene.traverse((node) => {
-    if (!('isSkinnedMesh' in node)) return;
-    const { geometry, skeleton } = node as SkinnedMesh;
+  for (const { geometry, skeleton } of skinnedMeshesOf(scene)) {
     const { skinIndex, skinWeight } = geometry.attributes;
-    if (!skinIndex || !skinWeight) return;
+    if (!skinIndex || !skinWeight) continue;
     for (let vertex = 0; vertex < skinWeight.count; vertex++) {
       for (let i = 0; i < skinWeight.itemSize; i++) {
         const bone = skeleton.bones[skinIndex.getComponent(vertex, i)];
         if (bone) sums.set(bone, (sums.get(bone) ?? 0) + skinWeight.getComponent(vertex, i));
       }
     }
-  });
+  }
   return sums;
 }
 
@@ -131,10 +125,7 @@ export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
   const humanBones = Object.fromEntries([...bones].map(([bone, node]) => [bone, { node }])) as unknown as VRMHumanBones;
   const humanoid = new VRMHumanoid(humanBones);
   scene.add(humanoid.normalizedHumanBonesRoot);
-  const meshes: { meshes: Object3D[]; type: 'auto' }[] = [];
-  scene.traverse((node) => {
-    if ('isMesh' in node) meshes.push({ meshes: [node], type: 'auto' });
-  });
+  const meshes = meshesOf(scene).map((mesh) => ({ meshes: [mesh], type: 'auto' }));
   const meta = { metaVersion: '1', name, authors: [], licenseUrl: '' } as unknown as VRM['meta'];
   return new VRM({ scene, meta, humanoid, firstPerson: new VRMFirstPerson(humanoid, meshes as never) });
 }

@@ -1,7 +1,7 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
 import { type BoneName, handFingerBones, neededBones } from '../../core/humanoid/bones';
-import type { Side } from '../../core/math/side';
+import { type Side, sides } from '../../core/math/side';
 import { boneNode } from './needed-bones';
 
 // From here on a body at rest faces +Z, as a VRM does: its left is +X.
@@ -235,7 +235,7 @@ export function settleRest(vrm: VRM, name: string): void {
   stand(body);
   demandFinite(body);
   demandBody(body);
-  for (const side of ['left', 'right'] as const) {
+  for (const side of sides) {
     straightenArm(body, side);
     straightenLeg(body, side);
   }

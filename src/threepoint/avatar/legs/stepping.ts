@@ -40,8 +40,8 @@ interface FootState extends Mutable<Foot> {
   velocityZ: number;
 }
 
-// The parameters of a step, found by coordinate descent on 26 people that the gait network was not trained on. Half-lives
-// and durations in seconds.
+// The parameters of a step, found by coordinate descent on 26 people that the gait network was not trained on.
+// Half-lives and durations in seconds.
 /** The probability of standing below which a foot is lifted, and above which it is put down. */
 const liftBelow = 0.52;
 const plantAbove = 0.58;

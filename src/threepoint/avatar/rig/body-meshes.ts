@@ -12,6 +12,7 @@ import {
 import type { SkinTone } from '../../core/body/avatar-ref';
 import { recordOf } from '../../core/records';
 import type { Steps } from '../in-steps';
+import { meshesOf } from '../meshes-of';
 import { palettes, skinColors } from '../palettes';
 import type { Rig } from './rig';
 import { type SkinPart, skinParts, sortByPart } from './skin-parts';
@@ -56,12 +57,8 @@ export function* readMeshes(
     }
     return 'trunk';
   };
-  const meshes: Mesh[] = [];
-  vrm.scene.traverse((node) => {
-    if ('isMesh' in node) meshes.push(node as Mesh);
-  });
   const result: AvatarMesh[] = [];
-  for (const mesh of meshes) {
+  for (const mesh of meshesOf(vrm.scene)) {
     // Bones carry the skin far from where it lay at rest: its own bounds say nothing.
     mesh.frustumCulled = false;
     mesh.castShadow = true;

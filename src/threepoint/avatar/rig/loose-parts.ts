@@ -10,6 +10,7 @@ import {
   Vector3,
 } from 'three';
 import type { Steps } from '../in-steps';
+import { meshesOf, skinnedMeshesOf } from '../meshes-of';
 import type { Rig, RigBone } from './rig';
 
 /** The share of a bone's length that counts as the bone's own; its end belongs to the next bone. */
@@ -81,12 +82,8 @@ export function* tieLooseParts({ scene, springBoneManager, nodeConstraintManager
   const bones = [...rig.bones.values()];
   const carriers = new Set<Object3D>(bones.map(({ node }) => node));
   const isLoose = (node: Object3D | null): boolean => node === null || (!carriers.has(node) && isLoose(node.parent));
-  const rigid: Mesh[] = [];
-  const skinned: SkinnedMesh[] = [];
-  scene.traverse((node) => {
-    if ('isSkinnedMesh' in node) skinned.push(node as SkinnedMesh);
-    else if ('isMesh' in node && isLoose(node)) rigid.push(node as Mesh);
-  });
+  const rigid = meshesOf(scene).filter((mesh) => !('isSkinnedMesh' in mesh) && isLoose(mesh));
+  const skinned = skinnedMeshesOf(scene);
   const moved = yield* movedVertices(skinned, isLoose);
   if (rigid.length === 0 && moved.size === 0) return;
   const roots = new Set<Object3D>();

@@ -1,6 +1,6 @@
 import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
 import { Bone, Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
-import { type JointName, jointNames } from '../../core/body/joints';
+import { type JointName, jointNames, parentOf } from '../../core/body/joints';
 import { fromAxisAngle, multiply, type Quat, quat } from '../../core/math/quat';
 import { copyVec3, distance, type MutableVec3, up, type Vec3, vec3 } from '../../core/math/vec3';
 
@@ -48,22 +48,15 @@ export interface HelperJoint {
 
 /** The bone whose origin marks the far end of another: what its length is measured to. */
 const farEnd: Partial<Record<AvatarJoint, AvatarJoint>> = {
-  hips: 'spine',
-  spine: 'chest',
-  chest: 'upperChest',
-  upperChest: 'neck',
-  neck: 'head',
-  leftShoulder: 'leftUpperArm',
-  leftUpperArm: 'leftLowerArm',
-  leftLowerArm: 'leftHand',
-  rightShoulder: 'rightUpperArm',
-  rightUpperArm: 'rightLowerArm',
-  rightLowerArm: 'rightHand',
   leftUpperLeg: 'leftLowerLeg',
   leftLowerLeg: 'leftFoot',
   rightUpperLeg: 'rightLowerLeg',
   rightLowerLeg: 'rightFoot',
 };
+for (const joint of jointNames) {
+  const parent = parentOf[joint];
+  if (parent) farEnd[parent] ??= joint;
+}
 
 const drivenJoints: readonly AvatarJoint[] = [...jointNames, ...legJoints];
 

@@ -5,10 +5,11 @@ import {
   type Object3D,
   Quaternion,
   type Skeleton,
-  SkinnedMesh,
+  type SkinnedMesh,
   Vector3,
 } from 'three';
 import type { Steps } from '../in-steps';
+import { skinnedMeshesOf } from '../meshes-of';
 import { isBelow } from './body-meshes';
 
 /** The bones of an arm and the joints between them among which its skin is to be shared. */
@@ -261,11 +262,7 @@ export function* spreadArms(scene: Object3D, arms: readonly SpreadArm[]): Steps<
   scene.updateMatrixWorld(true);
   const extended = new Map<Skeleton, readonly ArmIndices[]>();
   const done = new Map<Skeleton, Map<unknown, Weights>>();
-  const meshes: SkinnedMesh[] = [];
-  scene.traverse((node) => {
-    if (node instanceof SkinnedMesh) meshes.push(node);
-  });
-  for (const node of meshes) {
+  for (const node of skinnedMeshesOf(scene)) {
     const { skeleton, geometry } = node;
     const known = extended.get(skeleton);
     const own = known ?? arms.flatMap((arm) => extend(skeleton, arm) ?? []);

@@ -8,5 +8,7 @@ export const fingerBones = (finger: string): readonly [string, string, string] =
     : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
 
 /** Returns the names of a finger's bones with their side. */
-export const fingerBonesOf = (side: Side, finger: FingerName): readonly string[] =>
-  fingerBones(finger[0]!.toUpperCase() + finger.slice(1)).map((bone) => `${side}${bone}`);
+export function fingerBonesOf(side: Side, finger: FingerName): readonly [string, string, string] {
+  const [first, second, third] = fingerBones(finger[0]!.toUpperCase() + finger.slice(1));
+  return [`${side}${first}`, `${side}${second}`, `${side}${third}`];
+}

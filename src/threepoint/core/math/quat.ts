@@ -32,6 +32,19 @@ export const copyQuat = (q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): Mutab
   setQuat(target, q.x, q.y, q.z, q.w);
 
 /** The rotation b followed by a. */
+/** Reads x, y, z, w from index `at` on. */
+export const readQuat = (from: ArrayLike<number>, at: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+  setQuat(target, from[at]!, from[at + 1]!, from[at + 2]!, from[at + 3]!);
+
+/** Writes x, y, z, w from index `at` on; returns the index behind them. */
+export function writeQuat({ x, y, z, w }: Quat, target: Float32Array | Float64Array, at: number): number {
+  target[at] = x;
+  target[at + 1] = y;
+  target[at + 2] = z;
+  target[at + 3] = w;
+  return at + 4;
+}
+
 export const multiply = (a: Quat, b: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   setQuat(
     target,

@@ -91,4 +91,8 @@ export function writeVec3({ x, y, z }: Vec3, target: Float32Array | Float64Array
   return at + 3;
 }
 
+/** Reads x, y, z from index `at` on. */
+export const readVec3 = (from: ArrayLike<number>, at: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
+  setVec3(target, from[at]!, from[at + 1]!, from[at + 2]!);
+
 export const isFiniteVec3 = (a: Vec3): boolean => Number.isFinite(a.x + a.y + a.z);

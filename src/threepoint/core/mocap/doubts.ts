@@ -1,9 +1,9 @@
 import { sides } from '../math/side';
 import { median } from '../math/statistics';
-import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, vec3, zero } from '../math/vec3';
+import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, zero } from '../math/vec3';
 import { sampledFrames } from './body-axes';
-import { type OurMotion, positionsWidth } from './our-joints';
-import { type TruthJoint, truthJoints } from './skeleton-map';
+import { type OurMotion, positionAt } from './our-joints';
+import type { TruthJoint } from './skeleton-map';
 
 /** A pelvis is further than this [m] off the middle of the feet in no motion for long. */
 const furthestPelvis = 0.5;
@@ -20,16 +20,14 @@ export const doubtOfErrors = (means: readonly number[]): string | null =>
     : null;
 
 /** What cannot be right of a motion, a sentence each: figures that are measured on it are worth little. */
-export function doubtsOf({ positions, rest, frameCount }: OurMotion): readonly string[] {
+export function doubtsOf(motion: OurMotion): readonly string[] {
+  const { rest, frameCount } = motion;
   const doubts: string[] = [];
   const pelvis: number[] = [];
   let [frames, behind, lying] = [0, 0, 0];
   for (const frame of sampledFrames(frameCount)) {
     frames += 1;
-    const at = (joint: TruthJoint): Vec3 => {
-      const i = frame * positionsWidth + 3 * truthJoints.indexOf(joint);
-      return vec3(positions[i]!, positions[i + 1]!, positions[i + 2]!);
-    };
+    const at = (joint: TruthJoint): Vec3 => positionAt(motion, frame, joint);
     const hips = at('hips');
     const trunk = normalise(subtract(at('neck'), hips), zero);
     if (dot(trunk, up) < 0.5) lying += 1;

@@ -1,6 +1,6 @@
-import { conjugate, type MutableQuat, multiply, type Quat, quat, setQuat, slerp } from '../math/quat';
+import { conjugate, multiply, type Quat, quat, slerp, writeQuat } from '../math/quat';
 import { rateHz, shortestPieceSeconds, teleportSpeed } from './mocap-rules.json';
-import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
+import { type OurMotion, positionsWidth, rotationAt, rotationsWidth } from './our-joints';
 import type { Piece } from './person';
 import { bodyJoints, trackedJoints } from './skeleton-map';
 
@@ -36,11 +36,6 @@ export interface EvenClip {
 const rotationBefore = quat(0, 0, 0, 1);
 const rotationAfter = quat(0, 0, 0, 1);
 
-const rotationAt = ({ rotations }: OurMotion, frame: number, joint: number, target: MutableQuat) => {
-  const at = frame * rotationsWidth + 4 * joint;
-  return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
-};
-
 /**
  * The piece at 60 Hz: every nth frame where that is exact, else interpolated; above a floor at this height [m], its
  * head turned back by `neutral`.
@@ -72,7 +67,7 @@ export function evenClip(motion: OurMotion, { from, to }: Piece, floor: number, 
       rotationAt(motion, second, joint, rotationAfter);
       const turn = slerp(rotationBefore, rotationAfter, share, rotationBefore);
       if (joint === 0) multiply(turn, back, turn);
-      clip.rotations.set([turn.x, turn.y, turn.z, turn.w], frame * rotationsWidth + 4 * joint);
+      writeQuat(turn, clip.rotations, frame * rotationsWidth + 4 * joint);
     }
   }
   return clip;

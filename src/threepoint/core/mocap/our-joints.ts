@@ -7,14 +7,17 @@ import {
   multiply,
   type Quat,
   quat,
+  readQuat,
   rotate,
   rotationBetween,
+  writeQuat,
 } from '../math/quat';
 import {
   add,
   addScaled,
   lerp,
   type MutableVec3,
+  readVec3,
   right,
   scale,
   subtract,
@@ -53,6 +56,25 @@ export interface OurMotion {
 export const positionsWidth = 3 * truthJoints.length;
 /** See positionsWidth. */
 export const rotationsWidth = 4 * trackedJoints.length;
+
+/** Positions and rotations as `OurMotion` has them, in either precision. */
+interface JointNumbers {
+  readonly positions: ArrayLike<number>;
+  readonly rotations: ArrayLike<number>;
+}
+
+/** Returns where a joint is in a frame [m]. */
+export const positionAt = ({ positions }: JointNumbers, frame: number, joint: TruthJoint): Vec3 =>
+  readVec3(positions, frame * positionsWidth + 3 * truthJoints.indexOf(joint));
+
+/** Returns the rotation of one of `trackedJoints` in a frame. */
+export const rotationAt = (
+  { rotations }: JointNumbers,
+  frame: number,
+  joint: number,
+  target?: MutableQuat,
+): MutableQuat => readQuat(rotations, frame * rotationsWidth + 4 * joint, target);
+
 const framesPerStep = 64;
 
 const unitNames: Readonly<Record<string, string>> = {
@@ -194,7 +216,7 @@ export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedS
       multiply(multiply(motionFloor, poses.rotations[skeleton.turning[i]!]!, turn), restFromFloor, turn);
       const wrist = wrists[joint];
       if (wrist) multiply(turn, wrist, turn);
-      rotations.set([turn.x, turn.y, turn.z, turn.w], frame * rotationsWidth + 4 * i);
+      writeQuat(turn, rotations, frame * rotationsWidth + 4 * i);
     }
     if (frame % framesPerStep === 0) yield frame / file.frameCount;
   }

@@ -1,10 +1,13 @@
 import type { Calibration } from '../body/calibration';
-import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
+import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
 import { sides } from '../math/side';
 import { median, quantile } from '../math/statistics';
 import { forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import { eyesFromHeadJoint } from './mocap-rules.json';
+import { type OurMotion, positionAt, rotationAt } from './our-joints';
+import type { RestPose } from './rest-pose';
+import type { TruthJoint } from './skeleton-map';
 import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
 import { armSpanAtRest, eyeHeightAtRest } from './rest-pose';
 import { type TruthJoint, truthJoints } from './skeleton-map';
@@ -24,12 +27,10 @@ const upright = 0.94;
 const footHeight = 0.025;
 const floorTolerance = 0.04;
 
-const columnOf = (joint: TruthJoint): number => 3 * truthJoints.indexOf(joint);
-
 /** Heights [m] of a joint over pieces. */
-function* heightsOf({ positions }: OurMotion, pieces: readonly Piece[], joint: TruthJoint): Generator<number> {
+function* heightsOf(motion: OurMotion, pieces: readonly Piece[], joint: TruthJoint): Generator<number> {
   for (const { from, to } of pieces)
-    for (let frame = from; frame < to; frame++) yield positions[frame * positionsWidth + columnOf(joint) + 1]!;
+    for (let frame = from; frame < to; frame++) yield positionAt(motion, frame, joint).y;
 }
 
 /** What a calibration would find of the person in a motion. */
@@ -40,21 +41,16 @@ export function measuresOf(motion: OurMotion, pieces: readonly Piece[]): Calibra
 }
 
 /** The head's rotation when this person looks ahead: its median pitch and roll over frames with an upright trunk. */
-export function neutralHead({ positions, rotations }: OurMotion, pieces: readonly Piece[]): Quat {
+export function neutralHead(motion: OurMotion, pieces: readonly Piece[]): Quat {
   const pitches: number[] = [];
   const rolls: number[] = [];
-  const point = (frame: number, joint: TruthJoint) => {
-    const at = frame * positionsWidth + columnOf(joint);
-    return vec3(positions[at]!, positions[at + 1]!, positions[at + 2]!);
-  };
   const head = quat(0, 0, 0, 1);
   const gaze = vec3(0, 0, 0);
   for (const { from, to } of pieces) {
     for (let frame = from; frame < to; frame++) {
-      const trunk = subtract(point(frame, 'neck'), point(frame, 'hips'));
+      const trunk = subtract(positionAt(motion, frame, 'neck'), positionAt(motion, frame, 'hips'));
       if (!(trunk.y > upright * length(trunk))) continue;
-      const at = frame * rotationsWidth;
-      setQuat(head, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
+      rotationAt(motion, frame, 0, head);
       multiply(conjugate(headingOf(head)), head, head);
       rotate(head, forward, gaze);
       pitches.push(Math.atan2(gaze.y, -gaze.z));
@@ -70,13 +66,13 @@ export function neutralHead({ positions, rotations }: OurMotion, pieces: readonl
  * where it should.
  */
 export function floorHeight(motion: OurMotion, pieces: readonly Piece[]): number {
-  const { positions, rest } = motion;
+  const { rest } = motion;
   const feet = sides.flatMap((side) => [`${side}Foot`, `${side}Toes`] as const).filter((joint) => rest.has(joint));
   if (feet.length === 0) return 0;
   const lowest: number[] = [];
   for (const { from, to } of pieces)
     for (let frame = from; frame < to; frame++)
-      lowest.push(Math.min(...feet.map((joint) => positions[frame * positionsWidth + columnOf(joint) + 1]!)));
+      lowest.push(Math.min(...feet.map((joint) => positionAt(motion, frame, joint).y)));
   const offset = quantile(lowest, 0.1) - footHeight;
   return Math.abs(offset) > floorTolerance ? offset : 0;
 }

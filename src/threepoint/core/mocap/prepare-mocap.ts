@@ -1,6 +1,7 @@
 import { type Calibration, calibrationComplaint } from '../body/calibration';
+import { reasonOf } from '../errors/reasons';
+import { isObject } from '../json';
 import type { FileMotion } from '../motion/file-motion';
-import { isObject } from '../motion/gltf-clip';
 import { readAmc } from '../motion/read-amc';
 import { readAsf } from '../motion/read-asf';
 import { bvhFileMotion, readBvh } from '../motion/read-bvh';
@@ -71,8 +72,7 @@ export interface PreparedMocap {
 }
 
 /** Returns the fault as a sentence that begins with the name of its file. */
-const faultIn = (name: string, error: unknown): Error =>
-  new Error(`${name}: ${error instanceof Error ? error.message : String(error)}`, { cause: error });
+const faultIn = (name: string, error: unknown): Error => new Error(`${name}: ${reasonOf(error)}`, { cause: error });
 
 /** What is read of a file that another needs; a fault in it begins with its own name. */
 function readBeside<Result>({ name, text }: Beside, read: (text: string, name: string) => Result): Result {

@@ -1,3 +1,5 @@
+import { reasonOf } from '../errors/reasons';
+import { isFiniteNumber, isObject, type Json } from '../json';
 import { type Vec3, vec3 } from '../math/vec3';
 import { shown } from '../motion/lines';
 import {
@@ -21,11 +23,6 @@ export const directions: Readonly<Record<FileAxis, Vec3>> = {
 };
 
 const keys = ['name', 'scale', 'frameRate', 'up', 'forward', 'joints', 'rotations', 'restFrame', 'restPose'];
-
-type Content = Readonly<Record<string, unknown>>;
-const isObject = (value: unknown): value is Content =>
-  typeof value === 'object' && value !== null && !Array.isArray(value);
-const isNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
 /**
  * The map of a skeleton in a JSON text, as the evaluation takes it (docs/accuracy.md). Throws a sentence where
@@ -54,19 +51,19 @@ export function readSkeletonMap(text: string, name: string): SkeletonMap {
   };
 }
 
-function parse(text: string): Content {
+function parse(text: string): Json {
   let content: unknown;
   try {
     content = JSON.parse(text);
   } catch (error) {
-    throw new Error(`no valid JSON: ${error instanceof Error ? error.message : String(error)}`);
+    throw new Error(`no valid JSON: ${reasonOf(error)}`);
   }
   if (!isObject(content) || !isObject(content.joints)) throw new Error('expected an object with “joints”');
   return content;
 }
 
-function jointsOf({ joints }: Content): Readonly<Partial<Record<TruthJoint, string>>> {
-  const given = joints as Content;
+function jointsOf({ joints }: Json): Readonly<Partial<Record<TruthJoint, string>>> {
+  const given = joints as Json;
   for (const joint of neededJoints) if (typeof given[joint] !== 'string') throw new Error(`joints.${joint} is missing`);
   for (const [joint, theirs] of Object.entries(given)) {
     if (!(truthJoints as readonly string[]).includes(joint))
@@ -76,7 +73,7 @@ function jointsOf({ joints }: Content): Readonly<Partial<Record<TruthJoint, stri
   return given as Partial<Record<TruthJoint, string>>;
 }
 
-function rotationsOf({ rotations = null }: Content) {
+function rotationsOf({ rotations = null }: Json) {
   if (rotations === null) return {};
   if (!isObject(rotations)) throw new Error('“rotations” should be an object: a joint of the file for head or hands');
   for (const [joint, theirs] of Object.entries(rotations)) {
@@ -87,17 +84,17 @@ function rotationsOf({ rotations = null }: Content) {
   return { rotations: rotations as Partial<Record<TrackedJoint, string>> };
 }
 
-function numberOf(content: Content, key: 'scale' | 'frameRate') {
+function numberOf(content: Json, key: 'scale' | 'frameRate') {
   const value = content[key] ?? null;
   if (value === null) return {};
-  if (!isNumber(value) || value <= 0) throw new Error(`“${key}” should be a number above zero`);
+  if (!isFiniteNumber(value) || value <= 0) throw new Error(`“${key}” should be a number above zero`);
   return { [key]: value };
 }
 
 const restFrameForm = '“restFrame” should be the number of a frame, from 1, or {"file": …, "frame": …}';
 const isFrame = (value: unknown): value is number => Number.isInteger(value) && (value as number) >= 1;
 
-function restFrameOf({ restFrame = null, restPose }: Content) {
+function restFrameOf({ restFrame = null, restPose }: Json) {
   if (restFrame === null) return {};
   if (restPose !== undefined) throw new Error('either “restFrame” or “restPose”');
   if (isObject(restFrame)) {
@@ -109,11 +106,11 @@ function restFrameOf({ restFrame = null, restPose }: Content) {
   return { restFrame };
 }
 
-function restPoseOf({ restPose = null }: Content): Readonly<Record<string, readonly number[]>> | null {
+function restPoseOf({ restPose = null }: Json): Readonly<Record<string, readonly number[]>> | null {
   if (restPose === null) return null;
   if (!isObject(restPose)) throw new Error("“restPose” should be an object: angles [degrees] by the file's joint");
   for (const [joint, angles] of Object.entries(restPose))
-    if (!Array.isArray(angles) || !angles.every(isNumber))
+    if (!Array.isArray(angles) || !angles.every(isFiniteNumber))
       throw new Error(`restPose.${joint} should be a list of angles [degrees]`);
   return restPose as Record<string, number[]>;
 }

@@ -1,10 +1,10 @@
-import { fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
+import { fromAxisAngle, multiply, type Quat, rotate, writeQuat } from '../math/quat';
 import { normalNumbers } from '../math/random';
-import { add, length, normalise, type Vec3, vec3 } from '../math/vec3';
+import { add, length, normalise, type Vec3, vec3, writeVec3 } from '../math/vec3';
 import type { EvenClip } from './even-clip';
 import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
-import { positionsWidth, rotationsWidth } from './our-joints';
-import { trackedJoints, truthJoints } from './skeleton-map';
+import { positionAt, rotationAt } from './our-joints';
+import { trackedJoints } from './skeleton-map';
 
 /** Numbers of a frame: position [m] and rotation (xyzw) of headset, left wrist and right wrist. */
 export const trackedWidth = 7 * trackedJoints.length;
@@ -63,37 +63,27 @@ function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readon
  * What a headset and two hands would have reported of a person while the clip of this name was recorded, `trackedWidth`
  * numbers for each frame; the same as the evaluation's, which draws its errors by person and clip.
  */
-export function simulateTrackers(
-  { positions, rotations, frameCount }: EvenClip,
-  person: string,
-  clip: string,
-): Float32Array<ArrayBuffer> {
+export function simulateTrackers(motion: EvenClip, person: string, clip: string): Float32Array<ArrayBuffer> {
   const { offsets, turns } = drawWearer(person);
   const normal = normalOf(clip);
+  const { frameCount } = motion;
   const tracked = new Float32Array(frameCount * trackedWidth);
-  const columns = trackedJoints.map((joint) => 3 * truthJoints.indexOf(joint));
-  const rotation = quat(0, 0, 0, 1);
-  const read = (frame: number, joint: number): Quat => {
-    const at = frame * rotationsWidth + 4 * joint;
-    return setQuat(rotation, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
-  };
   // All positions come before all rotations: the order in which the errors are drawn.
   for (let frame = 0; frame < frameCount; frame++) {
-    for (const [joint, column] of columns.entries()) {
-      const from = frame * positionsWidth + column;
-      const moved = rotate(read(frame, joint), offsets[joint]!);
-      const noise = drawVector(normal, noiseOf(joint, trackers.positionNoise));
-      const at = frame * trackedWidth + 7 * joint;
-      tracked[at] = positions[from]! + moved.x + noise.x;
-      tracked[at + 1] = positions[from + 1]! + moved.y + noise.y;
-      tracked[at + 2] = positions[from + 2]! + moved.z + noise.z;
+    for (const [index, joint] of trackedJoints.entries()) {
+      const moved = rotate(rotationAt(motion, frame, index), offsets[index]!);
+      const noise = drawVector(normal, noiseOf(index, trackers.positionNoise));
+      writeVec3(add(add(positionAt(motion, frame, joint), moved), noise), tracked, frame * trackedWidth + 7 * index);
     }
   }
   for (let frame = 0; frame < frameCount; frame++) {
     for (const [joint, turn] of turns.entries()) {
       const jitter = radians(noiseOf(joint, trackers.rotationNoiseDegrees)) / Math.sqrt(3);
-      const turned = multiply(multiply(read(frame, joint), turn), fromRotationVector(drawVector(normal, jitter)));
-      tracked.set([turned.x, turned.y, turned.z, turned.w], frame * trackedWidth + 7 * joint + 3);
+      const turned = multiply(
+        multiply(rotationAt(motion, frame, joint), turn),
+        fromRotationVector(drawVector(normal, jitter)),
+      );
+      writeQuat(turned, tracked, frame * trackedWidth + 7 * joint + 3);
     }
   }
   return tracked;

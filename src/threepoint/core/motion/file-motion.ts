@@ -1,7 +1,7 @@
 import { type MutableQuat, quat } from '../math/quat';
 import { type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 
-/** Positions and rotations of joints since the rest pose, in the unit and axes of their file. */
+/** Positions and rotations of joints since the rest pose: of a file in its own unit and axes. */
 export interface JointPoses {
   readonly positions: readonly MutableVec3[];
   readonly rotations: readonly MutableQuat[];

@@ -1,3 +1,4 @@
+import { isIndex, isObject, type Json } from '../json';
 import {
   conjugate,
   copyQuat,
@@ -7,6 +8,7 @@ import {
   normaliseQuat,
   type Quat,
   quat,
+  readQuat,
   rotate,
   setQuat,
   slerp,
@@ -19,6 +21,7 @@ import {
   length,
   type MutableVec3,
   normalise,
+  readVec3,
   reject,
   setVec3,
   subtract,
@@ -53,15 +56,8 @@ export interface Node {
   readonly tracks: Track[];
 }
 
-/** A part of a glTF description. */
-export type Json = Readonly<Record<string, unknown>>;
-/** See Json. */
-export const isObject = (value: unknown): value is Json =>
-  typeof value === 'object' && value !== null && !Array.isArray(value);
 /** The objects of a list; none where it is no list. */
 export const objects = (value: unknown): readonly Json[] => (Array.isArray(value) ? value.filter(isObject) : []);
-/** Whether a value can be an index. */
-export const isIndex = (value: unknown): value is number => Number.isSafeInteger(value) && (value as number) >= 0;
 
 const noMatrix: readonly number[] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
@@ -71,12 +67,9 @@ function numbers(value: unknown, fallback: readonly number[], what: string): rea
   throw new Error(`${what} is not ${fallback.length} finite numbers`);
 }
 
-const vectorOf = ([x, y, z]: readonly number[]): Vec3 => vec3(x!, y!, z!);
-const quatOf = ([x, y, z, w]: readonly number[]): MutableQuat => quat(x!, y!, z!, w!);
-
 /** Takes a matrix (by columns) apart; shear and mirrors are lost. */
 export function decompose(matrix: readonly number[]): Pick<Node, 'translation' | 'rotation' | 'scale'> {
-  const column = (i: number): Vec3 => vec3(matrix[4 * i]!, matrix[4 * i + 1]!, matrix[4 * i + 2]!);
+  const column = (i: number): Vec3 => readVec3(matrix, 4 * i);
   const [x, y, z] = [column(0), column(1), column(2)];
   const size = vec3(length(x), length(y), length(z));
   const [right, up] = [normalise(x), normalise(reject(y, normalise(x)))];
@@ -90,9 +83,9 @@ function nodesOf(description: Json): Node[] {
     const place =
       matrix === undefined
         ? {
-            translation: vectorOf(numbers(translation, [0, 0, 0], `nodes[${i}].translation`)),
-            rotation: quatOf(numbers(rotation, [0, 0, 0, 1], `nodes[${i}].rotation`)),
-            scale: vectorOf(numbers(scale, [1, 1, 1], `nodes[${i}].scale`)),
+            translation: readVec3(numbers(translation, [0, 0, 0], `nodes[${i}].translation`), 0),
+            rotation: readQuat(numbers(rotation, [0, 0, 0, 1], `nodes[${i}].rotation`), 0),
+            scale: readVec3(numbers(scale, [1, 1, 1], `nodes[${i}].scale`), 0),
           }
         : decompose(numbers(matrix, noMatrix, `nodes[${i}].matrix`));
     return { parent: -1, ...place, tracks: [] };
@@ -201,7 +194,9 @@ function sample({ path, times, values, interpolation }: Track, time: number, tar
     }
   }
   if (path === 'translation' || interpolation === 'STEP') return;
-  const { x, y, z, w } = spline ? normaliseQuat(quatOf(target)) : slerp(quatOf(before), quatOf(after), share);
+  const { x, y, z, w } = spline
+    ? normaliseQuat(readQuat(target, 0))
+    : slerp(readQuat(before, 0), readQuat(after, 0), share);
   [target[0], target[1], target[2], target[3]] = [x, y, z, w];
 }
 

@@ -1,5 +1,6 @@
-import { type MutableQuat, multiply, quat, rotate, setQuat, slerp } from '../math/quat';
-import { add, lerp, type MutableVec3, setVec3, vec3 } from '../math/vec3';
+import { type MutableQuat, multiply, quat, readQuat, rotate, setQuat, slerp, writeQuat } from '../math/quat';
+import { add, lerp, type MutableVec3, readVec3, vec3, writeVec3 } from '../math/vec3';
+import type { JointPoses } from './file-motion';
 import type { MotionBone } from './skeleton';
 
 /** A body over a while, in the clip frame (skeleton.ts): what every file of motion is written from. */
@@ -24,29 +25,15 @@ export interface Motion {
 }
 
 /** The rotation of a measured bone against its parent in one frame. */
-export function rotationAt(motion: Motion, frame: number, bone: number, target: MutableQuat): MutableQuat {
-  const at = 4 * (frame * motion.measured + bone);
-  const { rotations } = motion;
-  return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
-}
+export const rotationAt = (motion: Motion, frame: number, bone: number, target: MutableQuat): MutableQuat =>
+  readQuat(motion.rotations, 4 * (frame * motion.measured + bone), target);
 
 /** Returns the hips' position in one frame [m]. */
 export const hipsAt = ({ hips }: Motion, frame: number, target: MutableVec3): MutableVec3 =>
-  setVec3(target, hips[3 * frame]!, hips[3 * frame + 1]!, hips[3 * frame + 2]!);
+  readVec3(hips, 3 * frame, target);
 
-/** Position [m] and rotation from T-pose of every bone, clip frame. */
-export interface PosedBones {
-  readonly positions: readonly MutableVec3[];
-  readonly rotations: readonly MutableQuat[];
-}
-
-export const makePosedBones = ({ bones }: Pick<Motion, 'bones'>): PosedBones => ({
-  positions: bones.map(() => vec3(0, 0, 0)),
-  rotations: bones.map(() => quat(0, 0, 0, 1)),
-});
-
-/** Every bone in one frame. */
-export function poseBones(motion: Motion, frame: number, target: PosedBones): PosedBones {
+/** Writes position [m] and rotation from T-pose of every bone in one frame, clip frame. */
+export function poseBones(motion: Motion, frame: number, target: JointPoses): JointPoses {
   const { positions, rotations } = target;
   const { bones } = motion;
   for (let i = 0; i < bones.length; i++) {
@@ -112,15 +99,15 @@ function mixFrame(
   { into, frame }: { readonly into: Motion; readonly frame: number },
 ): void {
   const hips = lerp(hipsAt(motion, before, hipsBefore), hipsAt(motion, after, hipsAfter), share, hipsBefore);
-  into.hips.set([hips.x, hips.y, hips.z], 3 * frame);
+  writeVec3(hips, into.hips, 3 * frame);
   for (let bone = 0; bone < motion.measured; bone++) {
-    const { x, y, z, w } = slerp(
+    const rotation = slerp(
       rotationAt(motion, before, bone, rotationBefore),
       rotationAt(motion, after, bone, rotationAfter),
       share,
       rotationBefore,
     );
-    into.rotations.set([x, y, z, w], 4 * (frame * motion.measured + bone));
+    writeQuat(rotation, into.rotations, 4 * (frame * motion.measured + bone));
   }
   into.seen[frame] = motion.seen[share < 0.5 ? before : after]!;
 }

@@ -1,5 +1,5 @@
 import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
-import { backward, normalise, right, scale, up, type Vec3, vec3, zero } from '../math/vec3';
+import { backward, normalise, readVec3, right, scale, up, type Vec3, zero } from '../math/vec3';
 import { Lines, shown, type Word } from './lines';
 
 /** A bone in rest: from the end of its parent, in the file's unit and axes. */
@@ -115,8 +115,6 @@ function numbersOf(lines: Lines, words: readonly Word[], count: number): number[
   return given.map((each) => lines.numberOf(each));
 }
 
-const vectorOf = ([x, y, z]: readonly number[]): Vec3 => vec3(x!, y!, z!);
-
 function rawBone(lines: Lines, at: Word, block: Block | null): RawBone {
   const name = block?.get('name')?.[1]?.word;
   if (!block || name === undefined) return lines.fail(at.column, 'a bone without a name ends here');
@@ -126,8 +124,8 @@ function rawBone(lines: Lines, at: Word, block: Block | null): RawBone {
   const axis = block.get('axis');
   return {
     name,
-    way: scale(normalise(vectorOf(numbers('direction', 3)), zero), length!),
-    angles: axis ? vectorOf(numbersOf(lines, axis, 3)) : zero,
+    way: scale(normalise(readVec3(numbers('direction', 3), 0), zero), length!),
+    angles: axis ? readVec3(numbersOf(lines, axis, 3), 0) : zero,
     order: axis?.[4]?.word.toLowerCase() ?? 'xyz',
     freedoms: (block.get('dof') ?? []).slice(1).map(({ word }) => word.toLowerCase()),
   };
@@ -163,7 +161,7 @@ export function readAsf(text: string): AsfSkeleton {
   const { root, radiansPerUnit } = sections;
   const rootVector = (key: string): Vec3 => {
     const words = root.get(key);
-    return words ? vectorOf(numbersOf(lines, words, 3)) : zero;
+    return words ? readVec3(numbersOf(lines, words, 3), 0) : zero;
   };
   const order = (root.get('order') ?? []).slice(1).map(({ word }) => word.toLowerCase());
   return {

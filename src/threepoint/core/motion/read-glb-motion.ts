@@ -1,7 +1,8 @@
+import { isIndex, type Json } from '../json';
 import { angleBetween, conjugate, identity, multiply, type Quat, rotate } from '../math/quat';
 import { add, distance, scale, subtract, type Vec3 } from '../math/vec3';
 import { type FileMotion, type JointPoses, makeJointPoses } from './file-motion';
-import { accessorOf, decompose, GltfClip, isIndex, type Json, objects } from './gltf-clip';
+import { accessorOf, decompose, GltfClip, objects } from './gltf-clip';
 
 /** A joint in the space in which its skin was bound. */
 interface Bound {

@@ -1,5 +1,6 @@
+import { isIndex, isObject } from '../json';
 import type { FileMotion } from './file-motion';
-import { GltfClip, isIndex, isObject } from './gltf-clip';
+import { GltfClip } from './gltf-clip';
 
 /**
  * Reads the description and the binary part of a VRM Animation 1.0. Throws a sentence that names the field where they

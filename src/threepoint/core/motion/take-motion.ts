@@ -16,9 +16,9 @@ import { wristFromHandBone } from '../body/skeleton';
 import { estimateRecording } from '../estimation/estimate-recording';
 import type { PoseEstimator } from '../estimation/pose-estimator';
 import { isTracked } from '../math/pose';
-import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
+import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat, writeQuat } from '../math/quat';
 import { type Side, sides } from '../math/side';
-import { vec3 } from '../math/vec3';
+import { vec3, writeVec3 } from '../math/vec3';
 import { recordOf } from '../records';
 import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
@@ -96,11 +96,7 @@ export class BoneRotations {
 
   /** A rotation of the floor frame's axes. */
   #put(rotation: Quat): void {
-    const { x, y, z, w } = turnRotation(rotation, this.#rotation);
-    this.#target[this.#at++] = x;
-    this.#target[this.#at++] = y;
-    this.#target[this.#at++] = z;
-    this.#target[this.#at++] = w;
+    this.#at = writeQuat(turnRotation(rotation, this.#rotation), this.#target, this.#at);
   }
 }
 
@@ -136,7 +132,7 @@ export class MotionTaker {
     if (index === 0) this.#firstTime = time;
     times[index] = time - this.#firstTime;
     const at = turnPoint(body.hipsPosition, hipsOfBody);
-    hips.set([at.x, at.y, at.z], 3 * index);
+    writeVec3(at, hips, 3 * index);
     // A hand that the device only guesses has a guessed arm.
     seen[index] = (isTracked(leftHand) ? 1 : 0) + (isTracked(rightHand) ? 2 : 0);
     const deltaSeconds = index === 0 ? 0 : times[index] - times[index - 1]!;

@@ -1,5 +1,5 @@
-import { quat } from '../math/quat';
-import { type Vec3, vec3 } from '../math/vec3';
+import { quat, writeQuat } from '../math/quat';
+import { type Vec3, vec3, writeVec3 } from '../math/vec3';
 import { addClip, type Clip, type GltfDescription, type NodeTrack, packGlb } from './gltf';
 import { hipsAt, type Motion, rotationAt } from './motion';
 
@@ -59,16 +59,13 @@ export function* writeVrma(motion: Motion): Generator<number, readonly Uint8Arra
   const tracks: NodeTrack[] = [];
   const hips = new Float32Array(3 * count);
   const place = vec3(0, 0, 0);
-  for (let frame = 0; frame < count; frame++) hips.set(array(hipsAt(motion, frame, place)), 3 * frame);
+  for (let frame = 0; frame < count; frame++) writeVec3(hipsAt(motion, frame, place), hips, 3 * frame);
   tracks.push({ node: 0, path: 'translation', values: hips });
   const rotation = quat(0, 0, 0, 1);
   for (const [bone, { measured }] of bones.entries()) {
     if (!measured) continue;
     const values = new Float32Array(4 * count);
-    for (let frame = 0; frame < count; frame++) {
-      const { x, y, z, w } = rotationAt(motion, frame, bone, rotation);
-      values.set([x, y, z, w], 4 * frame);
-    }
+    for (let frame = 0; frame < count; frame++) writeQuat(rotationAt(motion, frame, bone, rotation), values, 4 * frame);
     tracks.push({ node: bone, path: 'rotation', values });
     yield bone / bones.length;
   }

@@ -1,12 +1,13 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
-import { fingerBones } from '../body/finger-bones';
+import { fingerBonesOf } from '../body/finger-bones';
 import { type Fingers, fingerNames, unknownFingers } from '../body/hand-shape';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
 import { type Side, sides } from '../math/side';
-import { add, backward, cross, normalise, right, scale, up, type Vec3, vec3, zero } from '../math/vec3';
-import { makePosedBones, poseBones } from './motion';
+import { add, backward, cross, normalise, right, scale, up, type Vec3, vec3, writeVec3, zero } from '../math/vec3';
+import { makeJointPoses } from './file-motion';
+import { poseBones } from './motion';
 import { type MotionBone, motionSkeleton, turnPoint } from './skeleton';
 import { BoneRotations } from './take-motion';
 
@@ -84,9 +85,7 @@ function addHand(joints: Joints, side: Side): void {
   const ahead = side === 'left' ? right : left;
   joints.list.push({ name: `${side}-hand-wrist`, bone: joints.index(hand), at: zero, rest: axesAlong(ahead, up) });
   for (const finger of fingerNames) {
-    const [first, second, third] = fingerBones(finger[0]!.toUpperCase() + finger.slice(1)).map(
-      (bone) => `${side}${bone}`,
-    ) as [string, string, string];
+    const [first, second, third] = fingerBonesOf(side, finger);
     const called = `${side}-hand-${finger}`;
     // The nail of a thumb looks up and outward.
     const above = finger === 'thumb' ? normalise(vec3(side === 'left' ? -1 : 1, 1, 1)) : up;
@@ -157,7 +156,7 @@ export class XRBodyPoser {
       rotations: new Float32Array(4 * measured),
       seen: new Uint8Array(1),
     };
-    this.#posed = makePosedBones(this.#motion);
+    this.#posed = makeJointPoses(this.#bones.length);
     this.#poses = new Map(this.#joints.map(({ name }) => [name, makePose<'floor'>()]));
   }
 
@@ -169,10 +168,7 @@ export class XRBodyPoser {
   /** Returns the joints of a pose; the next call overwrites them. `deltaSeconds`: since the last call. */
   pose(body: UpperBodyPose, fingers: Fingers = unknownFingers, deltaSeconds = 0): XRBodyJoints {
     const { hips, rotations } = this.#motion;
-    const at = turnPoint(body.hipsPosition, place);
-    hips[0] = at.x;
-    hips[1] = at.y;
-    hips[2] = at.z;
+    writeVec3(turnPoint(body.hipsPosition, place), hips, 0);
     this.#rotations.write(body, fingers, deltaSeconds, rotations, 0);
     const posed = poseBones(this.#motion, 0, this.#posed);
     for (const { name, bone, at, rest } of this.#joints) {

@@ -1,7 +1,7 @@
 import type { JointName } from '../body/joints';
 import { allFinite } from '../math/all-finite';
 import { sides } from '../math/side';
-import { type MutableVec3, setVec3 } from '../math/vec3';
+import { type MutableVec3, readVec3 } from '../math/vec3';
 
 /**
  * The joints of WebXR Body Tracking that are used, in the specification's order: all but those within a hand, whose
@@ -52,10 +52,8 @@ const places = {
 export type SharedJoint = keyof typeof places;
 
 /** Returns the device's position of this joint [m], floor frame. */
-export function deviceJoint(body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 {
-  const at = places[joint];
-  return setVec3(target, body[at]!, body[at + 1]!, body[at + 2]!);
-}
+export const deviceJoint = (body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 =>
+  readVec3(body, places[joint], target);
 
 /** Interpolates between two bodies, joint by joint; share 0: the first. */
 export function mixDeviceBodies(

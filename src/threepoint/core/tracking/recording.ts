@@ -1,6 +1,7 @@
 import type { Calibration } from '../body/calibration';
 import { type Fingers, fingerNames, type HandShape, limitBend, makeHandShape, mixHandShape } from '../body/hand-shape';
 import type { HandTilts } from '../body/hand-tilt';
+import { isFiniteNumber, isObject } from '../json';
 import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
@@ -107,7 +108,7 @@ export function cutRecording(
  */
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
-  if (!isRecord(file) || file.format !== format) throw new Error('This file is not a threepoint recording.');
+  if (!isObject(file) || file.format !== format) throw new Error('This file is not a threepoint recording.');
   const written = file.version;
   if (!isFiniteNumber(written) || !Number.isInteger(written) || written < 1 || written > version) {
     throw new Error(`The recording has version ${String(written)}; this page reads versions 1 to ${version}.`);
@@ -151,16 +152,11 @@ function placeOfSyntaxError(text: string, message: string): string {
   return lines.length > 3 && broken >= 0 ? `: line ${broken + 2} is damaged` : `: ${message}`;
 }
 
-const isRecord = (value: unknown): value is Record<string, unknown> =>
-  typeof value === 'object' && value !== null && !Array.isArray(value);
-
-const isFiniteNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
-
 /** Returns the tilts of the hands that have one; null: neither has. */
 function parseHandTilts(value: unknown): HandTilts | null {
-  if (!isRecord(value)) return null;
+  if (!isObject(value)) return null;
   const tiltOf = (tilt: unknown) =>
-    isRecord(tilt) && isFiniteNumber(tilt.pitch) && isFiniteNumber(tilt.yaw)
+    isObject(tilt) && isFiniteNumber(tilt.pitch) && isFiniteNumber(tilt.yaw)
       ? { pitch: tilt.pitch, yaw: tilt.yaw }
       : null;
   const [left, right] = [tiltOf(value.left), tiltOf(value.right)];
@@ -169,7 +165,7 @@ function parseHandTilts(value: unknown): HandTilts | null {
 
 function parseCalibration(value: unknown): Calibration | null {
   if (value === null || value === undefined) return null;
-  if (isRecord(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
+  if (isObject(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
     const { eyeHeight, armSpan, forearm, gazePitch } = value;
     const handTilts = parseHandTilts(value.handTilts);
     if (eyeHeight > 0 && armSpan > 0) {

@@ -2,7 +2,7 @@ import { copyHandShape, type HandShape, type MutableHandShape, makeHandShape, mi
 import { copyPose, type MutableTrackedPose, makeTrackedPose, type TrackedPose } from '../math/pose';
 import { fromAxisAngle, multiply, quat, slerp } from '../math/quat';
 import { seedAfter, uniformOf } from '../math/random';
-import type { Side } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
 import type { Mutable } from '../records';
 import { deviceBodySize, mixDeviceBodies } from './device-body';
@@ -21,7 +21,6 @@ export interface TrackingImpairments {
 export const mostLatencyMs = 200;
 /** The number of buffered frames: the longest latency at 300 Hz. */
 const kept = 64;
-const sides = ['left', 'right'] as const;
 const handOf = { left: 'leftHand', right: 'rightHand' } as const;
 
 /** A buffered hand of a frame. */
