@@ -13,7 +13,8 @@ import torch
 from numpy.typing import NDArray
 
 from . import hand_tilt, notice_hand_tilts
-from .augment import AugmentConfig, BodyParts, draw_batch
+from .augment import AugmentConfig, draw_batch
+from .body_parts import BodyParts
 from .chest_features import CHEST_FEATURES
 from .differentiable_kinematics import DifferentiableKinematics
 from .features import FEATURES, frame_features
