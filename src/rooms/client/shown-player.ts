@@ -1,4 +1,4 @@
-import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import { type MutableUpperBodyPose, makeUpperBodyPose, type UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import {
   copyHandShape,
   type HandShape,
@@ -6,9 +6,9 @@ import {
   makeHandShape,
   mixHandShape,
 } from 'threepoint/core/body/hand-shape';
-import { type JointName, jointNames } from 'threepoint/core/body/joints';
+import { jointNames } from 'threepoint/core/body/joints';
 import { type MutableTrackedPose, makeTrackedPose, type TrackedPose } from 'threepoint/core/math/pose';
-import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
+import { copyQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
 import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
@@ -17,26 +17,13 @@ import type { PathFit, PathSample } from './path-fit';
 /** The pose of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
 
-interface MutableBody {
-  readonly hipsPosition: MutableVec3;
-  readonly localRotations: Readonly<Record<JointName, MutableQuat>>;
-}
-
-const makeBody = (): MutableBody => ({
-  hipsPosition: vec3(0, 0, 0),
-  localRotations: Object.fromEntries(jointNames.map((name) => [name, quat(0, 0, 0, 1)])) as Record<
-    JointName,
-    MutableQuat
-  >,
-});
-
 /** A buffer for the drawn pose of a player; methods may use the buffer itself as a source. */
 export class ShownPlayer implements Shown {
   readonly pose: {
     readonly head: MutableTrackedPose;
     leftHand: MutableTrackedPose | null;
     rightHand: MutableTrackedPose | null;
-    body: MutableBody | null;
+    body: MutableUpperBodyPose | null;
   };
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   placement: FloorPlacement | null = null;
@@ -44,7 +31,7 @@ export class ShownPlayer implements Shown {
     left: makeTrackedPose(),
     right: makeTrackedPose(),
   };
-  private readonly body = makeBody();
+  private readonly body = makeUpperBodyPose();
   private readonly placed = { position: vec3(0, 0, 0), heading: 0 };
   private readonly shapes = { left: makeHandShape(), right: makeHandShape() };
 
@@ -154,7 +141,11 @@ function fitTracked(
   return target;
 }
 
-function fitBody(samples: readonly PathSample[], { first, count, shares }: PathFit, target: MutableBody): MutableBody {
+function fitBody(
+  samples: readonly PathSample[],
+  { first, count, shares }: PathFit,
+  target: MutableUpperBodyPose,
+): MutableUpperBodyPose {
   const { hipsPosition } = target;
   setVec3(hipsPosition, 0, 0, 0);
   for (let i = 0; i < count; i++) {
@@ -184,7 +175,7 @@ function mixHand(
   return held && copyTracked(held, target);
 }
 
-function copyBody(from: UpperBodyPose, target: MutableBody): MutableBody {
+function copyBody(from: UpperBodyPose, target: MutableUpperBodyPose): MutableUpperBodyPose {
   copyVec3(from.hipsPosition, target.hipsPosition);
   for (let i = 0; i < jointNames.length; i++) {
     const name = jointNames[i]!;
@@ -193,7 +184,12 @@ function copyBody(from: UpperBodyPose, target: MutableBody): MutableBody {
   return target;
 }
 
-function mixBody(a: UpperBodyPose | null, b: UpperBodyPose | null, t: number, target: MutableBody): MutableBody | null {
+function mixBody(
+  a: UpperBodyPose | null,
+  b: UpperBodyPose | null,
+  t: number,
+  target: MutableUpperBodyPose,
+): MutableUpperBodyPose | null {
   if (!a || !b) {
     const held = t < 1 ? a : b;
     return held && copyBody(held, target);
