@@ -35,6 +35,16 @@ const documents = {
   'models/accuracy.md': 'docs/accuracy.md',
 };
 
+/** Returns a manifest's exports without those that only this repository can resolve. */
+export function builtExports(exports) {
+  const outside = Object.entries(exports).flatMap(([name, target]) => {
+    if (typeof target === 'string') return [[name, target]];
+    const { source: _, ...built } = target;
+    return Object.keys(built).length > 0 ? [[name, built]] : [];
+  });
+  return Object.fromEntries(outside);
+}
+
 /**
  * Returns the manifest to publish: without sources and internal rooms. It has no dependencies: all but the peers is
  * bundled.
@@ -42,17 +52,12 @@ const documents = {
 function published() {
   const { private: _, devDependencies: __, dependencies: ___, exports, ...rest } = own;
   const { engines } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
-  const outside = Object.entries(exports).flatMap(([name, target]) => {
-    if (typeof target === 'string') return [[name, target]];
-    const { source: ____, ...built } = target;
-    return Object.keys(built).length > 0 ? [[name, built]] : [];
-  });
   return {
     ...rest,
     engines,
     // The worker's modules answer messages; a bundler would drop the others' imports for side effects.
     sideEffects: ['./onnx-worker.js', './onnx/inference-worker.js'],
-    exports: Object.fromEntries(outside),
+    exports: builtExports(exports),
   };
 }
 

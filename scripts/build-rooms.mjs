@@ -3,7 +3,7 @@
 import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { rolldown } from 'rolldown';
-import { documentInPackage, writeDeclarations } from './build-library.mjs';
+import { builtExports, documentInPackage, writeDeclarations } from './build-library.mjs';
 import { mainOf, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 
@@ -55,14 +55,7 @@ function published() {
   return {
     ...rest,
     sideEffects: false,
-    exports: {
-      ...Object.fromEntries(
-        Object.entries(exports).flatMap(([name, { source: _source, ...built }]) =>
-          Object.keys(built).length > 0 ? [[name, built]] : [],
-        ),
-      ),
-      './package.json': './package.json',
-    },
+    exports: { ...builtExports(exports), './package.json': './package.json' },
     dependencies: Object.fromEntries(Object.entries(dependencies).filter(([name]) => !bundled.includes(name))),
   };
 }

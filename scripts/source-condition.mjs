@@ -1,5 +1,5 @@
 /** The export condition under which this project's packages export their sources, so that they run without a build. */
-export const sourceCondition = 'source';
+const sourceCondition = 'source';
 
 /** Returns a bundler's resolve options that map these packages to their sources; `platform`: 'browser' or 'node'. */
 export const sourceResolution = (platform) => ({

@@ -1,4 +1,4 @@
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { softwareIn } from 'threepoint-http/software';
@@ -53,7 +53,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     trustProxy: relaying.trustProxy,
     log,
   });
-  const connectionLimiter = createConnectionLimiter({
+  const connectionLimiter = new ConnectionLimiter({
     perAddress: relaying.connectionsPerAddress,
     behindProxy: relaying.trustProxy,
   });

@@ -1,5 +1,5 @@
 import { parentPort } from 'node:worker_threads';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { loadStudyPlugins } from 'threepoint-study/server/plugins/load-plugins';
 import { serveStudies } from 'threepoint-study/server/thread';
 
@@ -7,4 +7,7 @@ import { serveStudies } from 'threepoint-study/server/thread';
 
 if (!parentPort) throw new Error('study-thread-work.ts runs in a worker thread, which the study service starts');
 await loadStudyPlugins(process.env);
-serveStudies(parentPort, (secret, now) => createRoomTokens(secret, now).sign);
+serveStudies(parentPort, (secret, now) => {
+  const tokens = new RoomTokens(secret, now);
+  return (pass) => tokens.sign(pass);
+});

@@ -12,7 +12,7 @@ import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { WebSocket } from 'ws';
 import { countingKind } from '../../tests/rooms/room/counting-game';
 import type { ClientAnswer, Farewell, Load, Meeting, PoseLatencies } from './conversation';
@@ -290,7 +290,7 @@ class Crowd {
   /** Another room, with people who come one after the other: its seats are given in that order. */
   async #open(): Promise<void> {
     const { relay, secret, room: people, plays = false } = this.#meeting;
-    const tokens = createRoomTokens(secret, () => Date.now() / 1000);
+    const tokens = new RoomTokens(secret, () => Date.now() / 1000);
     const roomName = `room-${this.#rooms.length}`;
     const room: Client[] = [];
     for (let seat = 0; seat < people; seat++) {

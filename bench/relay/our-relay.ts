@@ -1,5 +1,5 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { mostSeats } from 'threepoint-rooms/protocol/messages';
@@ -10,7 +10,7 @@ import { countingKind, countingPolicy } from '../../tests/rooms/room/counting-ga
 import { answerAsRelay } from './conversation';
 
 const configuration = relayConfigurationFrom(process.env);
-const connectionLimiter = createConnectionLimiter({
+const connectionLimiter = new ConnectionLimiter({
   perAddress: configuration.connectionsPerAddress,
   behindProxy: configuration.trustProxy,
 });

@@ -30,7 +30,7 @@ export interface MotionRequest {
 }
 
 /** An error whose message is shown without a stack. */
-export class MotionError extends Error {}
+class MotionError extends Error {}
 
 const root = join(import.meta.dirname, '../..');
 

@@ -1,16 +1,6 @@
 import type { Socket } from 'node:net';
 import { parseClientAddress } from './client-address';
 
-/** Counts the open connections, and limits those of one address. */
-export interface ConnectionLimiter {
-  /** Open connections, silent ones included. */
-  readonly open: number;
-  /** Connections refused since the start because their address had too many. */
-  readonly refused: number;
-  /** Counts a connection until it closes. Destroys it and returns false where its address has reached the limit. */
-  admit(socket: Socket): boolean;
-}
-
 export interface ConnectionLimiterOptions {
   /** Open connections allowed for one address. */
   readonly perAddress: number;
@@ -36,31 +26,40 @@ export function createSlotCounter(most: number): { acquire(key: string): boolean
   };
 }
 
-export function createConnectionLimiter({ perAddress, behindProxy }: ConnectionLimiterOptions): ConnectionLimiter {
-  const addresses = createSlotCounter(behindProxy ? Number.POSITIVE_INFINITY : perAddress);
-  let open = 0;
-  let refused = 0;
-  return {
-    get open() {
-      return open;
-    },
-    get refused() {
-      return refused;
-    },
-    admit(socket) {
-      // A connection that was closed before it was accepted has no address.
-      const network = parseClientAddress(socket.remoteAddress ?? '')?.network;
-      if (network === undefined || !addresses.acquire(network)) {
-        if (network !== undefined) refused += 1;
-        socket.on('error', () => undefined).destroy();
-        return false;
-      }
-      open += 1;
-      socket.once('close', () => {
-        open -= 1;
-        addresses.release(network);
-      });
-      return true;
-    },
-  };
+/** Counts the open connections, and limits those of one address. */
+export class ConnectionLimiter {
+  readonly #addresses: ReturnType<typeof createSlotCounter>;
+  #open = 0;
+  #refused = 0;
+
+  constructor({ perAddress, behindProxy }: ConnectionLimiterOptions) {
+    this.#addresses = createSlotCounter(behindProxy ? Number.POSITIVE_INFINITY : perAddress);
+  }
+
+  /** Open connections, silent ones included. */
+  get open(): number {
+    return this.#open;
+  }
+
+  /** Connections refused since the start because their address had too many. */
+  get refused(): number {
+    return this.#refused;
+  }
+
+  /** Counts a connection until it closes. Destroys it and returns false where its address has reached the limit. */
+  admit(socket: Socket): boolean {
+    // A connection that was closed before it was accepted has no address.
+    const network = parseClientAddress(socket.remoteAddress ?? '')?.network;
+    if (network === undefined || !this.#addresses.acquire(network)) {
+      if (network !== undefined) this.#refused += 1;
+      socket.on('error', () => undefined).destroy();
+      return false;
+    }
+    this.#open += 1;
+    socket.once('close', () => {
+      this.#open -= 1;
+      this.#addresses.release(network);
+    });
+    return true;
+  }
 }

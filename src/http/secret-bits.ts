@@ -1,5 +1,5 @@
 /** The least entropy of a secret [bits]: 2^128 guesses are out of reach. */
-export const fewestSecretBits = 128;
+const fewestSecretBits = 128;
 
 /** Alphabets, smallest first; the first one that contains the whole secret decides the bits of a character. */
 const alphabets = [

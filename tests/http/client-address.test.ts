@@ -2,7 +2,7 @@ import { once } from 'node:events';
 import { BlockList, connect, Socket } from 'node:net';
 import fc from 'fast-check';
 import { parseClientAddress } from 'threepoint-http/client-address';
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
 import { reportFigures } from '../reliability/report-figures';
 import { startRelay } from '../rooms/server/running-relay';
@@ -129,7 +129,7 @@ test('an IPv6 address lies in its network, and any text gives an address or null
 });
 
 test('connections without a proxy are counted by the /64, too', () => {
-  const limiter = createConnectionLimiter({ perAddress: 8, behindProxy: false });
+  const limiter = new ConnectionLimiter({ perAddress: 8, behindProxy: false });
   const admitted = Array.from({ length: 300 }, (_, i) => {
     const socket = new Socket();
     onTestFinished(() => void socket.destroy());

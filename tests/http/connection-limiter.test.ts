@@ -1,7 +1,7 @@
 import { once } from 'node:events';
 import { connect, type Socket } from 'node:net';
 import { connect as connectTls } from 'node:tls';
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
@@ -198,7 +198,7 @@ test('a connection that does not say what it wants is ended at the deadline: tol
 });
 
 test('an answer that is not read is not kept for ever', { tags: ['full'] }, async () => {
-  const connectionLimiter = createConnectionLimiter({ perAddress: 8, behindProxy: false });
+  const connectionLimiter = new ConnectionLimiter({ perAddress: 8, behindProxy: false });
   const page = createPageHandler(directoryWith({ 'index.html': Buffer.alloc(32e6) }));
   const server = await serve(page, { host: '127.0.0.1', port: 0, connectionLimiter, silenceMs: 500 });
   onTestFinished(() => server.close());

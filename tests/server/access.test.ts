@@ -4,7 +4,7 @@ import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener 
 import { join } from 'node:path';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { writeRecording } from 'threepoint/core/tracking/recording';
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { prepareServer } from 'threepoint-http/web-server';
@@ -57,7 +57,7 @@ async function wholeServer() {
     THREEPOINT_ADMIN_TOKEN: adminToken,
   };
   const configuration = relayConfigurationFrom(environment);
-  const connectionLimiter = createConnectionLimiter({ perAddress: 100, behindProxy: true });
+  const connectionLimiter = new ConnectionLimiter({ perAddress: 100, behindProxy: true });
   const studies = studiesInThisThread({ store, file });
   const prepared = prepareServer(createRouter([studies], page, createSitePolicy(configuration)), { connectionLimiter });
   const rooms = attachRooms(prepared.http, {

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from threepoint_training import hand_tilt, mirror, quaternion
-from threepoint_training.augment import AugmentConfig, BalanceConfig, BodyParts, draw_batch
+from threepoint_training.augment import AugmentConfig, draw_batch
+from threepoint_training.body_parts import BalanceConfig, BodyParts
 from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
 from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, HEADSET_HEIGHT, IK_JOINTS, SEEN, frame_features
 from threepoint_training.generated_motion import generate_corpus

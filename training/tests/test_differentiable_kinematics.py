@@ -7,7 +7,8 @@ import pytest
 import torch
 from golden_file import assert_as_committed
 from threepoint_training import golden
-from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
+from threepoint_training.augment import AugmentConfig, draw_batch
+from threepoint_training.body_parts import BodyParts
 from threepoint_training.chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, REACH_LENGTHS
 from threepoint_training.differentiable_kinematics import DifferentiableKinematics
 from threepoint_training.features import ARM_LENGTH, IK_JOINTS

@@ -104,16 +104,34 @@ def write_map(path: Path, **entries: object) -> Path:
     return path
 
 
-@pytest.mark.parametrize("axis", [X, Y, -Y, Z])
-def test_a_skeleton_folded_along_an_axis_is_read_as_the_plain_one(tmp_path: Path, axis: np.ndarray) -> None:
-    turns, hips = moving()
-    plain = folder(tmp_path, "plain/p")
-    (plain / "walk.bvh").write_text(game_bvh({name: IDENTITY for name in along(axis)}, turns, hips)[0])
-    expected = prepared(plain.parent)
-    folded = folder(tmp_path, "folded/p")
-    (folded / "walk.bvh").write_text(game_bvh(along(axis), turns, hips)[0])
-    corpus = prepared(folded.parent)
-    np.testing.assert_allclose(corpus.positions, expected.positions, atol=1e-5)
+def people_folded(parent: Path, axes: dict[str, np.ndarray]) -> dict[str, list[float]]:
+    """Writes the same motion by skeletons that are folded along these axes, for each a person of that name; returns the
+    last one's angles in T-pose.
+    """
+    for name, axis in axes.items():
+        text, t_pose = game_bvh(along(axis), *moving())
+        (folder(parent, name) / f"{name}.bvh").write_text(text)
+    return t_pose
+
+
+def write_plain(parent: Path) -> None:
+    rest = {name: IDENTITY for name in along(X)}
+    (folder(parent, "plain") / "plain.bvh").write_text(game_bvh(rest, *moving())[0])
+
+
+def frames_by_person(corpus: PreparedCorpus) -> dict[str, slice]:
+    return {person: corpus.clip_slice(clip) for clip, person in enumerate(corpus.clip_people)}
+
+
+def test_a_skeleton_folded_along_an_axis_is_read_as_the_plain_one(tmp_path: Path) -> None:
+    write_plain(tmp_path)
+    people_folded(tmp_path, {"x": X, "y": Y, "down": -Y, "z": Z})
+    corpus = prepared(tmp_path)
+    frames = frames_by_person(corpus)
+    for name in ("x", "y", "down", "z"):
+        np.testing.assert_allclose(
+            corpus.positions[frames[name]], corpus.positions[frames["plain"]], atol=1e-5, err_msg=name
+        )
     assert "no T-pose" in corpus.problems[0]
 
 
@@ -126,23 +144,25 @@ def test_one_bad_file_does_not_end_the_reading_of_the_others(tmp_path: Path) -> 
     assert corpus.problems[0].startswith("a_1.bvh: line ")
 
 
-@pytest.mark.parametrize("axis", [X, -Y, Z])
-def test_a_map_with_the_t_pose_reads_a_folded_skeleton(tmp_path: Path, axis: np.ndarray) -> None:
-    turns, hips = moving()
-    plain = folder(tmp_path, "plain/p")
-    (plain / "walk.bvh").write_text(game_bvh({name: IDENTITY for name in along(axis)}, turns, hips)[0])
-    expected = prepared(plain.parent)
-    text, t_pose = game_bvh(along(axis), turns, hips)
-    folded = folder(tmp_path, "folded/p")
-    (folded / "walk.bvh").write_text(text)
-    (tmp_path / "t-pose.bvh").write_text(text)
+def test_a_map_with_the_t_pose_reads_a_folded_skeleton(tmp_path: Path) -> None:
+    write_plain(tmp_path / "plain")
+    expected = prepared(tmp_path / "plain")
+    people_folded(tmp_path / "folded", {"x": X, "down": -Y})
+    t_pose = people_folded(tmp_path / "z", {"z": Z})
+    (tmp_path / "t-pose.bvh").write_text((tmp_path / "z/z/z.bvh").read_text())
     # The first frame is a T-pose that stands turned and elsewhere.
-    for entry in ({"restPose": t_pose}, {"restFrame": 1}, {"restFrame": {"file": "t-pose.bvh", "frame": 1}}):
-        corpus = prepared(folded.parent, write_map(tmp_path / "map.json", **entry))
-        np.testing.assert_allclose(corpus.positions, expected.positions, atol=1e-5)
-        np.testing.assert_allclose(corpus.legs, expected.legs, atol=1e-5)
-        assert np.abs(np.sum(corpus.rotations * expected.rotations, axis=-1)).min() > 1 - 1e-6
-        assert corpus.people["p"].eye_height == pytest.approx(expected.people["p"].eye_height, abs=1e-6)
+    for people, entry in (
+        ("folded", {"restFrame": 1}),
+        ("z", {"restPose": t_pose}),
+        ("z", {"restFrame": {"file": "t-pose.bvh", "frame": 1}}),
+    ):
+        corpus = prepared(tmp_path / people, write_map(tmp_path / "map.json", **entry))
+        for name, frames in frames_by_person(corpus).items():
+            np.testing.assert_allclose(corpus.positions[frames], expected.positions, atol=1e-5)
+            np.testing.assert_allclose(corpus.legs[frames], expected.legs, atol=1e-5)
+            assert np.abs(np.sum(corpus.rotations[frames] * expected.rotations, axis=-1)).min() > 1 - 1e-6
+            eyes = expected.people["plain"].eye_height
+            assert corpus.people[name].eye_height == pytest.approx(eyes, abs=1e-6)
 
 
 @pytest.mark.parametrize(

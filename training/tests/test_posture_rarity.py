@@ -2,7 +2,7 @@
 
 import numpy as np
 from threepoint_training import posture_rarity
-from threepoint_training.augment import BalanceConfig, BodyParts
+from threepoint_training.body_parts import BalanceConfig, BodyParts
 from threepoint_training.generated_motion import generate_corpus
 
 

@@ -51,16 +51,24 @@ def save(figure: Figure, folder: Path, name: str) -> None:
     plt.close(figure)
 
 
+def panels_of(rows: int, columns: int, height: float, **options: Any) -> tuple[Figure, Any]:
+    """A figure as wide as the page, with one panel or an array of them."""
+    return plt.subplots(rows, columns, figsize=(WIDTH, height), layout="constrained", **options)
+
+
+def note(axes: Axes, text: str, at: tuple[float, float], **options: Any) -> None:
+    """A text beside this place, by an offset in points."""
+    axes.annotate(text, at, textcoords="offset points", **options)
+
+
 def label_ends(axes: Axes, ends: dict[str, tuple[float, str, str]], least: float) -> None:
     """Names at the right ends of lines, {key: (y, text, colour)}, pushed apart to `least` in units of y."""
     placed: list[float] = []
     for _, (y, text, colour) in sorted(ends.items(), key=lambda item: item[1][0]):
         at = max(y, placed[-1] + least) if placed else y
         placed.append(at)
-        axes.annotate(
-            text, (1, at), xycoords=("axes fraction", "data"), xytext=(6, 0), textcoords="offset points",
-            va="center", color=colour, fontweight="bold", annotation_clip=False,
-        )  # fmt: skip
+        place = {"xycoords": ("axes fraction", "data"), "xytext": (6, 0), "annotation_clip": False}
+        note(axes, text, (1, at), va="center", color=colour, fontweight="bold", **place)
 
 
 def learning_curve(contract: Json, folder: Path) -> bool:
@@ -68,7 +76,7 @@ def learning_curve(contract: Json, folder: Path) -> bool:
     curve = contract.get("learningCurve")
     if curve is None:
         return False
-    figure, axes = plt.subplots(figsize=(WIDTH, 3.4), layout="constrained")
+    figure, axes = panels_of(1, 1, 3.4)
     epochs = curve["epochs"]
     axes.plot(epochs, curve["test"], color=COLOURS["ik"], marker="s")
     axes.plot(epochs, curve["train"], color=COLOURS["learned"], marker="o")
@@ -89,7 +97,7 @@ def learning_curve(contract: Json, folder: Path) -> bool:
 
 def right_shoulder(trace: Json, folder: Path) -> None:
     """The paper's figure 5: the error of the right shoulder over time in one clip."""
-    figure, axes = plt.subplots(figsize=(WIDTH, 3.4), layout="constrained")
+    figure, axes = panels_of(1, 1, 3.4)
     ends = {}
     for method, colour in COLOURS.items():
         errors = np.array(trace["rightShoulderCm"][method])
@@ -105,7 +113,7 @@ def right_shoulder(trace: Json, folder: Path) -> None:
 def by_joint(evaluation: Json, folder: Path) -> None:
     """Median and 95th percentile by joint."""
     figures = held_out(evaluation)
-    figure, axes = plt.subplots(figsize=(WIDTH, 4.5), layout="constrained")
+    figure, axes = panels_of(1, 1, 4.5)
     rows = np.arange(len(JOINTS))[::-1]
     for number, (method, colour) in enumerate(COLOURS.items()):
         y = rows + 0.27 * (1 - number)
@@ -114,16 +122,8 @@ def by_joint(evaluation: Json, folder: Path) -> None:
         axes.hlines(y, median, p95, color=colour, linewidth=2, alpha=0.55)
         axes.plot(median, y, MARKS[method], color=colour)
         axes.plot(p95, y, "|", color=colour, markersize=9, markeredgewidth=2)
-        axes.annotate(
-            NAMES[method],
-            (p95[-1], y[-1]),
-            xytext=(8, 0),
-            textcoords="offset points",
-            va="center",
-            color=colour,
-            fontweight="bold",
-            fontsize=9,
-        )
+        style = {"va": "center", "color": colour, "fontweight": "bold", "fontsize": 9}
+        note(axes, NAMES[method], (p95[-1], y[-1]), xytext=(8, 0), **style)
     axes.set_yticks(rows, JOINTS.values())
     axes.set(xlabel="error [cm]: mark = median, end of the line = 95th percentile", xlim=(0, None))
     axes.margins(x=0.09)
@@ -137,25 +137,20 @@ def train_and_test(evaluation: Json, folder: Path) -> bool:
     """The paper's table 1 as a figure: MSE by joint on people trained on and held out."""
     if "seen" not in evaluation:
         return False
-    figure, panels = plt.subplots(1, 3, figsize=(WIDTH, 3.3), sharex=True, sharey=True, layout="constrained")
-    rows = np.arange(len(JOINTS))[::-1]
+    figure, panels = panels_of(1, 3, 3.3, sharex=True, sharey=True)
+    rows, largest = np.arange(len(JOINTS))[::-1], 0.0
     for axes, (method, colour) in zip(panels, COLOURS.items(), strict=True):
         seen, unseen = (
             np.array([evaluation[side][method]["jointMseCm2"][joint] for joint in JOINTS])
             for side in ("seen", "unseen")
         )
+        largest = max(largest, seen.max(), unseen.max())
         axes.hlines(rows, seen, unseen, color=colour, linewidth=2, alpha=0.4)
         axes.plot(seen, rows, MARKS[method], color=colour, markerfacecolor="white", markeredgewidth=1.6)
         axes.plot(unseen, rows, MARKS[method], color=colour)
         axes.set_yticks(rows, JOINTS.values())
         axes.grid(axis="y", visible=False)
         axes.set_title(NAMES[method], color=colour)
-    largest = max(
-        evaluation[side][method]["jointMseCm2"][joint]
-        for side in ("seen", "unseen")
-        for method in COLOURS
-        for joint in JOINTS
-    )
     panels[0].set_xlim(0, 1.07 * largest)
     figure.supxlabel("MSE per coordinate [cm²]: hollow = people trained on, filled = people held out", fontsize=10)
     save(figure, folder, "train-and-test")
@@ -165,7 +160,7 @@ def train_and_test(evaluation: Json, folder: Path) -> bool:
 def losses(evaluation: Json, folder: Path) -> None:
     """Error while a hand is not seen, relative to the same frames with it seen."""
     estimators = evaluation["robustness"]["estimators"]
-    figure, panels = plt.subplots(1, 2, figsize=(WIDTH, 3.3), layout="constrained")
+    figure, panels = panels_of(1, 2, 3.3)
     durations = [0] + [loss["milliseconds"] for loss in estimators["ik"]["losses"]]
     at = np.arange(len(durations))
     for axes, figure_name, title, aim in (
@@ -181,9 +176,7 @@ def losses(evaluation: Json, folder: Path) -> None:
             axes.plot(at, ratios, color=colour, marker=MARKS[method])
             ends[method] = (ratios[-1], NAMES[method], colour)
         axes.axhline(aim, color=FAINT, linestyle=(0, (2, 2)), linewidth=1.2, zorder=1)
-        axes.annotate(
-            f"aim for 2 s: {aim} ×", (0, aim), xytext=(0, 4), textcoords="offset points", color="#666666", fontsize=9
-        )
+        note(axes, f"aim for 2 s: {aim} ×", (0, aim), xytext=(0, 4), color="#666666", fontsize=9)
         axes.set_xticks(at, [f"{ms} ms" if ms < 1000 else f"{ms // 1000} s" for ms in durations])
         low, high = axes.get_ylim()
         axes.set(ylim=(min(low, 0.97), high + 0.04 * (high - low)), xlabel="hand not seen for")
@@ -196,7 +189,7 @@ def losses(evaluation: Json, folder: Path) -> None:
 def offsets(evaluation: Json, folder: Path) -> None:
     """What a tracker mounted elsewhere adds to the error, by axis."""
     estimators = evaluation["robustness"]["estimators"]
-    figure, panels = plt.subplots(2, 3, figsize=(WIDTH, 5.0), sharex=True, sharey=True, layout="constrained")
+    figure, panels = panels_of(2, 3, 5.0, sharex=True, sharey=True)
     directions = {
         "headset": ("x: to the right", "y: up", "z: backwards"),
         "grips": ("x: to the outside of the hand", "y: out of the back of the hand", "z: towards the forearm"),
@@ -232,7 +225,8 @@ def offsets(evaluation: Json, folder: Path) -> None:
 def wrong_measures(evaluation: Json, folder: Path) -> None:
     """What a wrong calibration adds to the error."""
     estimators = evaluation["robustness"]["estimators"]
-    figure, panels = plt.subplots(1, 2, figsize=(WIDTH, 3.2), sharey=True, layout="constrained")
+    figure, panels = panels_of(1, 2, 3.2, sharey=True)
+    values, all_ends = [0.0], []
     for axes, key, title in ((panels[0], "heights", "Eye height wrong by"), (panels[1], "spans", "Arm span wrong by")):
         if key == "heights":
             axes.axhspan(0.2, 10, color="#f0f0f0", zorder=0)
@@ -243,30 +237,18 @@ def wrong_measures(evaluation: Json, folder: Path) -> None:
             points = sorted([(h["percent"], h["mpjpeCm"] - clean) for h in estimators[method][key]] + [(0, 0.0)])
             axes.plot(*zip(*points, strict=True), color=colour, marker=MARKS[method])
             ends[method] = (points[-1][1], NAMES[method], colour)
+            values += [added for _, added in points]
         ticks = [percent for percent, _ in points]
         axes.set_xticks(ticks, [f"{'−' if percent < 0 else ''}{abs(percent)} %" for percent in ticks])
         axes.set_title(title)
-        axes.ends = ends
-    values = [
-        h["mpjpeCm"] - estimators[m]["mpjpeCm"]
-        for m in COLOURS
-        for key in ("heights", "spans")
-        for h in estimators[m][key]
-    ]
-    low, high = min([*values, 0]) - 0.06, max([*values, 0.25]) + 0.06
+        all_ends.append(ends)
+    low, high = min(values) - 0.06, max(*values, 0.25) + 0.06
     panels[0].set_ylim(low, high)
-    for axes in panels:
-        label_ends(axes, axes.ends, 0.065 * (high - low))
+    for axes, ends in zip(panels, all_ends, strict=True):
+        label_ends(axes, ends, 0.065 * (high - low))
     panels[0].set_ylabel("added to the MPJPE [cm]")
-    panels[0].annotate(
-        "more than the aim allows",
-        (0, high),
-        xytext=(0, -11),
-        textcoords="offset points",
-        ha="center",
-        color="#666666",
-        fontsize=9,
-    )
+    style = {"ha": "center", "color": "#666666", "fontsize": 9}
+    note(panels[0], "more than the aim allows", (0, high), xytext=(0, -11), **style)
     save(figure, folder, "wrong-measures")
 
 
@@ -321,38 +303,21 @@ def poses(pictures: list[Json], folder: Path) -> None:
                 colour = TRUTH if method == "truth" else "#b8b8b8" if faint else COLOURS[method]
                 for bone in BONES:
                     x, y = np.transpose([_seen_from(body[joint], turn) for joint in bone])
-                    axes.plot(
-                        x - centre,
-                        y,
-                        color=colour,
-                        linewidth=4 if faint else 2.4,
-                        solid_capstyle="round",
-                        solid_joinstyle="round",
-                    )
+                    caps = {"solid_capstyle": "round", "solid_joinstyle": "round"}
+                    axes.plot(x - centre, y, color=colour, linewidth=4 if faint else 2.4, **caps)
                     if not faint:
                         axes.plot(x - centre, y, ".", color=colour, markersize=7)
                 x, y = _seen_from(body["head"], turn)
-                axes.add_patch(
-                    plt.Circle(
-                        (x - centre, y + head_height),
-                        head_radius,
-                        fill=False,
-                        color=colour,
-                        linewidth=3 if faint else 2.2,
-                    )
-                )
+                line = {"fill": False, "color": colour, "linewidth": 3 if faint else 2.2}
+                axes.add_patch(plt.Circle((x - centre, y + head_height), head_radius, **line))
             axes.set_aspect("equal")
             axes.set(xlim=(-half_width, half_width), ylim=(bottoms[row], tops[row]), xticks=[], yticks=[])
             axes.grid(visible=False)
             for spine in axes.spines.values():
                 spine.set_visible(False)
             if row == 0:
-                axes.set_title(
-                    NAMES.get(method, "truth"),
-                    color=TRUTH if method == "truth" else COLOURS[method],
-                    loc="center",
-                    fontsize=11,
-                )
+                colour = TRUTH if method == "truth" else COLOURS[method]
+                axes.set_title(NAMES.get(method, "truth"), color=colour, loc="center", fontsize=11)
             if column == 0:
                 axes.set_ylabel(picture["motion"].replace(" hand ", " hand\n"), fontsize=9.5, fontweight="bold")
     save(figure, folder, "six-motions")

@@ -10,34 +10,17 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, mirror, posture_rarity, quaternion
+from . import hand_tilt, mirror, quaternion
+from .body_parts import TORSO, BalanceConfig, BodyParts
 from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
-from .prepare import EYES_FROM_HEAD_JOINT
-from .prepared_corpus import PreparedCorpus, chest_axes_of, joints_of
+from .prepare import EYES_FROM_HEAD_JOINT, RATE_HZ
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_turns, measured_tilts
 from .skeleton import Body, body_from_calibration
 
-
 Array = NDArray[np.float64]
-
-TORSO = ("hips", "chest", "neck", "head")
-ARM = ("UpperArm", "LowerArm", "Hand")
-# The frame rate of the corpus [Hz].
-FRAME_RATE = 60
-
-
-@dataclass(frozen=True)
-class BalanceConfig:
-    """How often a frame is drawn: in proportion to (frames of its person)^-people · (frames of its posture's
-    cluster)^-postures.
-    """
-
-    people: float = 0.25
-    postures: float = 0.7
-    clusters: int = 200
 
 
 @dataclass(frozen=True)
@@ -72,93 +55,6 @@ class Batch:
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
-
-
-class BodyParts:
-    """The frames [F] of some people taken apart.
-
-    Torsos are in the floor frame [m]. Arms hang from the neck, in the frame of the chest by the true joints, `chest`
-    [F, 4]; left arms are kept as their mirror images, so that each arm is a right one.
-    """
-
-    def __init__(
-        self, corpus: PreparedCorpus, people: tuple[str, ...], balance: BalanceConfig = BalanceConfig()
-    ) -> None:
-        clips = corpus.clips_of(people)
-        frames = corpus.frames_of(people)
-        positions = corpus.positions[frames].astype(np.float64)
-        rotations = corpus.rotations[frames].astype(np.float64)
-        joint = joints_of(positions)
-        sizes = [
-            (corpus.people[corpus.clip_people[clip]].eye_height, corpus.people[corpus.clip_people[clip]].arm_span)
-            for clip in clips
-        ]
-        lengths = np.diff(corpus.clip_starts)[clips]
-        self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
-        self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
-        names = np.array([corpus.clip_people[clip] for clip in clips])
-        people_by_index, self.person = np.unique(np.repeat(names, lengths), return_inverse=True)
-
-        self.chest = quaternion.from_matrix(np.stack(chest_axes_of(joint), axis=-1))
-        self.torso = np.stack([joint[name] for name in TORSO], axis=1)
-        self.head_turn = rotations[:, 0]
-        inverse_chest = quaternion.conjugate(self.chest)
-        self.arms = []
-        self.wrist_turns = []
-        for side, turn in (("left", 1), ("right", 2)):
-            arm = np.stack([joint[f"{side}{part}"] for part in ARM], axis=1) - joint["neck"][:, None]
-            arm = quaternion.rotate(np.broadcast_to(inverse_chest[:, None], (*arm.shape[:-1], 4)), arm)
-            wrist = quaternion.multiply(inverse_chest, rotations[:, turn])
-            self.arms.append(arm * mirror.POSITION if side == "left" else arm)
-            self.wrist_turns.append(wrist * mirror.ROTATION if side == "left" else wrist)
-        forearms = hand_tilt.ForearmMeans(corpus, people)
-        own = np.stack([forearms.of(name) for name in people_by_index])
-        # Tilts of each person's left and right hand [P, 2, 2], both as of a right hand.
-        self.tilts = np.stack([own[:, 0] * mirror.TILT, own[:, 1]], axis=1)
-        self.arm_length = [
-            np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1)
-            for arm in self.arms
-        ]
-        # Shares of the left and the right forearm in their arm length [F, 2].
-        self.forearm_shares = np.stack(
-            [
-                np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length
-                for arm, length in zip(self.arms, self.arm_length, strict=True)
-            ],
-            axis=1,
-        )
-        weights = posture_rarity.frequency(self.person) ** -balance.people
-        if balance.postures > 0:
-            weights *= (
-                posture_rarity.frequency(posture_rarity.cluster(self._postures(), balance.clusters))
-                ** -balance.postures
-            )
-        self._cumulative_trunks, self._cumulative_arms = (
-            np.cumsum(each) / each.sum() for each in (weights, np.tile(weights, 2))
-        )
-
-    def _postures(self) -> Array:
-        """The posture [F, 16] of each frame, numbers of about equal spread: elbows and wrists from the neck in the
-        chest frame, in arm lengths; the room's up in the chest frame; the head's height, in half eye heights.
-        """
-        arms = [arm[:, 1:] / length[:, None, None] for arm, length in zip(self.arms, self.arm_length, strict=True)]
-        up = np.broadcast_to([0.0, 1.0, 0.0], (len(self.chest), 3))
-        lean = quaternion.rotate(quaternion.conjugate(self.chest), up)
-        height = self.torso[:, TORSO.index("head"), 1] / self.sizes[:, 0]
-        return np.concatenate([*(arm.reshape(len(arm), -1) for arm in arms), lean, 2 * height[:, None]], axis=1)
-
-    def draw_trunks(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
-        """Frames [N] to take trunks from, people balanced."""
-        return _drawn(self._cumulative_trunks, random, count)
-
-    def draw_arms(self, random: np.random.Generator, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Frames [N] to take arms from, people balanced, and which arm of each [N]: 0 the left, 1 the right."""
-        side, frame = np.divmod(_drawn(self._cumulative_arms, random, count), len(self.person))
-        return frame, side
-
-
-def _drawn(cumulative: Array, random: np.random.Generator, count: int) -> NDArray[np.int64]:
-    return np.searchsorted(cumulative, random.uniform(size=count)).clip(max=len(cumulative) - 1)
 
 
 @dataclass(frozen=True)
@@ -389,7 +285,7 @@ def _window_at(
             place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
         )
     positions, rotations = complete_hands(
-        positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0]
+        positions, rotations, unseen / RATE_HZ, calibrated.eye_height[:, 0], calibrated.arm[:, 0]
     )
     vector, _ = frame_features(positions, rotations, calibrated, unseen == 0)
     return _Reported(positions, rotations, vector)

@@ -78,17 +78,11 @@ def _cross_validate(
             frames = {row: train_paper.frames_of(corpus, people, config.seed) for row, people in rows.items()}
             trained["paper"], curve = fit_networks.followed_paper(run, training, next(iter(frames.values())), label)
             for row, test in frames.items():
-                found(
-                    f"paper, {row}",
-                    train_paper.joint_errors_cm(train_paper.predict(trained["paper"], test.inputs), test.targets),
-                )
+                found(f"paper, {row}", train_paper.errors_cm(trained["paper"], test))
         if "learned" in config.networks:
             trained["learned"] = fit_networks.learned(run, training, label)
             for row, test in tests.items():
-                found(
-                    f"learned, {row}",
-                    train_learned.fitted_errors_cm(train_paper.predict(trained["learned"], test.inputs), test),
-                )
+                found(f"learned, {row}", train_learned.errors_cm(trained["learned"], test))
     return trained, curve
 
 

@@ -95,7 +95,7 @@ def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     frames = paper_frames(run, trainable(tuple(run.corpus.people)), "frame-random")
     chosen, test = _frame_random_split(run, len(frames.inputs))
     network = paper(run, frames, "frame-random", chosen)
-    return train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs[test]), frames.targets[test])
+    return train_paper.errors_cm(network, frames, test)
 
 
 def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:

@@ -4,15 +4,9 @@ The file is what the ONNX graph beside it has: weights (levels of 8 bits with a 
 numbers), biases, normalisation, and the columns that make a mirror image and an arm's inputs. Little-endian, tensors
 one after the other, in the order of the contract's list: widest numbers first, so that each starts where a typed array
 may.
-
-    python -m threepoint_training.flat_weights    writes learned.bin for the learned.onnx of public/models, and names it in learned.json
 """
 
-import argparse
 import hashlib
-import json
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -84,26 +78,3 @@ def flat_file(model: onnx.ModelProto, file: str) -> tuple[bytes, dict[str, Any]]
         "sha256": hashlib.sha256(content).hexdigest(),
         "tensors": listed,
     }
-
-
-@dataclass(frozen=True)
-class FlatConfig:
-    """models: the folder with learned.onnx and its contract."""
-
-    models: Path = Path(__file__).parents[2] / "public/models"
-
-
-def main(config: FlatConfig) -> None:
-    """Writes learned.bin and names it in the contract."""
-    contract_file = config.models / "learned.json"
-    contract = json.loads(contract_file.read_text())
-    content, weights = flat_file(onnx.load(config.models / contract["file"]), "learned.bin")
-    (config.models / "learned.bin").write_bytes(content)
-    contract["weights"] = weights
-    contract_file.write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
-
-
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--models", type=Path, default=FlatConfig.models)
-    main(FlatConfig(parser.parse_args().models))

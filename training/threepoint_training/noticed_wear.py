@@ -13,18 +13,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import fitted_kinematics, notice_hand_tilts, notice_headset_rise, quaternion, splits, train_learned
+from . import fitted_kinematics, notice_headset_rise, quaternion, splits, train_learned
 from .accuracy_tables import renew, table
-from .features import frame_features
 from .fit_ik import FitIkConfig
 from .kinematic_limits import HEADSET_RISE
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
-from .residual import network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration
-from .train_learned import HeldOut, TrainLearnedConfig
-from .train_paper import predict
+from .train_learned import TrainLearnedConfig
 
 Array = NDArray[np.float64]
 
@@ -195,7 +192,6 @@ def _body(corpus: PreparedCorpus, name: str, fault: Fault) -> Body:
 def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:
     """Mean errors [2] in cm of IK and of the network over all clips of the person."""
     name, body = worn.name, _body(corpus, worn.name, worn.fault)
-    eye_height = body.eye_height.item()
     found = []
     for clip in corpus.clips_of({name}):
         whole = corpus.clip_slice(clip)
@@ -210,29 +206,10 @@ def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: Noticed
         positions[:, 0] -= quaternion.rotate(
             rotations[:, 0], np.broadcast_to([0.0, worn.rise, 0.0], (len(positions), 3))
         )
-        times = np.arange(len(positions)) / corpus.rate_hz
-        worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, notice_hand_tilts.travel(positions))
-        vector, _ = frame_features(positions, rotations, worn_by)
-        chosen = slice(None, None, config.judged_stride)
-        inputs = network_input(vector, times, made.window_seconds)[chosen]
-        truth = residual(corpus.truth(frames).astype(np.float64), positions, rotations, worn_by, vector)[chosen]
-        count = len(truth)
-        seen = HeldOut(
-            inputs.astype(np.float32),
-            truth.astype(np.float32),
-            np.full(count, eye_height),
-            np.full(count, name),
-            np.full(count, clip),
-        )
-        found.append(
-            np.stack(
-                [
-                    train_learned.ik_errors_cm(seen),
-                    train_learned.fitted_errors_cm(predict(made.network, seen.inputs), seen),
-                ],
-                axis=1,
-            )
-        )
+        whole_clip = train_learned.clip_frames(corpus, clip, (positions, rotations), body, made.window_seconds)
+        seen = whole_clip.subset(slice(None, None, config.judged_stride))
+        errors = train_learned.ik_errors_cm(seen), train_learned.errors_cm(made.network, seen)
+        found.append(np.stack(errors, axis=1))
     return np.concatenate(found).mean(axis=(0, 2))
 
 

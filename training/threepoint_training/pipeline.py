@@ -80,13 +80,11 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
         if name == "paper":
             frames = fit_networks.paper_frames(run, subjects, "all subjects")
             network = fit_networks.paper(run, frames, "all subjects")
-            run.report.found(
-                row, train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs), frames.targets)
-            )
+            run.report.found(row, train_paper.errors_cm(network, frames))
         else:
             network = fit_networks.learned(run, subjects, "all subjects")
             test = train_learned.held_out(run.corpus, subjects, run.config.learned.window_seconds)
-            run.report.found(row, train_learned.fitted_errors_cm(train_paper.predict(network, test.inputs), test))
+            run.report.found(row, train_learned.errors_cm(network, test))
         provenance = fit_networks.provenance(run, name, subjects, errors | {row: run.report.rows[row]}, curve)
         fit_networks.write(run, name, network, provenance, Destination(run.config.out))
 

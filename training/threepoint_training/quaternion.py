@@ -52,51 +52,17 @@ def from_rotation_vector(v: Array) -> Array:
 
 def from_matrix(m: Array) -> Array:
     """The unit quaternion of rotation matrices [..., 3, 3], w ≥ 0."""
-    m00, m11, m22 = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
-    # Four candidates, each well conditioned where its own component is the largest.
-    candidates = np.stack(
-        [
-            np.stack(
-                [
-                    1 + m00 - m11 - m22,
-                    m[..., 0, 1] + m[..., 1, 0],
-                    m[..., 0, 2] + m[..., 2, 0],
-                    m[..., 2, 1] - m[..., 1, 2],
-                ],
-                -1,
-            ),
-            np.stack(
-                [
-                    m[..., 0, 1] + m[..., 1, 0],
-                    1 - m00 + m11 - m22,
-                    m[..., 1, 2] + m[..., 2, 1],
-                    m[..., 0, 2] - m[..., 2, 0],
-                ],
-                -1,
-            ),
-            np.stack(
-                [
-                    m[..., 0, 2] + m[..., 2, 0],
-                    m[..., 1, 2] + m[..., 2, 1],
-                    1 - m00 - m11 + m22,
-                    m[..., 1, 0] - m[..., 0, 1],
-                ],
-                -1,
-            ),
-            np.stack(
-                [
-                    m[..., 2, 1] - m[..., 1, 2],
-                    m[..., 0, 2] - m[..., 2, 0],
-                    m[..., 1, 0] - m[..., 0, 1],
-                    1 + m00 + m11 + m22,
-                ],
-                -1,
-            ),
-        ],
-        axis=-2,
-    )
-    best = np.argmax(np.stack([m00 - m11 - m22, m11 - m00 - m22, m22 - m00 - m11, m00 + m11 + m22], -1), axis=-1)
-    q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
+    # 4·q·qᵀ: each row is the quaternion times one of its components. The largest component is the best conditioned.
+    products = np.empty((*m.shape[:-2], 4, 4))
+    products[..., :3, :3] = m + np.swapaxes(m, -1, -2)
+    trace = np.trace(m, axis1=-2, axis2=-1)
+    for axis in range(3):
+        after, before = (axis + 1) % 3, (axis + 2) % 3
+        products[..., axis, axis] += 1 - trace
+        products[..., axis, 3] = products[..., 3, axis] = m[..., before, after] - m[..., after, before]
+    products[..., 3, 3] = 1 + trace
+    best = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
+    q = np.take_along_axis(products, best[..., None, None], axis=-2)[..., 0, :]
     q = q / np.linalg.norm(q, axis=-1, keepdims=True)
     return np.where(q[..., 3:] < 0, -q, q)
 

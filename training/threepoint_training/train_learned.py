@@ -3,8 +3,9 @@ steps, then shrunk.
 """
 
 import functools
+import math
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -12,7 +13,8 @@ import torch
 from numpy.typing import NDArray
 
 from . import hand_tilt, notice_hand_tilts
-from .augment import AugmentConfig, BodyParts, draw_batch
+from .augment import AugmentConfig, draw_batch
+from .body_parts import BodyParts
 from .chest_features import CHEST_FEATURES
 from .differentiable_kinematics import DifferentiableKinematics
 from .features import FEATURES, frame_features
@@ -21,7 +23,8 @@ from .notice_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
-from .skeleton import body_from_calibration
+from .skeleton import Body, body_from_calibration
+from .train_paper import predict
 
 Array = NDArray[np.float64]
 
@@ -67,7 +70,7 @@ class HeldOut:
     people: NDArray[np.str_]
     clips: NDArray[np.int64]
 
-    def subset(self, frames: NDArray[np.int64]) -> "HeldOut":
+    def subset(self, frames: NDArray[np.int64] | slice) -> "HeldOut":
         """These frames alone."""
         return HeldOut(*(getattr(self, each.name)[frames] for each in fields(self)))
 
@@ -98,16 +101,36 @@ def held_out(
                 corpus.positions[frames], corpus.rotations[frames], wearer, _TRACKERS, random
             )
             calibrated = _measured(forearms.elsewhere(clip), wearer, name) if hands_measured else NO_CALIBRATED_TILTS
-            turned = notice_hand_tilts.with_noticed_hands(
-                body, positions, rotations, notice_hand_tilts.travel(positions), calibrated=calibrated
-            )
-            vector, _ = frame_features(positions, rotations, turned)
-            inputs = network_input(vector, np.arange(len(positions)) / corpus.rate_hz, window_seconds)
-            targets = residual(corpus.truth(frames).astype(np.float64), positions, rotations, turned, vector)
-            count = len(positions)
-            columns = inputs.astype(np.float32), targets.astype(np.float32), np.full(count, body.eye_height)
-            rows.append((*columns, np.full(count, name), np.full(count, clip)))
-    return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+            rows.append(clip_frames(corpus, clip, (positions, rotations), body, window_seconds, calibrated))
+    columns = (np.concatenate([getattr(row, each.name) for row in rows]) for each in fields(HeldOut))
+    return HeldOut(*columns)
+
+
+def clip_frames(
+    corpus: PreparedCorpus,
+    clip: int,
+    tracked: tuple[Array, Array],
+    body: Body,
+    window_seconds: tuple[float, ...],
+    calibrated: CalibratedTilts = NO_CALIBRATED_TILTS,
+) -> HeldOut:
+    """The first frames of a clip, as many as are tracked: positions [F, 3, 3] and rotations [F, 3, 4]. Hand tilts are
+    noticed on the way, from what is calibrated.
+    """
+    positions, rotations = tracked
+    count, start = len(positions), corpus.clip_slice(clip).start
+    turned = notice_hand_tilts.with_noticed_hands(
+        body, positions, rotations, notice_hand_tilts.travel(positions), calibrated=calibrated
+    )
+    vector, _ = frame_features(positions, rotations, turned)
+    truth = corpus.truth(slice(start, start + count)).astype(np.float64)
+    return HeldOut(
+        network_input(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
+        residual(truth, positions, rotations, turned, vector).astype(np.float32),
+        np.full(count, body.eye_height),
+        np.full(count, corpus.clip_people[clip]),
+        np.full(count, clip),
+    )
 
 
 def _random_of(name: str, *stream: int) -> np.random.Generator:
@@ -128,6 +151,11 @@ def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np
     raw = np.broadcast_to(output, people.targets.shape).reshape(-1, 6, 3).astype(np.float32)
     fitted = DifferentiableKinematics()(torch.from_numpy(raw), torch.from_numpy(people.inputs))
     return raw_errors_cm(fitted.numpy().reshape(-1, OUTPUTS), people)
+
+
+def errors_cm(network: torch.nn.Module, people: HeldOut) -> NDArray[np.float64]:
+    """Distances [F, 6] in centimetres of the network's joints from the true ones, after torso and arm fitting."""
+    return fitted_errors_cm(predict(network, people.inputs), people)
 
 
 def raw_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
@@ -159,30 +187,22 @@ def train(
     averaged = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     averaged.load_state_dict(network.state_dict())
     averaged.eval()
-    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(
-        optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1
-    )
     keep = 0.5 ** (1 / config.average_half_life_steps)
-    network.train()
-    for step in range(config.steps):
+
+    def loss_of_batch() -> torch.Tensor:
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
         corrections = network(x).view(-1, 6, 3)
         distance = functools.partial(mean_distances, truth=y.view(-1, 6, 3), elbow_share=config.elbow_share)
-        loss = config.auxiliary_loss_weight * distance(corrections).mean()
-        loss = loss + distance(kinematics(corrections, x)).mean()
-        loss = loss / _RESIDUAL
-        optimiser.zero_grad()
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
-        optimiser.step()
-        schedule.step()
+        raw = config.auxiliary_loss_weight * distance(corrections).mean()
+        return raw + distance(kinematics(corrections, x)).mean()
+
+    for step, loss in _descend(network, config, loss_of_batch, steepest=1.0):
         with torch.no_grad():
             weight = min(keep, (1 + step) / (10 + step))
             for average, value in zip(averaged.parameters(), network.parameters(), strict=True):
                 average.lerp_(value, 1 - weight)
-        report(step, float(loss.detach()))
+        report(step, loss)
     averaged.shrink_trunk(config.shrinkage)
     return averaged
 
@@ -213,24 +233,42 @@ def train_frame_random(
     x, y = torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen])
     network = CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
     network.normalise(x, y)
+
+    def loss_of_batch() -> torch.Tensor:
+        batch = torch.randint(len(x), (config.batch,))
+        return mean_distances(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)).mean()
+
+    for step, loss in _descend(network, config, loss_of_batch):
+        report(step, loss)
+    return network.eval()
+
+
+# A typical residual [eye heights]; divides the loss, which so stays near one.
+_RESIDUAL = 0.025
+
+
+def _descend(
+    network: CorrectionNetwork,
+    config: TrainLearnedConfig | TrainFrameRandomConfig,
+    loss_of_batch: Callable[[], torch.Tensor],
+    steepest: float = math.inf,
+) -> Iterator[tuple[int, float]]:
+    """Trains the network by AdamW with one cycle of the learning rate; yields each step and its loss. Gradients longer
+    than `steepest` are shortened to it.
+    """
     optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
     schedule = torch.optim.lr_scheduler.OneCycleLR(
         optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1
     )
     network.train()
     for step in range(config.steps):
-        batch = torch.randint(len(x), (config.batch,))
-        loss = mean_distances(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)).mean() / _RESIDUAL
+        loss = loss_of_batch() / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
+        torch.nn.utils.clip_grad_norm_(network.parameters(), steepest)
         optimiser.step()
         schedule.step()
-        report(step, float(loss.detach()))
-    return network.eval()
-
-
-# A typical residual [eye heights]; divides the loss, which so stays near one.
-_RESIDUAL = 0.025
+        yield step, float(loss.detach())
 
 
 def mean_distances(corrections: torch.Tensor, truth: torch.Tensor, elbow_share: float = 1 / 3) -> torch.Tensor:

@@ -142,6 +142,7 @@ def predict(network: torch.nn.Module, inputs: NDArray[np.float32], batch: int = 
         )
 
 
-def joint_errors_cm(output: NDArray[np.float32], target: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Distances [F, 6] in centimetres of outputs in metres."""
-    return np.linalg.norm((output - target).reshape(len(output), 6, 3), axis=-1) * 100
+def errors_cm(network: torch.nn.Module, frames: PaperFrames, chosen: NDArray[np.int64] | slice = slice(None)) -> Array:
+    """Distances [F, 6] in centimetres of the network's joints from the true ones, over the chosen frames."""
+    difference = predict(network, frames.inputs[chosen]) - frames.targets[chosen]
+    return np.linalg.norm(difference.reshape(-1, 6, 3), axis=-1) * 100

@@ -21,13 +21,13 @@ export interface PlaybackReport {
  * second without jitter it is 45 ms: the next packet has just arrived when playback reaches the one before.
  */
 export const firstDelay = 0.1;
-export const shortestDelay = 0.04;
-export const longestDelay = 0.2;
+const shortestDelay = 0.04;
+const longestDelay = 0.2;
 /** A pose is extrapolated at most this far beyond the newest packet [s]. */
 export const longestExtrapolation = 0.1;
 /** Silence after which a player is a ghost, and after which they are hidden [s]. */
-export const ghostAfter = 1;
-export const hideAfter = 3;
+const ghostAfter = 1;
+const hideAfter = 3;
 const ghostOpacity = 0.35;
 const fadeSeconds = 0.3;
 /** After a stall the pose is blended to the new path over this time [s]. */

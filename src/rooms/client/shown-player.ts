@@ -1,4 +1,10 @@
-import type { AvatarPose, TrackedFeet, UpperBodyPose } from 'threepoint/core/body/avatar-pose';
+import {
+  type AvatarPose,
+  type MutableUpperBodyPose,
+  makeUpperBodyPose,
+  type TrackedFeet,
+  type UpperBodyPose,
+} from 'threepoint/core/body/avatar-pose';
 import {
   copyHandShape,
   type HandShape,
@@ -6,7 +12,7 @@ import {
   makeHandShape,
   mixHandShape,
 } from 'threepoint/core/body/hand-shape';
-import { type JointName, jointNames } from 'threepoint/core/body/joints';
+import { jointNames } from 'threepoint/core/body/joints';
 import {
   copyPose,
   type MutablePose,
@@ -16,7 +22,7 @@ import {
   type Pose,
   type TrackedPose,
 } from 'threepoint/core/math/pose';
-import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
+import { copyQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
 import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
@@ -25,26 +31,13 @@ import type { PathFit, PathSample } from './path-fit';
 /** The pose of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
 
-interface MutableBody {
-  readonly hipsPosition: MutableVec3;
-  readonly localRotations: Readonly<Record<JointName, MutableQuat>>;
-}
-
-const makeBody = (): MutableBody => ({
-  hipsPosition: vec3(0, 0, 0),
-  localRotations: Object.fromEntries(jointNames.map((name) => [name, quat(0, 0, 0, 1)])) as Record<
-    JointName,
-    MutableQuat
-  >,
-});
-
 /** A buffer for the drawn pose of a player; methods may use the buffer itself as a source. */
 export class ShownPlayer implements Shown {
   readonly pose: {
     readonly head: MutableTrackedPose;
     leftHand: MutableTrackedPose | null;
     rightHand: MutableTrackedPose | null;
-    body: MutableBody | null;
+    body: MutableUpperBodyPose | null;
     feet: TrackedFeet | undefined;
   };
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
@@ -53,7 +46,7 @@ export class ShownPlayer implements Shown {
     left: makeTrackedPose(),
     right: makeTrackedPose(),
   };
-  private readonly body = makeBody();
+  private readonly body = makeUpperBodyPose();
   private readonly ankles: Readonly<Record<Side, MutablePose<'floor'>>> = { left: makePose(), right: makePose() };
   private readonly feet: Record<Side, Pose<'floor'> | null> = { left: null, right: null };
   private readonly placed = { position: vec3(0, 0, 0), heading: 0 };
@@ -218,7 +211,11 @@ function mixFoot(
   return held && copyPose(held, target);
 }
 
-function fitBody(samples: readonly PathSample[], { first, count, shares }: PathFit, target: MutableBody): MutableBody {
+function fitBody(
+  samples: readonly PathSample[],
+  { first, count, shares }: PathFit,
+  target: MutableUpperBodyPose,
+): MutableUpperBodyPose {
   const { hipsPosition } = target;
   setVec3(hipsPosition, 0, 0, 0);
   for (let i = 0; i < count; i++) {
@@ -248,7 +245,7 @@ function mixHand(
   return held && copyTracked(held, target);
 }
 
-function copyBody(from: UpperBodyPose, target: MutableBody): MutableBody {
+function copyBody(from: UpperBodyPose, target: MutableUpperBodyPose): MutableUpperBodyPose {
   copyVec3(from.hipsPosition, target.hipsPosition);
   for (let i = 0; i < jointNames.length; i++) {
     const name = jointNames[i]!;
@@ -257,7 +254,12 @@ function copyBody(from: UpperBodyPose, target: MutableBody): MutableBody {
   return target;
 }
 
-function mixBody(a: UpperBodyPose | null, b: UpperBodyPose | null, t: number, target: MutableBody): MutableBody | null {
+function mixBody(
+  a: UpperBodyPose | null,
+  b: UpperBodyPose | null,
+  t: number,
+  target: MutableUpperBodyPose,
+): MutableUpperBodyPose | null {
   if (!a || !b) {
     const held = t < 1 ? a : b;
     return held && copyBody(held, target);

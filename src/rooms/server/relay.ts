@@ -4,7 +4,7 @@ import { dirname } from 'node:path';
 import { type Logger, pino } from 'pino';
 import type { Service } from 'threepoint-http/router';
 import type { UpgradeListener } from 'threepoint-http/web-server';
-import { createRoomTokens } from './access/room-tokens';
+import { RoomTokens } from './access/room-tokens';
 import { AvatarRoutes } from './avatars/avatar-routes';
 import { AvatarStore } from './avatars/avatar-store';
 import type { ConnectionCounts } from './connection-counts';
@@ -66,7 +66,7 @@ export function createRelay(
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
   const now = (): number => performance.now() / 1000;
   const node = randomBytes(6).toString('hex');
-  const tokens = createRoomTokens(secret, unixTime);
+  const tokens = new RoomTokens(secret, unixTime);
   const census = (): RelayCensus => ({
     ...host.census,
     sockets: transport.sockets,

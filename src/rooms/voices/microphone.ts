@@ -8,7 +8,7 @@ const refusals: Readonly<Record<string, string>> = {
 };
 
 /** Returns the message for an error of getUserMedia. */
-export function microphoneErrorOf(error: unknown): string {
+function microphoneErrorOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : '';
   return (
     refusals[name] ?? `The microphone could not be used (${error instanceof Error ? error.message : String(error)}).`

@@ -4,7 +4,7 @@ import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { isNightly } from '../../nightly';
@@ -17,7 +17,7 @@ import { rawGuest, testSecret, until } from './running-relay';
 
 const atOnce = 20;
 const wanted = isNightly ? 100_000 : 2000;
-const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
 
 const joining = JSON.stringify({
   type: 'join',

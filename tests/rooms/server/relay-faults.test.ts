@@ -8,7 +8,7 @@ import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { collectGarbage } from '../../collect-garbage';
@@ -157,7 +157,7 @@ test('500 clients reconnect at once', async () => {
   const clients = 500;
   const environment = { THREEPOINT_CONNECTIONS_PER_ADDRESS: '600' };
   const relay = await relayApart(environment);
-  const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+  const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
   const connections = await Promise.all(
     Array.from({ length: clients }, async (_, i) => {
       // Three of a room play, the others watch.
@@ -366,7 +366,7 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
   const counts: number[] = [];
   const handles = () => process.getActiveResourcesInfo().length;
   const before = handles();
-  const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+  const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
   for (let round = 0; round < rounds; round++) {
     const guests = await Promise.all(
       Array.from({ length: 60 }, async (_, i) => {

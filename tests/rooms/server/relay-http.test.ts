@@ -1,6 +1,6 @@
 import { SignJWT } from 'jose';
 import { clientAddressOf } from 'threepoint-http/client-address';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
@@ -20,7 +20,7 @@ const post = (path: string, body: unknown, headers: Record<string, string> = {})
 
 describe('room tokens', () => {
   let now = 1_800_000_000;
-  const tokens = createRoomTokens(testSecret, () => now);
+  const tokens = new RoomTokens(testSecret, () => now);
 
   test('let one person into one room, and expire', async () => {
     const token = await tokens.issue('amber', 'ball');
@@ -64,7 +64,7 @@ describe('the relay over HTTP', () => {
   });
 
   test('signs the terms of a room within their limits, and keeps them when the pass is renewed', async () => {
-    const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+    const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
     const asked = { room: 'terms', kind: 'ball' };
     const signed = async (body: object) => {
       const { token } = (await (await post('/api/rooms/token', body)).json()) as { token: string };
@@ -145,9 +145,9 @@ describe('connecting', () => {
   test('takes a signed token, and no other', async () => {
     expect(await refusal('')).toBe('refused');
     expect(await refusal('nonsense')).toBe('refused');
-    const foreign = createRoomTokens('a secret of some other server altogether', () => Date.now() / 1000);
+    const foreign = new RoomTokens('a secret of some other server altogether', () => Date.now() / 1000);
     expect(await refusal(await foreign.issue('amber', 'ball'))).toBe('refused');
-    const old = createRoomTokens(testSecret, () => Date.now() / 1000 - 3600);
+    const old = new RoomTokens(testSecret, () => Date.now() / 1000 - 3600);
     expect(await refusal(await old.issue('amber', 'ball'))).toBe('refused');
   });
 

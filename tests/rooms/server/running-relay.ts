@@ -7,7 +7,7 @@ import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { type BallRoomMessage, ballKind } from 'threepoint-games/ball/ball-messages';
-import { createConnectionLimiter } from 'threepoint-http/connection-limiter';
+import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import type { Visitor } from 'threepoint-rooms/client/connection';
@@ -30,7 +30,7 @@ export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 /** A relay of this process on a free port of loopback. */
 export async function startRelay(environment: Record<string, string> = {}, port = 0) {
   const configuration = relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent', ...environment });
-  const connectionLimiter = createConnectionLimiter({
+  const connectionLimiter = new ConnectionLimiter({
     perAddress: configuration.connectionsPerAddress,
     behindProxy: configuration.trustProxy,
   });

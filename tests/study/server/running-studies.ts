@@ -3,7 +3,7 @@ import type { WrongGuess } from 'threepoint-http/auth-throttle';
 import { GroupCommit } from 'threepoint-http/group-commit';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import type { StudyPlan } from 'threepoint-study/model/plan/plan';
 import { createExporter } from 'threepoint-study/server/export/exporter';
 import { StudyDispatcher } from 'threepoint-study/server/routes/dispatcher';
@@ -27,7 +27,8 @@ const software = {
 export const testSoftware = { exportedBy: software, served: [{ since: now, ...software }] };
 /** The script of the thread that the server starts for its studies. */
 export const studyThread = new URL('../../../server/study-thread-worker.mjs', import.meta.url);
-export const studySeats = createStudySeats(testSecret, createRoomTokens(testSecret, () => Date.now() / 1000).sign);
+const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
+export const studySeats = createStudySeats(testSecret, (pass) => tokens.sign(pass));
 
 interface InThisThread {
   readonly store: StudyStore;

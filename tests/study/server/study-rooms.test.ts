@@ -1,7 +1,7 @@
 import { io } from 'socket.io-client';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { pageParser } from 'threepoint-rooms/protocol/socket-parsers';
-import { createRoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
@@ -18,8 +18,8 @@ import {
 import { paperPlan } from '../model/studies';
 
 const plan = paperPlan();
-const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
-const seats = createStudySeats(testSecret, tokens.sign);
+const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
+const seats = createStudySeats(testSecret, (pass) => tokens.sign(pass));
 const step = 'ball/1/trial-1';
 const trial = { step, run: 1 };
 /** The three of P01's group, in the order of their seats. */
@@ -153,7 +153,7 @@ describe('the room of a trial', () => {
       seatOf(far),
       seats.sign(plan, 'P01', { step, run: 2 }, false),
       seats.sign(plan, 'P01', { step: 'ball/2/trial-1', run: 1 }, false),
-      createStudySeats(`${testSecret}2`, tokens.sign).sign(plan, 'P01', trial, false),
+      createStudySeats(`${testSecret}2`, (pass) => tokens.sign(pass)).sign(plan, 'P01', trial, false),
     ]);
     expect(new Set([...rooms, ...different.map(({ room }) => room)]).size).toBe(5);
     for (const { room } of different) expect(room).toMatch(/^study\.[0-9a-f]{24}$/);

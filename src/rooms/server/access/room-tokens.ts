@@ -21,18 +21,6 @@ export interface RoomPass {
   readonly assigned: AssignedPlace | null;
 }
 
-/** Signs and verifies room passes as JSON Web Tokens that expire. */
-export interface RoomTokens {
-  /** Returns a token for a new person. */
-  issue(room: string, kind: string, terms?: RoomTerms): Promise<string>;
-  /** Returns a new token for the same person. */
-  sign(pass: RoomPass): Promise<string>;
-  /** Verifies a token that may have expired within the last 12 hours; it permits renewal, not entry. */
-  verifyRenewable(token: string): Promise<RoomPass | null>;
-  /** Returns the claims of a token; null: not signed by this server, modified, or expired. */
-  verify(token: string): Promise<RoomPass | null>;
-}
-
 /** Names of rooms: short, valid in an address and easy to spell out. */
 export const roomName = /^[a-z0-9][a-z0-9-]{0,31}$/;
 /** Names of rooms with assigned places; other rooms cannot have such a name. Proxies route by 32 characters at most. */
@@ -52,26 +40,51 @@ const assignedPlace = v.nullable(
   }),
 );
 
-/** `now`: seconds since 1970. */
-export function createRoomTokens(secret: string, now: () => number): RoomTokens {
-  const key = new TextEncoder().encode(secret);
+/** Signs and verifies room passes as JSON Web Tokens that expire. */
+export class RoomTokens {
+  readonly #key: Uint8Array;
+  readonly #now: () => number;
 
-  const sign = ({ identity, room, kind, terms, assigned }: RoomPass): Promise<string> =>
-    new SignJWT({ room, kind, terms, ...(assigned && { assigned: { ...assigned } }) })
+  /** `now`: seconds since 1970. */
+  constructor(secret: string, now: () => number) {
+    this.#key = new TextEncoder().encode(secret);
+    this.#now = now;
+  }
+
+  /** Returns a token for a new person. */
+  issue(room: string, kind: string, terms: RoomTerms = {}): Promise<string> {
+    return this.sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms, assigned: null });
+  }
+
+  /** Returns a new token for the same person. */
+  sign({ identity, room, kind, terms, assigned }: RoomPass): Promise<string> {
+    const now = Math.floor(this.#now());
+    return new SignJWT({ room, kind, terms, ...(assigned && { assigned: { ...assigned } }) })
       .setProtectedHeader({ alg: algorithm })
       .setIssuer(issuer)
       .setSubject(identity)
-      .setIssuedAt(Math.floor(now()))
-      .setExpirationTime(Math.floor(now()) + lifeSeconds)
-      .sign(key);
+      .setIssuedAt(now)
+      .setExpirationTime(now + lifeSeconds)
+      .sign(this.#key);
+  }
 
-  async function read(token: string, tolerance: number): Promise<RoomPass | null> {
+  /** Verifies a token that may have expired within the last 12 hours; it permits renewal, not entry. */
+  verifyRenewable(token: string): Promise<RoomPass | null> {
+    return this.#read(token, renewalSeconds);
+  }
+
+  /** Returns the claims of a token; null: not signed by this server, modified, or expired. */
+  verify(token: string): Promise<RoomPass | null> {
+    return this.#read(token, 5);
+  }
+
+  async #read(token: string, tolerance: number): Promise<RoomPass | null> {
     if (token.length > longestToken) return null;
     try {
-      const { payload } = await jwtVerify(token, key, {
+      const { payload } = await jwtVerify(token, this.#key, {
         issuer,
         algorithms: [algorithm],
-        currentDate: new Date(now() * 1000),
+        currentDate: new Date(this.#now() * 1000),
         clockTolerance: tolerance,
       });
       const { sub: identity, room, kind } = payload;
@@ -87,12 +100,4 @@ export function createRoomTokens(secret: string, now: () => number): RoomTokens 
       throw error;
     }
   }
-
-  return {
-    issue: (room, kind, terms = {}) =>
-      sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms, assigned: null }),
-    sign,
-    verifyRenewable: (token) => read(token, renewalSeconds),
-    verify: (token) => read(token, 5),
-  };
 }

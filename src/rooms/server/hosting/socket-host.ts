@@ -24,19 +24,6 @@ export interface SocketHostOptions {
   readonly now: () => number;
 }
 
-/** Connects the sockets of a server to its rooms. */
-export interface SocketHost {
-  readonly io: Server;
-  readonly rooms: readonly RoomListing[];
-  readonly census: HostCensus;
-  /** Returns the room of this name; null: there is none. */
-  room(name: string): Room<HostedGame> | null;
-  /** Closes a room and disconnects its clients; returns false if there is none. */
-  end(name: string): boolean;
-  /** Disconnects all clients with the reason 'stopping'. */
-  close(): Promise<void>;
-}
-
 /** A client that has not joined a room this long after connecting is disconnected [s]. */
 const joinTimeout = 5;
 /** Interval of the check for clients that have not joined and for empty rooms [ms]. */
@@ -75,8 +62,10 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
   };
 }
 
-/** Creates the host of the rooms on a transport. */
-export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions): SocketHost {
+export type SocketHost = ReturnType<typeof createSocketHost>;
+
+/** Connects the sockets of a transport to the rooms of this process. */
+export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions) {
   const { configuration, kinds, log, metrics, now } = options;
   const clients = new Set<Client>();
   const rooms = new RoomRegistry({
@@ -122,15 +111,18 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
 
   return {
     io,
-    get rooms() {
+    get rooms(): readonly RoomListing[] {
       return rooms.listings;
     },
-    get census() {
+    get census(): HostCensus {
       return rooms.census;
     },
-    room: (name) => rooms.get(name)?.room ?? null,
-    end: (name) => rooms.end(name),
-    async close() {
+    /** Returns the room of this name; null: there is none. */
+    room: (name: string): Room<HostedGame> | null => rooms.get(name)?.room ?? null,
+    /** Closes a room and disconnects its clients; returns false if there is none. */
+    end: (name: string): boolean => rooms.end(name),
+    /** Disconnects all clients with the reason 'stopping'. */
+    async close(): Promise<void> {
       clearInterval(sweeping);
       for (const client of clients) disconnect(client, 'stopping');
       rooms.clear();

@@ -29,22 +29,6 @@ export interface WireListener {
   onFault(fault: WireFault): void;
 }
 
-/** The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. */
-export interface RelayTransport {
-  readonly io: Server;
-  /** The number of open WebSockets, silent ones included. */
-  readonly sockets: number;
-  /**
-   * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io,
-   * which cost more for a message than a room does for its pose. A binary message on a connection without a listener
-   * closes it.
-   */
-  listen(socket: Socket, listener: WireListener): void;
-  /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
-  upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean;
-  close(): void;
-}
-
 /**
  * A connection is destroyed this long after it was closed [ms], whether or not the client has read the last message.
  */
@@ -81,11 +65,16 @@ function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uin
   websocket.on('pong', take);
 }
 
-/** Creates the transport of a relay. `now`: seconds, monotonic. */
+export type RelayTransport = ReturnType<typeof createRelayTransport>;
+
+/**
+ * The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. `now`: seconds,
+ * monotonic.
+ */
 export function createRelayTransport(
   configuration: RelayConfiguration,
   { log, metrics, now }: { readonly log: Logger; readonly metrics: RelayMetrics; readonly now: () => number },
-): RelayTransport {
+) {
   const admit = createUpgradeAdmission(configuration, { log, metrics });
   const engine = new Engine({
     transports: ['websocket'],
@@ -125,11 +114,18 @@ export function createRelayTransport(
 
   return {
     io,
-    get sockets() {
+    /** The number of open WebSockets, silent ones included. */
+    get sockets(): number {
       return engine.clientsCount;
     },
-    listen: (socket, listener) => void listeners.set(socket.conn, listener),
-    upgrade(request, socket, head) {
+    /**
+     * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io,
+     * which cost more for a message than a room does for its pose. A binary message on a connection without a listener
+     * closes it.
+     */
+    listen: (socket: Socket, listener: WireListener): void => void listeners.set(socket.conn, listener),
+    /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
+    upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean {
       const target = targetOf(request.url);
       if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
       try {
@@ -142,7 +138,7 @@ export function createRelayTransport(
       engine.handleUpgrade(request as never, socket, head);
       return true;
     },
-    close() {
+    close(): void {
       slowReaders.stop();
       io.disconnectSockets(true);
       engine.close();

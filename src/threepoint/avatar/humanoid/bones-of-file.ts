@@ -1,8 +1,7 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
 import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
-import type { Decoders } from '../decoders/decoder-set';
-import { type ReadableAvatar, readScene } from '../load-avatar';
+import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
 import { skeletonOf } from './humanoid-of-scene';
 import { type FileBones, fileBones } from './unknown-bones';
 

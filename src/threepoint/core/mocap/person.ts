@@ -6,11 +6,8 @@ import { forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import { eyesFromHeadJoint } from './mocap-rules.json';
 import { type OurMotion, positionAt, rotationAt } from './our-joints';
-import type { RestPose } from './rest-pose';
-import type { TruthJoint } from './skeleton-map';
-import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
 import { armSpanAtRest, eyeHeightAtRest } from './rest-pose';
-import { type TruthJoint, truthJoints } from './skeleton-map';
+import type { TruthJoint } from './skeleton-map';
 
 /** Frames of a motion, from one to before another. */
 export interface Piece {
