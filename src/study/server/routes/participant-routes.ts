@@ -1,9 +1,10 @@
 import { parseRecording } from 'threepoint/core/tracking/recording';
-import { checked, identifier, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
+import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
 import { done, HttpError, json } from 'threepoint-http/answer';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
 import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/store';
@@ -22,22 +23,8 @@ const batchSchema = v.object({
   ),
 });
 
-const commandSchema = v.variant('type', [
-  v.strictObject({ type: v.literal('start') }),
-  v.strictObject({ type: v.literal('pause') }),
-  v.strictObject({ type: v.literal('resume') }),
-  v.strictObject({ type: v.literal('stop'), by: v.literal('experimenter'), reason: text(500) }),
-  v.strictObject({
-    type: v.literal('void-block'),
-    reason: text(500),
-    repeat: v.boolean('expected true or false'),
-    of: v.exactOptional(v.strictObject({ task: identifier, block: integerBetween(1, 1000) })),
-  }),
-]);
-
 /** `consent` is the version of the text that the participant has read. */
 const claimSchema = v.strictObject({ invitation: v.optional(text(60)), consent: v.optional(text(40)) });
-const seatSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
 const remarkSchema = v.strictObject({ text: text(2000) });
 const sinceSchema = v.object({ after: integerBetween(0, 2 ** 53 - 1) });
 const notATrial = 'expected the id of a trial record';
@@ -157,7 +144,7 @@ export function participantRoutes({ store, guard, seats, software, makeZip }: Pa
       return done;
     }),
     signing(`${own}/seat`, async (call) => {
-      const trial = checked(seatSchema, jsonOf(call));
+      const trial = checked(playedTogetherSchema, jsonOf(call));
       const plan = store.plans.planFor(call.study, call.participant);
       // A request that is admitted without the participant's token is from an experimenter, who watches.
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));

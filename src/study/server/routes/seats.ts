@@ -1,7 +1,7 @@
 import { createHmac, randomBytes } from 'node:crypto';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import type { StudyPlan } from '../../model/plan/plan';
-import { scheduleFor } from '../../model/plan/schedule';
+import { isPlayed, scheduleFor } from '../../model/plan/schedule';
 import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 
 /** The claims of a participant's place in a room, which the server's rooms read from a signed token. */
@@ -40,7 +40,7 @@ export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats
     async sign(plan, participant, { step: id, run }, watching) {
       const schedule = scheduleFor(plan, participant);
       const step = schedule.steps.find((candidate) => candidate.id === id);
-      const played = step && (step.kind === 'trial' || step.kind === 'tutorial') ? step : null;
+      const played = step && isPlayed(step) ? step : null;
       const task = plan.tasks.find((candidate) => candidate.id === played?.task);
       if (!played || task?.game !== 'ball') {
         throw new ValidationError('step', `expected a step that ${participant} plays with others, not "${id}"`);

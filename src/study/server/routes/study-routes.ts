@@ -2,7 +2,7 @@ import { checked, integerBetween, participantId, text } from 'threepoint/core/va
 import { type Answer, done, json } from 'threepoint-http/answer';
 import { jsonOf } from 'threepoint-http/router';
 import * as v from 'valibot';
-import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
+import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import type { StudyStore } from '../storage/store';
 import { type Exporting, exporting, exportOf } from './export-routes';
@@ -57,7 +57,7 @@ export function studyRoutes({ store, guard, software, makeZip }: StudyRouteOptio
     ),
     route('POST', '', 'experimenter', bodyLimits.json, (call) => {
       const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
-      return json(store.plans.add(checkedPlan(plan), { simulated, newVersion, at: call.at }), 201);
+      return json(store.plans.add(plan, { simulated, newVersion, at: call.at }), 201);
     }),
     // Participants who have begun read the text of their version.
     route('GET', '/:study', 'anyone', 0, ({ study, query }) => {

@@ -6,6 +6,7 @@ import { type DatabaseOptions, StudyDatabase } from './database';
 import { StudyDeletion } from './deletion';
 import { StudyMotion } from './motion';
 import { type PlaceRow, StudyPlaces } from './places';
+import { PlanPlaces } from './plan-places';
 import { StudyPlans } from './plans';
 import { StudyRecords } from './records';
 import { StudySoftware } from './software';
@@ -67,7 +68,8 @@ export function openStudyStore(
   { mostBytes = mostStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},
 ): StudyStore {
   const database = new StudyDatabase(file, { mostBytes, readOnly });
-  const plans = new StudyPlans(database);
+  const planPlaces = new PlanPlaces(database);
+  const plans = new StudyPlans(database, planPlaces);
   const places = new StudyPlaces(database, plans);
   const records = new StudyRecords(database, plans, places);
   const motion = new StudyMotion(database, places);
@@ -75,7 +77,7 @@ export function openStudyStore(
   return {
     ...{ plans, places, records, motion, commands },
     software: new StudySoftware(database),
-    deletion: new StudyDeletion({ database, plans, places, records, motion, commands }),
+    deletion: new StudyDeletion({ database, plans, planPlaces, places, records, motion, commands }),
     overview(study, now) {
       const { version: newest, versions } = plans.get(study);
       return places.all(study).map((row) => {
