@@ -8,10 +8,8 @@ import { commandSchema, playedTogetherSchema } from '../../model/progress/study-
 import { profileFrom } from '../../model/records/participant-profile';
 import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/store';
-import { type Exporting, exporting, exportOf } from './export-routes';
-import type { StudyGuard } from './guard';
-import { bodyLimits, type Handle, route, type StudyCall, type StudyRoute } from './route';
-import type { StudySeats } from './seats';
+import { exporting, exportOf } from './export-routes';
+import { bodyLimits, type Handle, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
 
 export const mostRecordsAtOnce = 200;
 
@@ -32,16 +30,8 @@ const motionSchema = v.object({
   trial: v.pipe(v.string(notATrial), v.regex(/^[a-z0-9][a-z0-9/@.:-]{0,119}$/, notATrial)),
 });
 
-/** The parts of the server that these routes use. */
-export interface ParticipantRouteOptions extends Exporting {
-  readonly store: Omit<StudyStore, 'overview' | 'software' | 'snapshot' | 'flushed' | 'forgetDeleted' | 'close'>;
-  readonly guard: StudyGuard;
-  /** Signs participants into the rooms of their trials. */
-  readonly seats: StudySeats;
-}
-
 /** Returns the state for a device that has taken a participant's place; a session of another device is continued. */
-const sessionOf = ({ store }: Pick<ParticipantRouteOptions, 'store'>, { study, participant, at }: StudyCall) => ({
+const sessionOf = (store: StudyStore, { study, participant, at }: StudyCall) => ({
   plan: store.plans.planFor(study, participant),
   simulated: store.plans.get(study).simulated,
   progress: store.places.progress(study, participant, at),
@@ -66,11 +56,7 @@ function refuseOutdated(plan: StudyPlan): void {
  * Takes a place. `read` is the version of the text that was consented to, if it was sent. Throws if the plan has
  * another one; the place stays free.
  */
-function takePlace(
-  { store }: Pick<ParticipantRouteOptions, 'store'>,
-  { study, participant, at }: StudyCall,
-  read: string | undefined,
-) {
+function takePlace(store: StudyStore, { study, participant, at }: StudyCall, read: string | undefined) {
   const plan = store.plans.planFor(study, participant);
   refuseOutdated(plan);
   const { version } = plan.consent;
@@ -87,14 +73,15 @@ const signing = (path: string, handle: Handle): StudyRoute => ({
 });
 
 /** Returns the routes of one participant. */
-export function participantRoutes({ store, guard, seats, software, makeZip }: ParticipantRouteOptions): StudyRoute[] {
+export function participantRoutes(parts: StudyParts): StudyRoute[] {
+  const { store, guard, seats } = parts;
   const own = '/:study/participants/:participant';
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
       const { invitation, consent } = checked(claimSchema, jsonOf(call));
-      const claim = () => takePlace({ store }, call, consent);
+      const claim = () => takePlace(store, call, consent);
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
-      return json({ token, withdrawalCode, ...sessionOf({ store }, call) }, 201);
+      return json({ token, withdrawalCode, ...sessionOf(store, call) }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
       store.places.reinvite(study, participant);
@@ -150,7 +137,7 @@ export function participantRoutes({ store, guard, seats, software, makeZip }: Pa
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
     exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
-      exportOf({ store, software, makeZip }, { at, study, participant }),
+      exportOf(parts, { at, study, participant }),
     ),
     route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
       json(store.deletion.delete(study, participant, 'experimenter', at)),

@@ -16,23 +16,7 @@ import { StudySoftware } from './software';
  * survive a power cut when `flushed` has resolved, and nothing is acknowledged before. Times are seconds since 1970 of
  * the caller's clock.
  */
-export interface StudyStore {
-  readonly plans: StudyPlans;
-  readonly places: StudyPlaces;
-  readonly records: StudyRecords;
-  readonly motion: StudyMotion;
-  readonly commands: StudyCommands;
-  readonly software: StudySoftware;
-  readonly deletion: StudyDeletion;
-  overview(study: string, now: number): readonly ParticipantState[];
-  /** Runs `body`, whose reads all see one state of the database. */
-  snapshot<T>(body: () => T): T;
-  /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
-  flushed(): Promise<void>;
-  /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
-  forgetDeleted(): boolean;
-  close(): void;
-}
+export type StudyStore = ReturnType<typeof openStudyStore>;
 
 /** Returns the state of a place for the experimenter at this time [s]. */
 function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number, now: number): ParticipantState {
@@ -66,7 +50,7 @@ const mostStoredBytes = 16 * 2 ** 30;
 export function openStudyStore(
   file: string,
   { mostBytes = mostStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},
-): StudyStore {
+) {
   const database = new StudyDatabase(file, { mostBytes, readOnly });
   const planPlaces = new PlanPlaces(database);
   const plans = new StudyPlans(database, planPlaces);
@@ -78,15 +62,19 @@ export function openStudyStore(
     ...{ plans, places, records, motion, commands },
     software: new StudySoftware(database),
     deletion: new StudyDeletion({ database, plans, planPlaces, places, records, motion, commands }),
-    overview(study, now) {
+    /** Returns the state of every place at this time [s]. */
+    overview(study: string, now: number): readonly ParticipantState[] {
       const { version: newest, versions } = plans.get(study);
       return places.all(study).map((row) => {
         const followed = versions.find(({ version }) => version === (row.plan_version ?? newest)) as PlanVersion;
         return stateOf(row, followed, records.count(study, row.participant), now);
       });
     },
-    snapshot: (body) => database.snapshot(body),
+    /** Runs `body`, whose reads all see one state of the database. */
+    snapshot: <T>(body: () => T): T => database.snapshot(body),
+    /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
     flushed: () => database.flushed(),
+    /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
     forgetDeleted: () => !database.holdsDeleted || database.forgetDeleted(),
     close: () => database.close(),
   };
