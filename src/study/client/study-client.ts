@@ -112,136 +112,122 @@ const of = (study: string, participant?: string) =>
 
 const versionPart = (version: number | undefined) => (version === undefined ? '' : `?version=${version}`);
 
-/** The requests of a participant's page to the server. Every call rejects with ServerRefusal or ServerUnreachable. */
-export interface ParticipantClient {
-  /** Returns the study with the text of the plan version that this participant follows. */
-  study(study: string, participant: string): Promise<PublicStudy>;
-  /** `invitation` is taken from the link or was typed; `consent` is the version of the text that was read. */
-  claim(study: string, participant: string, invitation: string, consent: string): Promise<Claim>;
-  /** Resolves with the ids that are stored now. */
-  send(study: string, participant: string, token: string, records: readonly StudyRecord[]): Promise<readonly string[]>;
-  /** Resolves with null if nothing was reported. */
-  progress(study: string, participant: string, token: string): Promise<Progress | null>;
-  saveProgress(study: string, participant: string, token: string, progress: Progress): Promise<void>;
-  commands(study: string, participant: string, token: string, after: number): Promise<readonly NumberedCommand[]>;
-  sendMotion(study: string, participant: string, token: string, trial: string, recording: string): Promise<void>;
-  /** Resolves with the participant's seat in the room of a trial that a group plays together. */
-  seat(study: string, participant: string, token: string, trial: PlayedTogether): Promise<SignedSeat>;
+/** A participant's place in a study. */
+export interface StudyPlace {
+  readonly study: string;
+  readonly participant: string;
 }
 
-export function createParticipantClient(server: string): ParticipantClient {
+/** A place with the token of the device that has taken it. */
+export interface TakenPlace extends StudyPlace {
+  readonly token: string;
+}
+
+export type ParticipantClient = ReturnType<typeof createParticipantClient>;
+
+/** Returns the requests of a participant's page. Every call rejects with ServerRefusal or ServerUnreachable. */
+export function createParticipantClient(server: string) {
   const answer = answersOf(server);
+  const own = ({ study, participant }: StudyPlace, request: string) => `${of(study, participant)}/${request}`;
   return {
-    study: (study, participant) => answer(`${of(study)}?participant=${encodeURIComponent(participant)}`),
-    claim: (study, participant, invitation, consent) =>
-      answer(`${of(study, participant)}/claim`, { method: 'POST', body: { invitation, consent } }),
-    async send(study, participant, token, records) {
-      const path = `${of(study, participant)}/records`;
-      return (await answer<{ acknowledged: string[] }>(path, { method: 'POST', token, body: { records } }))
-        .acknowledged;
+    /** Returns the study with the text of the plan version that this participant follows. */
+    study: ({ study, participant }: StudyPlace): Promise<PublicStudy> =>
+      answer(`${of(study)}?participant=${encodeURIComponent(participant)}`),
+    /** `invitation` is taken from the link or was typed; `consent` is the version of the text that was read. */
+    claim: (place: StudyPlace, invitation: string, consent: string): Promise<Claim> =>
+      answer(own(place, 'claim'), { method: 'POST', body: { invitation, consent } }),
+    /** Resolves with the ids that are stored now. */
+    async send(place: TakenPlace, records: readonly StudyRecord[]): Promise<readonly string[]> {
+      const asked = { method: 'POST', token: place.token, body: { records } } as const;
+      return (await answer<{ acknowledged: string[] }>(own(place, 'records'), asked)).acknowledged;
     },
-    async progress(study, participant, token) {
-      const asked = { token, patienceMs: shortPatienceMs };
-      return (await answer<{ progress: Progress | null }>(`${of(study, participant)}/progress`, asked)).progress;
+    /** Resolves with null if nothing was reported. */
+    async progress(place: TakenPlace): Promise<Progress | null> {
+      const asked = { token: place.token, patienceMs: shortPatienceMs };
+      return (await answer<{ progress: Progress | null }>(own(place, 'progress'), asked)).progress;
     },
-    saveProgress: (study, participant, token, progress) =>
-      answer(`${of(study, participant)}/progress`, { method: 'PUT', token, body: progress }),
-    async commands(study, participant, token, after) {
-      const path = `${of(study, participant)}/commands?after=${after}`;
-      return (await answer<{ commands: NumberedCommand[] }>(path, { token })).commands;
+    saveProgress: (place: TakenPlace, progress: Progress): Promise<void> =>
+      answer(own(place, 'progress'), { method: 'PUT', token: place.token, body: progress }),
+    async commands(place: TakenPlace, after: number): Promise<readonly NumberedCommand[]> {
+      const path = own(place, `commands?after=${after}`);
+      return (await answer<{ commands: NumberedCommand[] }>(path, { token: place.token })).commands;
     },
-    sendMotion: (study, participant, token, trial, recording) =>
-      answer(`${of(study, participant)}/motion?trial=${encodeURIComponent(trial)}`, {
+    sendMotion: (place: TakenPlace, trial: string, recording: string): Promise<void> =>
+      answer(own(place, `motion?trial=${encodeURIComponent(trial)}`), {
         method: 'PUT',
-        token,
+        token: place.token,
         text: recording,
         patienceMs: motionPatienceMs,
       }),
-    seat: (study, participant, token, trial) =>
-      answer(`${of(study, participant)}/seat`, { method: 'POST', token, body: trial }),
+    /** Resolves with the participant's seat in the room of a trial that a group plays together. */
+    seat: (place: TakenPlace, trial: PlayedTogether): Promise<SignedSeat> =>
+      answer(own(place, 'seat'), { method: 'POST', token: place.token, body: trial }),
   };
 }
 
-/** The requests of the withdrawal page. Every call rejects with ServerRefusal or ServerUnreachable. */
-export interface WithdrawalClient {
-  /** Returns the public part of the study. */
-  study(study: string): Promise<PublicStudy>;
-  /** Deletes everything of the participant who has this code, in any notation of the code. */
-  withdraw(study: string, code: string): Promise<Receipt>;
-}
-
-export function createWithdrawalClient(server: string): WithdrawalClient {
+/** Returns the requests of the withdrawal page. Every call rejects with ServerRefusal or ServerUnreachable. */
+export function createWithdrawalClient(server: string) {
   const answer = answersOf(server);
   return {
-    study: (study) => answer(of(study)),
-    withdraw: (study, code) => answer(`${of(study)}/withdraw`, { method: 'POST', body: { code } }),
+    /** Returns the public part of the study. */
+    study: (study: string): Promise<PublicStudy> => answer(of(study)),
+    /** Deletes everything of the participant who has this code, in any notation of the code. */
+    withdraw: (study: string, code: string): Promise<Receipt> =>
+      answer(`${of(study)}/withdraw`, { method: 'POST', body: { code } }),
   };
 }
 
 /** The server accepts bodies of 512 KiB at most. */
 const recordsAtOnce = 50;
 
-/** The requests of the experimenter's pages to the server. */
-export interface ExperimenterClient {
-  studies(): Promise<readonly StudyListing[]>;
-  /** `newVersion` allows another plan for a study that has begun. */
-  addStudy(plan: unknown, simulated: boolean, newVersion?: boolean): Promise<StudyInfo>;
-  /** Resolves with the records under this version of the plan, or under the newest one. */
-  records(study: string, version?: number): Promise<RecordedStudy>;
-  participants(study: string): Promise<readonly ParticipantState[]>;
-  receipts(study: string): Promise<readonly Receipt[]>;
-  command(study: string, participant: string, command: StudyCommand): Promise<void>;
-  remark(study: string, participant: string, text: string): Promise<void>;
-  release(study: string, participant: string): Promise<void>;
-  /** Makes another invitation; links with the old one stop working. */
-  reinvite(study: string, participant: string): Promise<void>;
-  /** Resolves with the zip file of a participant, or of all under a version of the plan. */
-  export(
-    study: string,
-    of?: { readonly participant?: string; readonly version?: number },
-  ): Promise<{ readonly name: string; readonly zip: Blob }>;
-  delete(study: string, participant: string): Promise<Receipt>;
-  /** Stores a simulated participant from the first record to the last. */
-  addSimulated(study: string, simulated: SimulatedParticipant): Promise<void>;
-  /** Deletes a simulated study completely. */
-  deleteSimulated(study: string): Promise<void>;
-}
+export type ExperimenterClient = ReturnType<typeof createExperimenterClient>;
 
-export function createExperimenterClient(token: string, server: string): ExperimenterClient {
+/** Returns the requests of the experimenter's pages. Every call rejects with ServerRefusal or ServerUnreachable. */
+export function createExperimenterClient(token: string, server: string) {
   const answer = answersOf(server);
+  const post = <T>(path: string, body?: unknown) => answer<T>(path, { method: 'POST', token, body });
+  const list = async <T>(key: string, path: string) =>
+    (await answer<Record<string, readonly T[]>>(path, { token }))[key] as readonly T[];
   return {
-    studies: async () => (await answer<{ studies: StudyListing[] }>('', { token })).studies,
-    addStudy: (plan, simulated, newVersion = false) =>
-      answer('', { method: 'POST', token, body: { plan, simulated, newVersion } }),
-    records: (study, version) => answer(`${of(study)}/records${versionPart(version)}`, { token }),
-    participants: async (study) =>
-      (await answer<{ participants: ParticipantState[] }>(`${of(study)}/participants`, { token })).participants,
-    receipts: async (study) => (await answer<{ receipts: Receipt[] }>(`${of(study)}/receipts`, { token })).receipts,
-    async command(study, participant, command) {
-      await answer(`${of(study, participant)}/commands`, { method: 'POST', token, body: command });
-    },
-    async remark(study, participant, text) {
-      await answer(`${of(study, participant)}/remarks`, { method: 'POST', token, body: { text } });
-    },
-    release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
-    reinvite: (study, participant) => answer(`${of(study, participant)}/invitation`, { method: 'POST', token }),
-    async export(study, { participant, version } = {}) {
+    studies: () => list<StudyListing>('studies', ''),
+    /** `newVersion` allows another plan for a study that has begun. */
+    addStudy: (plan: unknown, simulated: boolean, newVersion = false): Promise<StudyInfo> =>
+      post('', { plan, simulated, newVersion }),
+    /** Resolves with the records under this version of the plan, or under the newest one. */
+    records: (study: string, version?: number): Promise<RecordedStudy> =>
+      answer(`${of(study)}/records${versionPart(version)}`, { token }),
+    participants: (study: string) => list<ParticipantState>('participants', `${of(study)}/participants`),
+    receipts: (study: string) => list<Receipt>('receipts', `${of(study)}/receipts`),
+    command: (study: string, participant: string, command: StudyCommand): Promise<unknown> =>
+      post(`${of(study, participant)}/commands`, command),
+    remark: (study: string, participant: string, text: string): Promise<unknown> =>
+      post(`${of(study, participant)}/remarks`, { text }),
+    release: (study: string, participant: string): Promise<void> => post(`${of(study, participant)}/release`),
+    /** Makes another invitation; links with the old one stop working. */
+    reinvite: (study: string, participant: string): Promise<void> => post(`${of(study, participant)}/invitation`),
+    /** Resolves with the zip file of a participant, or of all under a version of the plan. */
+    async export(
+      study: string,
+      { participant, version }: { readonly participant?: string; readonly version?: number } = {},
+    ) {
       // A zip file of many recordings takes minutes to make and to download.
       const asked = { token, patienceMs: null };
       const response = await ask(server, `${of(study, participant)}/export${versionPart(version)}`, asked);
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
       return { name: name ?? `${study}.zip`, zip: await whole(response.blob()) };
     },
-    delete: (study, participant) => answer(of(study, participant), { method: 'DELETE', token }),
-    async addSimulated(study, { participant, records, progress }) {
+    delete: (study: string, participant: string): Promise<Receipt> =>
+      answer(of(study, participant), { method: 'DELETE', token }),
+    /** Stores a simulated participant from the first record to the last. */
+    async addSimulated(study: string, { participant, records, progress }: SimulatedParticipant): Promise<void> {
       const place = of(study, participant);
-      await answer(`${place}/claim`, { method: 'POST', token, body: {} });
+      await post(`${place}/claim`, {});
       for (let at = 0; at < records.length; at += recordsAtOnce) {
-        const body = { records: records.slice(at, at + recordsAtOnce) };
-        await answer(`${place}/records`, { method: 'POST', token, body });
+        await post(`${place}/records`, { records: records.slice(at, at + recordsAtOnce) });
       }
       await answer(`${place}/progress`, { method: 'PUT', token, body: progress });
     },
-    deleteSimulated: (study) => answer(of(study), { method: 'DELETE', token }),
+    /** Deletes a simulated study completely. */
+    deleteSimulated: (study: string): Promise<void> => answer(of(study), { method: 'DELETE', token }),
   };
 }

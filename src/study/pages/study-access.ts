@@ -4,8 +4,8 @@ import { button, element } from 'threepoint-ui/element';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
 import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
+import { chooser } from './fields';
 import { forgetToken, keptToken, signInForm } from './sign-in';
-import { studySelect } from './study-select';
 
 /** The studies of this server, for a page whose user has entered the experimenter's token. */
 export class StudyAccess {
@@ -66,10 +66,18 @@ export class StudyAccess {
     return element('div', { class: 'bar' }, element('p', { role: 'status' }, noStudiesHere), ask);
   }
 
-  /** Returns the list of studies; `none` is its text without any. */
+  /** Returns the list of studies; `none` is its text without any. `choose` receives an id or an empty text. */
   select(chosen: string | undefined, none: string, choose: (id: string) => void): HTMLElement {
-    const list = studySelect(this.#listed, chosen, none, choose);
-    return element('label', {}, element('span', {}, 'Study'), list);
+    const studies = this.#listed.map(({ id, title, simulated }) => {
+      const marked = simulated && !title.startsWith('SIMULATED') ? `SIMULATED: ${title}` : title;
+      return { id, label: `${marked} (${id})` };
+    });
+    const first = { id: '', label: studies.length === 0 ? none : 'Choose a study' };
+    return chooser('Study', [first, ...studies], chosen ?? '', (id) => {
+      // The page does not redraw a list that has the focus.
+      if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+      choose(id);
+    });
   }
 
   signOutButton(): HTMLElement {

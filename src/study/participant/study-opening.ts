@@ -1,4 +1,4 @@
-import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../client/study-client';
+import { type ParticipantClient, ServerRefusal, ServerUnreachable, type StudyPlace } from '../client/study-client';
 import { PhrasedError } from '../model/phrases/phrases';
 import { scheduleFor } from '../model/plan/schedule';
 import { isLater, type Progress } from '../model/progress/progress';
@@ -7,12 +7,6 @@ import type { ConsentChoices } from './forms/study-form';
 import { ParticipantSession, type ParticipantSessionOptions, startSession } from './session/participant-session';
 import type { Unsent } from './session/session-store';
 import { type KeptSession, openStudyVault, type StudyVault } from './session/study-vault';
-
-/** A participant's place in a study. */
-export interface Place {
-  readonly study: string;
-  readonly participant: string;
-}
 
 /** A session that this device has stored is resumed; otherwise consent is asked for first. */
 export type Opened =
@@ -51,12 +45,12 @@ interface OnDevice {
   readonly kept: (Unsent & { readonly session: KeptSession }) | null;
 }
 
-async function readDevice({ study, participant }: Place): Promise<OnDevice> {
+async function readDevice(place: StudyPlace): Promise<OnDevice> {
   try {
     const vault = await openStudyVault();
-    const session = await vault.session(study, participant);
+    const session = await vault.session(place);
     if (!session) return { vault, kept: null };
-    const [records, motion] = await Promise.all([vault.records(study, participant), vault.motion(study, participant)]);
+    const [records, motion] = await Promise.all([vault.records(place), vault.motion(place)]);
     return { vault, kept: { session, records, motion } };
   } catch {
     // reason: a browser without storage is a state of the session (uploadStatus.storageFault), shown on every screen
@@ -68,7 +62,7 @@ async function readDevice({ study, participant }: Place): Promise<OnDevice> {
  * Resolves with whether this is the only page of the participant: two pages would send two sessions to the server. A
  * browser without storage refuses the lock too, and its pages share no session.
  */
-function alone({ study, participant }: Place): Promise<boolean> {
+function alone({ study, participant }: StudyPlace): Promise<boolean> {
   if (!navigator.locks) return Promise.resolve(true);
   return new Promise((resolve, reject) => {
     const held = navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
@@ -87,12 +81,9 @@ function alone({ study, participant }: Place): Promise<boolean> {
  * Resolves with the progress that was reported to the server, or with null if there is none or the server does not
  * answer.
  */
-async function reportedProgress(
-  client: ParticipantClient,
-  { study, participant, token }: KeptSession,
-): Promise<Progress | null> {
+async function reportedProgress(client: ParticipantClient, session: KeptSession): Promise<Progress | null> {
   try {
-    return await client.progress(study, participant, token);
+    return await client.progress(session);
   } catch (error) {
     if (error instanceof ServerUnreachable || error instanceof ServerRefusal) return null;
     throw error;
@@ -103,8 +94,8 @@ async function reportedProgress(
  * Opens a participant's session on this device, from its storage whether the server answers or not, otherwise with the
  * server. Rejects with a sentence or with the refusal of the server.
  */
-export async function openSession(place: Place, opening: OpeningOptions): Promise<Opened> {
-  const { study: id, participant } = place;
+export async function openSession(place: StudyPlace, opening: OpeningOptions): Promise<Opened> {
+  const { participant } = place;
   const { client } = opening;
   if (!(await alone(place))) throw new PhrasedError('entrance.otherTab', { participant });
   const { vault, kept } = await readDevice(place);
@@ -117,7 +108,7 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
     session.apply({ type: 'reload' });
     return { kind: 'resumed', session };
   }
-  const study = await client.study(id, participant);
+  const study = await client.study(place);
   return {
     kind: 'new',
     study,
@@ -125,7 +116,7 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
       const { motion, language } = choices;
       const { version } = study.consent;
       try {
-        const claimed = startSession(await client.claim(id, participant, invitation, version), id, participant);
+        const claimed = startSession(await client.claim(place, invitation, version), place);
         const begun = claimed.progress.motion !== null;
         const nothing = { records: [], motion: [] };
         const session = new ParticipantSession(begun ? withChoices(claimed, choices) : claimed, nothing, options);
@@ -148,7 +139,7 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
 }
 
 /** Deletes everything of this participant from the device; rejects if its storage fails. */
-export async function forgetSession({ study, participant }: Place): Promise<void> {
+export async function forgetSession(place: StudyPlace): Promise<void> {
   const vault = await openStudyVault();
-  await vault.forget(study, participant);
+  await vault.forget(place);
 }

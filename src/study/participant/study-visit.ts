@@ -1,8 +1,13 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { ParticipantClient } from '../client/study-client';
+import { sentence } from 'threepoint-ui/phrase-parts';
+import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
+import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
+import { inLanguage } from '../model/phrases/words';
+import type { PublicStudy } from '../model/progress/study-api';
+import { reasonFor } from './reasons';
 import { RunningStudy } from './running-study';
-import { StudyEntrance } from './study-entrance';
-import { forgetSession, openSession } from './study-opening';
+import type { ParticipantSession } from './session/participant-session';
+import { forgetSession, type Opened, openSession } from './study-opening';
 import type { StudyPage } from './study-page';
 import type { StudyHost } from './trial/study-host';
 
@@ -23,35 +28,39 @@ export interface VisitState {
   readonly online: boolean;
 }
 
-/** A visit of the page for a study: its entrance, then the session until the page closes. */
+type NewSession = Extract<Opened, { kind: 'new' }>;
+
+/** A visit of the page for a study: participant, invitation and consent, then the session until the page closes. */
 export class StudyVisit {
+  readonly #asked: AskedStudy;
+  readonly #client: ParticipantClient;
+  readonly #host: StudyHost;
   readonly #page: StudyPage;
-  readonly #entrance: StudyEntrance;
   #running: RunningStudy | null = null;
 
   constructor(asked: AskedStudy, client: ParticipantClient, host: StudyHost, page: StudyPage) {
+    this.#asked = asked;
+    this.#client = client;
+    this.#host = host;
     this.#page = page;
-    const options = {
-      client,
-      now: page.now,
-      onChange: () => this.#running?.show(),
-      onCommand: () => this.#running?.conclude(),
-    };
-    this.#entrance = new StudyEntrance(asked, {
-      page,
-      open: (participant) => openSession({ study: asked.study, participant }, options),
-      onSession: (session) => {
-        const { participant } = session.progress;
-        const forget = () => forgetSession({ study: asked.study, participant });
-        this.#running = new RunningStudy(session, { host, page, forget });
-        this.#running.begin();
-      },
-    });
   }
 
-  /** Resolves when the session is open or a form asks for what is missing. */
-  enter(): Promise<void> {
-    return this.#entrance.enter();
+  /** Resolves when the session is open or a form asks for missing input; faults are shown. */
+  async enter(): Promise<void> {
+    const { participant } = this.#asked;
+    if (participant === null) {
+      this.#askWho(null);
+      return;
+    }
+    try {
+      const opened = await this.#open(participant);
+      const invitation = this.#page.address.invitation();
+      if (opened.kind === 'resumed') this.#begin(opened.session);
+      else if (invitation === null) this.#askWho(opened.study);
+      else this.#askForConsent(opened, participant, invitation);
+    } catch (error) {
+      this.#page.display.ask({ kind: 'fault', ...this.#fault(error) });
+    }
   }
 
   /** Whether no trial is being played, so that hands that point at the sheet draw no bow. */
@@ -97,5 +106,93 @@ export class StudyVisit {
       unsaved,
       online,
     };
+  }
+
+  #open(participant: string): Promise<Opened> {
+    return openSession(
+      { study: this.#asked.study, participant },
+      {
+        client: this.#client,
+        now: this.#page.now,
+        onChange: () => this.#running?.show(),
+        onCommand: () => this.#running?.conclude(),
+      },
+    );
+  }
+
+  #begin(session: ParticipantSession): void {
+    const { participant } = session.progress;
+    const forget = () => forgetSession({ study: this.#asked.study, participant });
+    this.#running = new RunningStudy(session, { host: this.#host, page: this.#page, forget });
+    this.#running.begin();
+  }
+
+  /** Returns the study's language that the user of the browser reads, or one of the page without a study. */
+  #languageOf(study: PublicStudy | null): string {
+    return preferredLanguage(study?.languages ?? shippedLanguages, this.#page.languages);
+  }
+
+  #phrasesOf(study: PublicStudy | null): Phrases {
+    return phrasesOf(study ?? {}, this.#languageOf(study));
+  }
+
+  #fault(error: unknown): { readonly phrases: Phrases; readonly text: string } {
+    const phrases = this.#phrasesOf(null);
+    const unknown = error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer);
+    const text = unknown ? phrases.say('entrance.noStudy', { study: this.#asked.study }) : reasonFor(error, phrases);
+    return { phrases, text };
+  }
+
+  /**
+   * Asks for participant and invitation if the address lacks them. `complaint` is what was wrong with the address, in
+   * the language of `phrases`.
+   */
+  #askWho(study: PublicStudy | null, phrases = this.#phrasesOf(study), complaint: string | null = null): void {
+    const { display, address } = this.#page;
+    // A link that is pasted into the address of this tab may change its fragment only.
+    address.reloadWhenChanged();
+    display.ask({
+      kind: 'participant',
+      phrases,
+      complaint,
+      known: { participant: this.#asked.participant, invitation: address.invitation() },
+      go: (invited) => address.goTo(invited),
+      decline: () => display.ask({ kind: 'declined', phrases, title: phrases.say('study') }),
+    });
+  }
+
+  #askForConsent({ study, agree }: NewSession, participant: string, invitation: string): void {
+    const { display } = this.#page;
+    display.ask({
+      kind: 'consent',
+      phrases: this.#phrasesOf(study),
+      language: this.#languageOf(study),
+      study,
+      participant,
+      agree: async (choices) => {
+        const { contact } = study;
+        const phrases = phrasesOf(study, choices.language ?? study.languages[0]);
+        const taken = await agree(choices, invitation);
+        if (taken === 'uninvited') {
+          const complaint =
+            contact === null
+              ? phrases.say('entrance.wrongInvitation', { participant })
+              : phrases.say('entrance.wrongInvitationRemote', { participant, contact });
+          this.#askWho(study, phrases, complaint);
+          return null;
+        }
+        if (taken === 'changed') {
+          this.#page.address.reload();
+          return null;
+        }
+        if ('why' in taken) {
+          return `${sentence(reasonFor(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
+        }
+        this.#begin(taken);
+        return null;
+      },
+      decline: (phrases) =>
+        display.ask({ kind: 'declined', phrases, title: inLanguage(study.title, phrases.language) }),
+    });
   }
 }

@@ -2,7 +2,7 @@ import { ValidationError } from 'threepoint/core/validation/validation';
 import type { Words } from '../model/phrases/words';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';
-import { type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
+import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
 import { advance, type ProgressEvent } from '../model/progress/advance';
 import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
 import type { Demographics } from '../model/records/demographics';
@@ -89,7 +89,6 @@ const drawDemographics = (random: RandomSource): Demographics => ({
   vision: oneOf(random, ['normal', 'corrected']),
 });
 
-type GameStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
 type QuestionnaireStep = Extract<StudyStep, { kind: 'questionnaire' }>;
 
 /** Seconds between the starts of two participants. */
@@ -149,7 +148,7 @@ class SimulatedRounds {
   }
 
   /** Returns the result of a trial; participants who play together share a round. */
-  outcomeOf({ participant, groups }: Schedule, step: GameStep, run: number, attempt: number): TrialOutcome {
+  outcomeOf({ participant, groups }: Schedule, step: PlayedStep, run: number, attempt: number): TrialOutcome {
     const task = this.plan.tasks.find(({ id }) => id === step.task);
     const group = groups[step.task];
     if (!task || !group) throw new Error(`the plan has no task "${step.task}"`);
@@ -240,7 +239,7 @@ class SimulatedSession {
     }
   }
 
-  #play(step: GameStep): void {
+  #play(step: PlayedStep): void {
     const { mishaps } = this.#models.performance;
     this.#tell({ type: 'start' });
     if (this.#random.uniform() < mishaps.reload) {

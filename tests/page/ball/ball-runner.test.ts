@@ -6,7 +6,8 @@ import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ba
 import { createBallRunner } from 'threepoint-page/ball/ball-runner';
 import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
-import { type FinishedTrial, type PlayedStep, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
+import type { PlayedStep } from 'threepoint-study/model/plan/schedule';
+import { type FinishedTrial, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { expect, test } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { activityServices } from '../activity-services';

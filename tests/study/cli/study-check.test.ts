@@ -4,12 +4,12 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { planJsonSchema } from 'threepoint-study/cli/check/plan-json-schema';
 import { shippedPhrases } from 'threepoint-study/model/phrases/phrases';
-import { checkedPlan, planComplaints, type StudyTask } from 'threepoint-study/model/plan/plan';
+import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan/plan';
 import { durationOf, outlineOf } from 'threepoint-study/model/plan/plan-outline';
 import { orderCounts } from 'threepoint-study/model/plan/plan-remarks';
 import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
-import { examplePlan, paperFile, paperPlan } from '../model/studies';
+import { examplePlan, paperFile, paperPlan, planComplaints } from '../model/studies';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const read = (path: string) => readFileSync(join(root, path), 'utf8');

@@ -14,16 +14,20 @@ const clientOf = async (status: number, body: string) =>
 
 test('a host of files is told from a server that has no such study', async () => {
   const files = await clientOf(404, '<h1>Not found</h1>');
-  await expect(files.study('paper', 'P01')).rejects.toThrow(NoStudyServer);
-  await expect(files.study('paper', 'P01')).rejects.toThrow('this page comes from a host without one');
+  await expect(files.study({ study: 'paper', participant: 'P01' })).rejects.toThrow(NoStudyServer);
+  await expect(files.study({ study: 'paper', participant: 'P01' })).rejects.toThrow(
+    'this page comes from a host without one',
+  );
   const server = await clientOf(404, '{"error":"there is no study \\"paper\\"","field":null}');
-  await expect(server.study('paper', 'P01')).rejects.toThrow(ServerRefusal);
-  await expect(server.study('paper', 'P01')).rejects.not.toThrow(NoStudyServer);
+  await expect(server.study({ study: 'paper', participant: 'P01' })).rejects.toThrow(ServerRefusal);
+  await expect(server.study({ study: 'paper', participant: 'P01' })).rejects.not.toThrow(NoStudyServer);
 });
 
 test('a server that is away for now is unreachable, with a proxy’s page as with our own sentence', async () => {
   for (const body of ['<h1>Bad gateway</h1>', '{"error":"starting"}']) {
-    await expect((await clientOf(502, body)).study('paper', 'P01')).rejects.toThrow(ServerUnreachable);
+    await expect((await clientOf(502, body)).study({ study: 'paper', participant: 'P01' })).rejects.toThrow(
+      ServerUnreachable,
+    );
   }
 });
 

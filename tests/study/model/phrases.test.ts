@@ -10,10 +10,10 @@ import {
   phrasesOf,
   preferredLanguage,
 } from 'threepoint-study/model/phrases/phrases';
-import { checkedPlan, planComplaints } from 'threepoint-study/model/plan/plan';
+import { checkedPlan } from 'threepoint-study/model/plan/plan';
 import { remarksOn } from 'threepoint-study/model/plan/plan-remarks';
 import { describe, expect, test } from 'vitest';
-import { examplePlan } from './studies';
+import { examplePlan, planComplaints } from './studies';
 
 const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));
 

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
+import { parsePlan, readPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import type { Schedule, StudyStep } from 'threepoint-study/model/plan/schedule';
 import { advance, type ProgressEvent } from 'threepoint-study/model/progress/advance';
 import { begin, currentStep, type Progress } from 'threepoint-study/model/progress/progress';
@@ -133,4 +133,10 @@ export function session(schedule: Schedule, simulated = false) {
       throw new Error('the study does not end');
     },
   };
+}
+
+/** What is wrong with the text of a plan's file, each with file, field and reason. */
+export function planComplaints(json: string, file: string): readonly string[] {
+  const read = readPlan(json, file);
+  return 'faults' in read ? read.faults.map(({ message }) => message) : [];
 }

@@ -1,4 +1,4 @@
-import { planToBegin } from 'threepoint-study/pages/experimenter/new-study';
+import { simulatedPlan } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
 import { examplePlan } from '../model/studies';
 import { now, servedStudies } from '../server/running-studies';
@@ -6,7 +6,7 @@ import { now, servedStudies } from '../server/running-studies';
 test('a study is begun as simulated with any name that a plan may have, and is called so in each of its languages', async () => {
   const { store } = await servedStudies();
   const title = { en: `Two ${'very '.repeat(21)}alike`, de: `Zwei ${'sehr '.repeat(21)}gleiche` };
-  const plan = planToBegin(JSON.stringify({ ...examplePlan(), id: `two-${'a'.repeat(44)}`, title }), true);
+  const plan = simulatedPlan({ ...examplePlan(), id: `two-${'a'.repeat(44)}`, title });
   store.plans.add(plan, { simulated: true, at: now });
   expect(plan.id).toBe(`two-${'a'.repeat(33)}-simulated`);
   expect(plan.title).toEqual({

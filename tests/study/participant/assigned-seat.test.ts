@@ -41,8 +41,11 @@ async function invited() {
   const client = createParticipantClient(origin);
   const come = async (participant: string) => {
     const { version } = paperPlan().consent;
-    const { token } = await client.claim('paper', participant, invitationOf(participant), version);
-    const { connect, avatars } = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
+    const { token } = await client.claim({ study: 'paper', participant }, invitationOf(participant), version);
+    const { connect, avatars } = await assignedSeat(
+      () => client.seat({ study: 'paper', participant, token }, trial),
+      clock,
+    );
     expect(avatars).toBeNull();
     const connection = connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());
     onTestFinished(() => connection.leave());

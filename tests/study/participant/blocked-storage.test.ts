@@ -6,7 +6,7 @@ import { reportFigures } from '../../reliability/report-figures';
 import { aWomanOf26 } from '../model/studies';
 import { agree, beforeTheQuestions, choose } from './participant-steps';
 import { browser, type Tab } from './study-browser';
-import { type StudyServer, studyServer } from './study-server';
+import { place, type StudyServer, studyServer } from './study-server';
 
 const blockedFactories = {
   'is null': null,
@@ -107,7 +107,7 @@ test('storage that answers again takes what it missed', { tags: ['full'] }, asyn
   tab.display.press('resume');
   await tab.exchange();
   const vault = await openStudyVault();
-  await expect.poll(async () => (await vault.session('paper', 'P01'))?.progress.paused).toBe(false);
+  await expect.poll(async () => (await vault.session(place))?.progress.paused).toBe(false);
 });
 
 test('a session that the storage does not give out is not begun a second time, and goes on once it does', {

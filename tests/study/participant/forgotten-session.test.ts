@@ -1,7 +1,7 @@
 import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, test } from 'vitest';
 import { beforeTheQuestions, choose } from './participant-steps';
-import { studyServer } from './study-server';
+import { place, studyServer } from './study-server';
 
 test('after a withdrawal in another tab nothing that is pressed here stores the participant in this browser again', async () => {
   const server = await studyServer();
@@ -9,13 +9,13 @@ test('after a withdrawal in another tab nothing that is pressed here stores the 
   await tab.exchange();
   server.store.deletion.delete('paper', 'P01', 'withdrawn', 1e9);
   const vault = await openStudyVault();
-  await vault.forget('paper', 'P01');
+  await vault.forget(place);
   choose(tab, 4);
   tab.display.press('pause');
   await tab.exchange();
   expect(tab.display.shown).toBe('locked-out');
-  expect(await vault.session('paper', 'P01')).toBeNull();
-  expect(await vault.records('paper', 'P01')).toEqual([]);
+  expect(await vault.session(place)).toBeNull();
+  expect(await vault.records(place)).toEqual([]);
   // Nothing is lost that should be kept: the page may be closed without a question.
   expect(tab.visit.losesAnswers).toBe(false);
 });

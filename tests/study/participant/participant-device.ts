@@ -4,6 +4,7 @@ import { ParticipantSession, startSession } from 'threepoint-study/participant/s
 import { openStudyVault, type StudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, vi } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
+import { place } from './study-server';
 
 const plan = paperPlan();
 
@@ -28,12 +29,8 @@ export async function device(
     onChange: () => undefined,
   });
   const vault = await openStudyVault(name);
-  const claim = await client.claim('paper', 'P01', invitation, plan.consent.version);
-  const first = new ParticipantSession(
-    startSession(claim, 'paper', 'P01'),
-    { records: [], motion: [] },
-    options(vault),
-  );
+  const claim = await client.claim(place, invitation, plan.consent.version);
+  const first = new ParticipantSession(startSession(claim, place), { records: [], motion: [] }, options(vault));
   return {
     first,
     claim,
@@ -42,9 +39,9 @@ export async function device(
     /** The page is loaded again: nothing is left but the vault. */
     async reload(): Promise<ParticipantSession> {
       const again = await openStudyVault(name);
-      const kept = await again.session('paper', 'P01');
+      const kept = await again.session(place);
       if (!kept) throw new Error('the vault holds no session');
-      const left = { records: await again.records('paper', 'P01'), motion: await again.motion('paper', 'P01') };
+      const left = { records: await again.records(place), motion: await again.motion(place) };
       const session = new ParticipantSession(kept, left, options(again));
       session.apply({ type: 'reload' });
       return session;

@@ -5,7 +5,7 @@ import { unpacked } from 'threepoint-study/server/storage/motion';
 import { expect, test } from 'vitest';
 import { answeringHost } from '../../rooms/client/answering-host';
 import { calibration, device, toTheFirstQuestion } from './participant-device';
-import { type StudyServer, studyServer } from './study-server';
+import { place, type StudyServer, studyServer } from './study-server';
 
 const upright = { orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' } as const;
 const frame: TrackingFrame = {
@@ -23,13 +23,13 @@ test('tracked frames reach the server with consent to them, and leave the device
   toTheFirstQuestion(first, true);
   first.keepMotion('archery/1/trial-1@1.1:trial', recording);
   await first.settled();
-  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
+  expect(await vault.motion(place)).toHaveLength(1);
   await first.exchange();
   await first.motionSent();
   expect(store.motion.all('paper').map(unpacked)).toEqual([
     { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
   ]);
-  expect(await vault.motion('paper', 'P01')).toEqual([]);
+  expect(await vault.motion(place)).toEqual([]);
 });
 
 test('a recording that the server refuses is reported and kept, and holds up neither commands nor other recordings', async () => {
@@ -43,7 +43,7 @@ test('a recording that the server refuses is reported and kept, and holds up nei
   await first.motionSent();
   expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
   expect(store.motion.all('paper').map(({ trial }) => trial)).toEqual(['archery/2/trial-1@1.1:trial']);
-  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
+  expect(await vault.motion(place)).toHaveLength(1);
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await first.exchange();
   expect(first.progress.paused).toBe(true);

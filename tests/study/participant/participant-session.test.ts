@@ -3,7 +3,7 @@ import { isLater } from 'threepoint-study/model/progress/progress';
 import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
 import { calibration, device, fillDevice, toTheFirstQuestion, toTheFirstRest } from './participant-device';
-import { studyServer } from './study-server';
+import { place, studyServer } from './study-server';
 
 afterEach(() => vi.restoreAllMocks());
 
@@ -14,11 +14,11 @@ test('what the server has acknowledged leaves the device, and nothing before', a
   toTheFirstQuestion(first);
   await first.settled();
   const kinds = ['consent', 'demographics', 'calibration', 'trial', 'trial'];
-  expect((await vault.records('paper', 'P01')).map(({ kind }) => kind)).toEqual(kinds);
+  expect((await vault.records(place)).map(({ kind }) => kind)).toEqual(kinds);
   expect(store.records.all('paper')).toEqual([]);
   await first.exchange();
   expect(store.records.all('paper').map(({ kind }) => kind)).toEqual(kinds);
-  expect(await vault.records('paper', 'P01')).toEqual([]);
+  expect(await vault.records(place)).toEqual([]);
   expect(first.uploadStatus).toEqual({
     unsent: 0,
     unsaved: 0,
@@ -74,7 +74,7 @@ test('a full device says so, keeps the answers in the page, and stores them when
   makeRoom();
   await first.exchange();
   expect(first.uploadStatus).toMatchObject({ unsent: 5, unsaved: 0, storageFault: null });
-  expect(await vault.records('paper', 'P01')).toHaveLength(5);
+  expect(await vault.records(place)).toHaveLength(5);
   await server.restart();
   await first.exchange();
   expect(server.store.records.all('paper')).toHaveLength(5);
@@ -94,11 +94,7 @@ test('a browser without storage sends everything all the same', async () => {
   const server = await studyServer();
   const { store } = server;
   const { claim, options } = await device(server);
-  const session = new ParticipantSession(
-    startSession(claim, 'paper', 'P01'),
-    { records: [], motion: [] },
-    options(null),
-  );
+  const session = new ParticipantSession(startSession(claim, place), { records: [], motion: [] }, options(null));
   toTheFirstQuestion(session);
   expect(session.uploadStatus).toMatchObject({ unsaved: 5, storageFault: 'this browser offers no storage' });
   await session.exchange();
@@ -173,7 +169,7 @@ test('a session that an older page kept follows no command again', async () => {
   await first.exchange();
   first.apply({ type: 'resume' });
   await first.settled();
-  const kept = await vault.session('paper', 'P01');
+  const kept = await vault.session(place);
   const { commandsSeen, ...progress } = first.progress;
   expect(commandsSeen).toBeGreaterThan(0);
   // The number was stored here before it was part of the progress.
@@ -208,11 +204,11 @@ test('a record that the server refuses is reported and kept, and does not hold u
   const [stored] = store.records.all('paper').filter(({ kind }) => kind === 'demographics');
   if (!stored) throw new Error('there are no demographics');
   // Another story under an id that is taken, as after a device was set back to an old backup.
-  await vault.save((await vault.session('paper', 'P01')) as never, [{ ...stored, at: stored.at + 5 }]);
-  const kept = await vault.session('paper', 'P01');
+  await vault.save((await vault.session(place)) as never, [{ ...stored, at: stored.at + 5 }]);
+  const kept = await vault.session(place);
   const again = new ParticipantSession(
     kept as NonNullable<typeof kept>,
-    { records: await vault.records('paper', 'P01'), motion: [] },
+    { records: await vault.records(place), motion: [] },
     { client: createParticipantClient(server.origin), vault, now: () => 2e9, onChange: () => undefined },
   );
   for (const question of ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7'])

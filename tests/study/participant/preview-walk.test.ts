@@ -1,6 +1,4 @@
-import { planComplaints } from 'threepoint-study/model/plan/plan';
 import { outlineOf } from 'threepoint-study/model/plan/plan-outline';
-import { planFrom } from 'threepoint-study/participant/preview/plan-source';
 import { PreviewWalk } from 'threepoint-study/participant/preview/preview-walk';
 import { describe, expect, test } from 'vitest';
 import { examplePlan, latencyPlan, paperPlan } from '../model/studies';
@@ -136,11 +134,4 @@ test('what is met at one place alone is shown there; the rest where one wants it
   expect(walk.place).toBe('headset');
   walk.goTo(walk.stops.findIndex(({ kind }) => kind === 'question'));
   expect(walk.place).toBe('desk');
-});
-
-test('a file with mistakes is answered with every one of them, as npm run study:check does', () => {
-  const wrong = JSON.stringify({ ...examplePlan(), seed: -1, participants: 'many' });
-  const read = planFrom(wrong, 'mine.json');
-  expect('complaints' in read && read.complaints).toEqual(planComplaints(wrong, 'mine.json'));
-  expect('complaints' in read && read.complaints).toHaveLength(2);
 });

@@ -20,7 +20,7 @@ function participant(...events: readonly ProgressEvent[]) {
   let now = 1_800_000_000;
   const claim = { plan, token: 'a token', withdrawalCode: 'a code', simulated: false, progress: null };
   const session = new ParticipantSession(
-    startSession(claim as Parameters<typeof startSession>[0], plan.id, 'P01'),
+    startSession(claim as Parameters<typeof startSession>[0], { study: plan.id, participant: 'P01' }),
     { records: [], motion: [] },
     { client: createParticipantClient('http://127.0.0.1:9'), vault: null, now: () => now, onChange: () => undefined },
   );

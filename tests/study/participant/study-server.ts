@@ -10,6 +10,9 @@ import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { studiesInThisThread } from '../server/running-studies';
 
+/** The place of the first participant of the paper's study. */
+export const place = { study: 'paper', participant: 'P01' } as const;
+
 /** The contents of records by kind. */
 type Bodies = { readonly [One in StudyRecord as One['kind']]: One['body'] };
 

@@ -13,7 +13,7 @@ import {
   play,
 } from './participant-steps';
 import { browser, ofAnother } from './study-browser';
-import { studyServer } from './study-server';
+import { place, studyServer } from './study-server';
 
 describe('the entrance', () => {
   test('an address without a participant asks who takes part, and leads to the place that is told', async () => {
@@ -57,11 +57,11 @@ describe('the entrance', () => {
       const form = tab.display.asked(first);
       form.decline(form.phrases);
       expect(tab.display.shown).toBe('declined');
-      const [place] = server.store.overview('paper', 1e9);
-      expect(place).toMatchObject({ claimed: false, records: 0, session: null, invitation: server.invitation });
+      const [state] = server.store.overview('paper', 1e9);
+      expect(state).toMatchObject({ claimed: false, records: 0, session: null, invitation: server.invitation });
       const vault = await openStudyVault();
-      expect(await vault.session('paper', 'P01')).toBeNull();
-      expect(await vault.records('paper', 'P01')).toEqual([]);
+      expect(await vault.session(place)).toBeNull();
+      expect(await vault.records(place)).toEqual([]);
     },
   );
 
@@ -322,6 +322,6 @@ describe('a place that was released', () => {
 
     form.restart();
     expect(await tab.wentTo).toBe('reload');
-    expect(await (await openStudyVault()).session('paper', 'P01')).toBeNull();
+    expect(await (await openStudyVault()).session(place)).toBeNull();
   });
 });

@@ -2,15 +2,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { embodimentInWords } from '../../model/plan/embodiment';
-import {
-  languagesOf,
-  parsePlan,
-  participantsOf,
-  planComplaints,
-  type StudyPlan,
-  studyTitle,
-  taskTitle,
-} from '../../model/plan/plan';
+import { languagesOf, participantsOf, readPlan, type StudyPlan, studyTitle, taskTitle } from '../../model/plan/plan';
 import { durationOf, outlineOf } from '../../model/plan/plan-outline';
 import { cohortCounts, orderCounts, remarksOn } from '../../model/plan/plan-remarks';
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
@@ -58,15 +50,14 @@ function summary(plan: StudyPlan): readonly string[] {
 
 function check(): void {
   if (!existsSync(file)) throw new ValidationError('', `there is no file ${file}`);
-  const text = readFileSync(file, 'utf8');
-  const complaints = planComplaints(text, file);
-  if (complaints.length > 0) {
-    for (const complaint of complaints) console.error(complaint);
-    console.error(`${complaints.length === 1 ? 'One mistake' : `${complaints.length} mistakes`} in ${file}.`);
+  const read = readPlan(readFileSync(file, 'utf8'), file);
+  if ('faults' in read) {
+    for (const { message } of read.faults) console.error(message);
+    console.error(`${read.faults.length === 1 ? 'One mistake' : `${read.faults.length} mistakes`} in ${file}.`);
     process.exitCode = 1;
     return;
   }
-  const plan = parsePlan(text, file);
+  const { plan } = read;
   const shown = participant ?? (participantsOf(plan)[0] as string);
   const screens = outlineOf(plan, shown).map(
     ({ at, seconds, shows }) => `  ${at.padEnd(8)} ${(seconds === null ? '' : clock(seconds)).padStart(6)}  ${shows}`,

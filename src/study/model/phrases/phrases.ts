@@ -17,7 +17,7 @@ export const phraseKeys = Object.keys(english) as readonly PhraseKey[];
 /** The phrases of the page by language. */
 export const shippedPhrases: Readonly<Record<string, Catalogue>> = { en: english, de: german };
 /** The languages in which the page has every phrase. */
-export const shippedLanguages = Object.keys(shippedPhrases) as readonly string[];
+export const shippedLanguages = Object.keys(shippedPhrases) as unknown as readonly [string, ...string[]];
 
 /** The names of the placeholders in a text: "{count} of {total}" has count and total. */
 export const gapsIn = (text: string): ReadonlySet<string> =>

@@ -36,6 +36,12 @@ const groupsOfGame: Record<StudyTask['game'], { readonly size: number; readonly 
 export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
   Math.max(...tasks.map(({ groupSize }) => groupSize));
 
+const refuseRepeatedIds = (list: readonly { readonly id: string }[], name: string): void =>
+  refuseRepeated(
+    list.map(({ id }) => id),
+    (index) => `${name}[${index}].id`,
+  );
+
 function refuseRepeated(names: readonly string[], fieldOf: (index: number) => string): void {
   names.forEach((name, index) => {
     const first = names.indexOf(name);
@@ -71,10 +77,7 @@ function refuseQuestionnaires(plan: StudyPlan): void {
   const own = plan.questionnaires ?? [];
   const languages = languagesOf(plan);
   refuseRepeated(languages, (index) => `languages[${index}]`);
-  refuseRepeated(
-    own.map(({ id }) => id),
-    (index) => `questionnaires[${index}].id`,
-  );
+  refuseRepeatedIds(own, 'questionnaires');
   own.forEach((file, index) => {
     const field = `questionnaires[${index}]`;
     if (Object.hasOwn(shippedQuestionnaires, file.id)) {
@@ -132,10 +135,7 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
     }
     return;
   }
-  refuseRepeated(
-    cohorts.map(({ id }) => id),
-    (index) => `cohorts[${index}].id`,
-  );
+  refuseRepeatedIds(cohorts, 'cohorts');
   const together = largestGroup(plan);
   if (participants / together < cohorts.length) {
     const units = together === 1 ? 'participants' : `groups of ${together}`;
@@ -196,14 +196,8 @@ export const storedPlan = (value: unknown): StudyPlan => checked(planSchema, val
 /** Returns a new study from parsed JSON; throws a ValidationError that names the field. */
 export function checkedPlan(value: unknown): StudyPlan {
   const plan = checked(planSchema, value);
-  refuseRepeated(
-    plan.conditions.map(({ id }) => id),
-    (index) => `conditions[${index}].id`,
-  );
-  refuseRepeated(
-    plan.tasks.map(({ id }) => id),
-    (index) => `tasks[${index}].id`,
-  );
+  refuseRepeatedIds(plan.conditions, 'conditions');
+  refuseRepeatedIds(plan.tasks, 'tasks');
   if (plan.orders === 'all' && plan.conditions.length > mostOrdersListed) {
     throw new ValidationError(
       'orders',
@@ -230,40 +224,29 @@ export function checkedPlan(value: unknown): StudyPlan {
   return plan;
 }
 
-/** Returns a study from the text of its file; throws an Error that names the file and, if known, the field. */
-export function parsePlan(json: string, file: string): StudyPlan {
+/** A plan, or everything that is wrong with the text of its file, each with file, field and reason. */
+export type ReadPlan = { readonly plan: StudyPlan } | { readonly faults: readonly ValidationError[] };
+
+/** Returns the plan in the text of a file, or what is wrong with it. */
+export function readPlan(json: string, file: string): ReadPlan {
+  const fault = (field: string, complaint: string) => new ValidationError(field, complaint, file);
   try {
-    return checkedPlan(JSON.parse(json));
+    const value: unknown = JSON.parse(json);
+    const complaints = complaintsAbout(planSchema, value);
+    if (complaints.length === 0) return { plan: checkedPlan(value) };
+    return { faults: complaints.map(({ field, complaint }) => fault(field, complaint)) };
   } catch (error) {
-    if (error instanceof ValidationError) throw new ValidationError(error.field, error.complaint, file);
-    if (error instanceof SyntaxError) throw new ValidationError('', `this is not JSON: ${error.message}`, file);
+    if (error instanceof ValidationError) return { faults: [fault(error.field, error.complaint)] };
+    if (error instanceof SyntaxError) return { faults: [fault('', `this is not JSON: ${error.message}`)] };
     throw error;
   }
 }
 
-/**
- * Returns everything that is wrong with the text of a study's file, each with file, field and reason; empty: it is
- * valid.
- */
-export function planComplaints(json: string, file: string): readonly string[] {
-  let value: unknown;
-  try {
-    value = JSON.parse(json);
-  } catch (error) {
-    if (!(error instanceof SyntaxError)) throw error;
-    return [`${file}: this is not JSON: ${error.message}`];
-  }
-  const complaints = complaintsAbout(planSchema, value).map(({ field, complaint }) =>
-    [file, field, complaint].filter(Boolean).join(': '),
-  );
-  if (complaints.length > 0) return complaints;
-  try {
-    checkedPlan(value);
-    return [];
-  } catch (error) {
-    if (!(error instanceof ValidationError)) throw error;
-    return [[file, error.field, error.complaint].filter(Boolean).join(': ')];
-  }
+/** Returns the plan in the text of a file; throws a ValidationError that names the file and, if known, the field. */
+export function parsePlan(json: string, file: string): StudyPlan {
+  const read = readPlan(json, file);
+  if ('plan' in read) return read.plan;
+  throw read.faults[0];
 }
 
 /** Returns the codes P01, P02 … of a plan. */

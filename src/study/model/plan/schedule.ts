@@ -40,6 +40,11 @@ export type StudyStep =
       BlockStep & { readonly condition: string; readonly questionnaire: Questionnaire; readonly seconds: number })
   | StepOf<'end'>;
 
+/** The steps that are played. */
+export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
+
+export const isPlayed = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
+
 /** The steps of one participant, from consent to the end. */
 export interface Schedule {
   readonly study: string;
@@ -53,6 +58,12 @@ export interface Schedule {
   readonly groups: Readonly<Record<string, { readonly number: number; readonly members: readonly string[] }>>;
   readonly steps: readonly StudyStep[];
 }
+
+/** Returns the first trial of a block, or undefined. */
+export const trialOf = ({ steps }: Pick<Schedule, 'steps'>, { task, block }: BlockStep) =>
+  steps.find((step) => step.kind === 'trial' && step.task === task && step.block === block) as
+    | Extract<StudyStep, { kind: 'trial' }>
+    | undefined;
 
 /** Returns the name of a condition that participants read, for lists of researchers (English). */
 export const blindLabel = (step: { readonly block: number }): string => `Round ${step.block}`;

@@ -1,6 +1,6 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { checked, text, ValidationError } from 'threepoint/core/validation/validation';
-import type { Schedule, StudyStep } from '../plan/schedule';
+import { isPlayed, type PlayedStep, type Schedule, type StudyStep, trialOf } from '../plan/schedule';
 import type { Answer } from '../questionnaires/question-kind';
 import { checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';
 import { reachedRule } from '../questionnaires/stopping-rule';
@@ -84,48 +84,14 @@ export function advance(schedule: Schedule, progress: Progress, event: ProgressE
     return at.refused(refusals.asked);
   }
   try {
-    const next = follow(at, event) ?? at.refused(`"${event.type}" does not fit the step "${at.step.id}"`);
+    const next =
+      (handlers[event.type] as Handler)(at, event) ??
+      at.refused(`"${event.type}" does not fit the step "${at.step.id}"`);
     if (next.progress === progress) return next;
     return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
     return at.refused(error.message);
-  }
-}
-
-/** Returns null if the event does not fit this step. Throws a ValidationError for invalid content. */
-function follow(at: Moment, event: ProgressEvent): Advance | null {
-  switch (event.type) {
-    case 'consent':
-      return consent(at, event);
-    case 'demographics':
-      return demographics(at, event);
-    case 'calibrated':
-      return calibrated(at, event);
-    case 'start':
-      return start(at);
-    case 'trial-finished':
-      return trialFinished(at, event);
-    case 'answer':
-      return answer(at, event);
-    case 'submit':
-      return submit(at);
-    case 'tick':
-      return tick(at);
-    case 'pause':
-      return pause(at);
-    case 'resume':
-      return resume(at);
-    case 'stop':
-      return stop(at, event);
-    case 'go-on':
-      return goOn(at);
-    case 'void-block':
-      return voidBlock(at, event);
-    case 'remark':
-      return remark(at, event);
-    case 'reload':
-      return reload(at);
   }
 }
 
@@ -194,8 +160,6 @@ class Moment {
   }
 }
 
-const isPlayed = (step: StudyStep) => step.kind === 'trial' || step.kind === 'tutorial';
-
 function consent(at: Moment, { version, motion, language }: EventOf<'consent'>): Advance | null {
   if (at.step.kind !== 'consent') return null;
   const chosen = language === undefined ? {} : { language };
@@ -230,7 +194,7 @@ function start(at: Moment): Advance | null {
 
 function trialFinished(at: Moment, { outcome }: EventOf<'trial-finished'>): Advance | null {
   const { step, place, progress } = at;
-  if ((step.kind !== 'trial' && step.kind !== 'tutorial') || !progress.running || !place) return null;
+  if (!isPlayed(step) || !progress.running || !place) return null;
   const body = {
     place,
     condition: step.kind === 'trial' ? step.condition : null,
@@ -255,9 +219,7 @@ function submit(at: Moment): Advance | null {
   if (step.kind !== 'questionnaire' || !place) return null;
   const answers = checkedAnswers(step.questionnaire, progress.draft);
   const seconds = elapsedSeconds(progress, at.now);
-  const { embodiment } = at.schedule.steps.find(
-    (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
-  ) as Extract<StudyStep, { kind: 'trial' }>;
+  const { embodiment } = trialOf(at.schedule, step) as PlayedStep;
   const body = {
     place,
     condition: step.condition,
@@ -356,3 +318,11 @@ function reload(at: Moment): Advance {
   const again = { ...progress, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
   return at.withEvent(again, { type: 'interrupted', place, step: step.id });
 }
+
+/** Returns null if the event does not fit the step. Throws a ValidationError for invalid content. */
+type Handler<Event extends ProgressEvent = ProgressEvent> = (at: Moment, event: Event) => Advance | null;
+
+const handlers: { readonly [Type in ProgressEvent['type']]: Handler<EventOf<Type>> } = {
+  ...{ consent, demographics, calibrated, start, 'trial-finished': trialFinished, answer, submit, tick },
+  ...{ pause, resume, stop, 'go-on': goOn, 'void-block': voidBlock, remark, reload },
+};

@@ -1,24 +1,31 @@
+import { identifier, integerBetween, text } from 'threepoint/core/validation/validation';
+import * as v from 'valibot';
 import type { StudyPlan } from '../plan/plan';
 import type { ParticipantProfile } from '../records/participant-profile';
 import type { StudyRecord } from '../records/study-record';
 import type { Progress } from './progress';
 
-/** A block of a task, from 1. */
-export interface MeantBlock {
-  readonly task: string;
-  readonly block: number;
-}
+const blockSchema = v.strictObject({ task: identifier, block: integerBetween(1, 1000) });
 
-/**
- * A command of the experimenter to a participant's page; `of` is the block that was under way when it was given;
- * absent: the present one.
- */
-export type StudyCommand =
-  | { readonly type: 'start' }
-  | { readonly type: 'pause' }
-  | { readonly type: 'resume' }
-  | { readonly type: 'stop'; readonly by: 'experimenter'; readonly reason: string }
-  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: MeantBlock };
+/** A block of a task, from 1. */
+export type MeantBlock = v.InferOutput<typeof blockSchema>;
+
+export const commandSchema = v.variant('type', [
+  v.strictObject({ type: v.literal('start') }),
+  v.strictObject({ type: v.literal('pause') }),
+  v.strictObject({ type: v.literal('resume') }),
+  v.strictObject({ type: v.literal('stop'), by: v.literal('experimenter'), reason: text(500) }),
+  v.strictObject({
+    type: v.literal('void-block'),
+    reason: text(500),
+    repeat: v.boolean('expected true or false'),
+    /** The block that was under way when the command was given; absent: the present one. */
+    of: v.exactOptional(blockSchema),
+  }),
+]);
+
+/** A command of the experimenter to a participant's page. */
+export type StudyCommand = v.InferOutput<typeof commandSchema>;
 
 /** The largest recording that the server accepts [bytes]. */
 export const mostMotionBytes = 16 * 2 ** 20;
@@ -98,11 +105,10 @@ export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'>
   readonly contact: string | null;
 }
 
+export const playedTogetherSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
+
 /** A trial that a group plays together: a step of the schedule and the run of its block. */
-export interface PlayedTogether {
-  readonly step: string;
-  readonly run: number;
-}
+export type PlayedTogether = v.InferOutput<typeof playedTogetherSchema>;
 
 /** A seat in the room of such a trial, signed for one participant. */
 export interface SignedSeat {

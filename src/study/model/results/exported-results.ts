@@ -8,8 +8,7 @@ import { compareAll } from './compare-all';
 import { type ComparedCohorts, compareCohorts } from './compare-cohorts';
 import { compareConditions } from './compare-conditions';
 import { frameTimes } from './frame-times';
-import { answerMeasures, type CohortOf, type Measure, type Measured, scoreMeasures } from './measures';
-import { isPlanned, plannedMeasures } from './planned';
+import { answerMeasures, type CohortOf, isPlanned, type Measure, type Measured, scoreMeasures } from './measures';
 import { cohortsTable, conditionsTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
 
 /** Returns the subject of a question or the name of a scale; empty: none. */
@@ -43,7 +42,8 @@ export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): St
   const trials = trialsIn(records);
   const points = scoreMeasures(trials, 'points', cohortOf);
   const percent = scoreMeasures(trials, 'percent', cohortOf);
-  return { answers, scales, points, percent, planned: plannedMeasures([...answers, ...scales, ...points], plan) };
+  const planned = [...answers, ...scales, ...points].filter((measure) => isPlanned(measure, plan));
+  return { answers, scales, points, percent, planned };
 }
 
 /** Returns whether a study is analysed as a whole; two conditions without cohorts are only compared in pairs. */

@@ -1,4 +1,5 @@
 import { meanOf } from '../../statistics/summaries';
+import type { StudyPlan } from '../plan/plan';
 import type { AnswerRow } from '../tables/answer-tables';
 import { refuseMixture, type TrialRow } from '../tables/study-tables';
 
@@ -20,6 +21,12 @@ export interface Measured {
   /** The question and its place; null: scores. */
   readonly asked: Asked | null;
   readonly unit: 'answer' | 'points' | 'percent';
+}
+
+/** Returns whether the plan names a measure; scores are planned in points. */
+export function isPlanned({ of, asked, unit }: Measured, { planned = [] }: Pick<StudyPlan, 'planned'>): boolean {
+  const name = asked ? `${asked.task}/${asked.questionnaire}/${asked.question}` : `${of}/score`;
+  return unit !== 'percent' && planned.includes(name);
 }
 
 /** The values of a measure. */

@@ -1,11 +1,11 @@
-import { inLanguage } from '../phrases/words';
+import { inLanguage, type Words } from '../phrases/words';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
 import type { Answer } from '../questionnaires/question-kind';
 import { questionKind, questionKindNames } from '../questionnaires/question-kinds';
 import { scaleRange, scaleScore } from '../questionnaires/questionnaire-scores';
-import { type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
+import { type Answers, type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
 import type { Place, StudyRecord } from '../records/study-record';
-import { boolean, number, type Table, text } from './tidy-csv';
+import { boolean, number, rowFrom, type Table, text } from './tidy-csv';
 
 /** An answer to a question, or the value of a scale. */
 export interface AnswerRow {
@@ -27,29 +27,25 @@ export interface AnswerRow {
 /** Returns why the records of a block are not counted; empty: they are. */
 export type BlockExclusion = (participant: string, place: Place) => string;
 
-type AnswersBody = Extract<StudyRecord, { kind: 'answers' }>['body'];
+type AnswersRecord = Extract<StudyRecord, { kind: 'answers' }>;
 
 function rowsOf(
   records: readonly StudyRecord[],
   plan: StudyPlan,
   exclusion: BlockExclusion,
-  valuesOf: (asked: Questionnaire, answers: AnswersBody['answers']) => readonly (readonly [string, Answer | null])[],
-) {
+  valuesOf: (asked: Questionnaire, answers: Answers) => readonly (readonly [string, Answer | null])[],
+): readonly (AnswerRow & { readonly record: AnswersRecord })[] {
   return records.flatMap((record) => {
     if (record.kind !== 'answers') return [];
-    const { study, participant, simulated, at } = record;
-    const { place, answers, ...body } = record.body;
-    const asked = questionnaireNamed(plan, body.questionnaire);
+    const { participant, simulated } = record;
+    const { place, answers, condition, questionnaire } = record.body;
+    const asked = questionnaireNamed(plan, questionnaire);
     if (!asked)
-      throw new Error(`${participant} answered "${body.questionnaire}", which the plan "${plan.id}" does not hold`);
+      throw new Error(`${participant} answered "${questionnaire}", which the plan "${plan.id}" does not hold`);
+    const { task, block, run } = place;
+    const excluded = exclusion(participant, place);
     return valuesOf(asked, answers).map(([question, answer]) => ({
-      ...{ study, participant, simulated, task: place.task, block: place.block, run: place.run },
-      ...body,
-      language: body.language ?? languagesOf(plan)[0],
-      question,
-      answer,
-      at,
-      excluded: exclusion(participant, place),
+      ...{ record, participant, simulated, task, block, run, condition, questionnaire, question, answer, excluded },
     }));
   });
 }
@@ -68,82 +64,77 @@ const ids = 'small letters, digits, hyphens';
 const codes = 'letters, digits, - and _';
 const asked = (path: string) => `questionnaire: ${path}`;
 
+/** Returns the columns, with the kinds of questions that are registered now. */
+const questionColumns = () => [
+  text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
+  text('question', codes, asked('questions[].id'), 'Id.'),
+  text('language', 'a language tag', 'plan.json: languages', 'Language of the text in this row.'),
+  text('about', 'any text', asked('questions[].about'), 'Subject of the question.'),
+  text('text', 'any text', asked('questions[].text'), 'The words.'),
+  text('kind', questionKindNames().join(', '), asked('questions[].answer.kind'), 'Kind of question.'),
+  text('answers', 'any text', asked('questions[].answer'), 'Possible answers: ends of the scale, or options.'),
+  boolean('reversed', asked('questions[].reversed'), 'Whether scales count from + to − answer.'),
+  text('source', 'any text', asked('source'), 'Publication of the questionnaire.'),
+];
+
 /** Returns the table of questions with a row for each question and language. */
-export const questionTable = (plan: StudyPlan): Table => ({
-  name: 'questions',
-  columns: [
-    text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
-    text('question', codes, asked('questions[].id'), 'Id.'),
-    text('language', 'a language tag', 'plan.json: languages', 'Language of the text in this row.'),
-    text('about', 'any text', asked('questions[].about'), 'Subject of the question.'),
-    text('text', 'any text', asked('questions[].text'), 'The words.'),
-    text('kind', questionKindNames().join(', '), asked('questions[].answer.kind'), 'Kind of question.'),
-    text('answers', 'any text', asked('questions[].answer'), 'Possible answers: ends of the scale, or options.'),
-    boolean('reversed', asked('questions[].reversed'), 'Whether scales count from + to − answer.'),
-    text('source', 'any text', asked('source'), 'Publication of the questionnaire.'),
-  ],
-  rows: questionnairesOf(plan).flatMap(({ id, questions, source }) =>
-    questions.flatMap((question) =>
-      languagesOf(plan).map((language) => ({
-        questionnaire: id,
-        question: question.id,
-        language,
-        about: question.about ?? '',
-        text: inLanguage(question.text, language),
-        kind: question.answer.kind,
-        ...questionKind(question.answer).columns(question.answer, (words) => inLanguage(words, language)),
-        reversed: question.reversed ?? false,
-        source: source ?? '',
-      })),
+export function questionTable(plan: StudyPlan): Table {
+  const columns = questionColumns();
+  const rows = questionnairesOf(plan).flatMap((questionnaire) =>
+    questionnaire.questions.flatMap((question) =>
+      languagesOf(plan).map((language) => {
+        const inWords = (words: Words) => inLanguage(words, language);
+        const { answers } = questionKind(question.answer).columns(question.answer, inWords);
+        const { reversed = false } = question;
+        const computed = { questionnaire: questionnaire.id, language, text: inWords(question.text), answers, reversed };
+        return rowFrom(columns, questionnaire, computed, question);
+      }),
     ),
+  );
+  return { name: 'questions', columns, rows };
+}
+
+const scaleDefinitionColumns = [
+  text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
+  text('scale', codes, asked('scales[].id'), 'Id.'),
+  text('label', 'any text', asked('scales[].label'), 'Its name.'),
+  text(
+    'method',
+    'mean, sum, count, weighted-mean',
+    asked('scales[].method'),
+    'count: of answers of at_least or more; weighted-mean: by how often each was chosen.',
   ),
-});
+  text(
+    'questions',
+    'ids, divided by spaces',
+    asked('scales[].questions'),
+    'Questions from which it is computed; a repeated one counts twice.',
+  ),
+  text('choices', 'ids, divided by spaces', asked('scales[].choices'), 'Choices that give the weights; empty: none.'),
+  number(
+    'at_least',
+    '',
+    'any',
+    asked('scales[].atLeast'),
+    'Least answer that is counted; empty: the scale does not count.',
+  ),
+  number('factor', '', 'any', asked('scales[].factor'), 'The result is factor × (mean, sum or count) + offset.'),
+  number('offset', '', 'any', asked('scales[].offset'), 'See factor.'),
+  number('from', '', 'any', 'computed from the answers that can be given', 'Least value.'),
+  number('to', '', 'any', 'computed from the answers that can be given', 'Greatest value.'),
+];
 
 /** Returns the table of scales and their computation. */
 export const scaleTable = (plan: StudyPlan): Table => ({
   name: 'scale-definitions',
-  columns: [
-    text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
-    text('scale', codes, asked('scales[].id'), 'Id.'),
-    text('label', 'any text', asked('scales[].label'), 'Its name.'),
-    text(
-      'method',
-      'mean, sum, count, weighted-mean',
-      asked('scales[].method'),
-      'count: of answers of at_least or more; weighted-mean: by how often each was chosen.',
-    ),
-    text(
-      'questions',
-      'ids, divided by spaces',
-      asked('scales[].questions'),
-      'Questions from which it is computed; a repeated one counts twice.',
-    ),
-    text('choices', 'ids, divided by spaces', asked('scales[].choices'), 'Choices that give the weights; empty: none.'),
-    number(
-      'at_least',
-      '',
-      'any',
-      asked('scales[].atLeast'),
-      'Least answer that is counted; empty: the scale does not count.',
-    ),
-    number('factor', '', 'any', asked('scales[].factor'), 'The result is factor × (mean, sum or count) + offset.'),
-    number('offset', '', 'any', asked('scales[].offset'), 'See factor.'),
-    number('from', '', 'any', 'computed from the answers that can be given', 'Least value.'),
-    number('to', '', 'any', 'computed from the answers that can be given', 'Greatest value.'),
-  ],
+  columns: scaleDefinitionColumns,
   rows: questionnairesOf(plan).flatMap((questionnaire) =>
-    questionnaire.scales.map((scale) => ({
-      questionnaire: questionnaire.id,
-      scale: scale.id,
-      label: scale.label,
-      method: scale.method,
-      questions: scale.questions.join(' '),
-      choices: (scale.choices ?? []).join(' '),
-      at_least: scale.atLeast ?? null,
-      factor: scale.factor ?? 1,
-      offset: scale.offset ?? 0,
-      from: scaleRange(questionnaire, scale)[0],
-      to: scaleRange(questionnaire, scale)[1],
-    })),
+    questionnaire.scales.map((scale) => {
+      const { questions, choices = [], factor = 1, offset = 0 } = scale;
+      const [from, to] = scaleRange(questionnaire, scale);
+      const lists = { questions: questions.join(' '), choices: choices.join(' ') };
+      const computed = { questionnaire: questionnaire.id, ...lists, factor, offset, from, to };
+      return rowFrom(scaleDefinitionColumns, questionnaire, computed, scale);
+    }),
   ),
 });

@@ -2,7 +2,7 @@ import { builtInBodies } from 'threepoint/core/body/avatar-ref';
 import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import type { StudyPlan } from '../plan/plan';
-import { boolean, number, type Table, text } from './tidy-csv';
+import { boolean, number, rowFrom, type Table, text } from './tidy-csv';
 
 const from = (field: string) => `plan.json: conditions[].${field} or cohorts[].${field}`;
 
@@ -49,20 +49,27 @@ export const conditionTable = ({ conditions, cohorts = [] }: StudyPlan): Table =
   name: 'conditions',
   columns,
   rows: [
-    ...conditions.map((one) => ({ compared: 'condition', ...one })),
-    ...cohorts.map((one) => ({ compared: 'cohort', ...one })),
-  ].map((one) => ({
-    compared: one.compared,
-    id: one.id,
-    label: one.label,
-    estimator: one.estimator ?? null,
-    avatar: one.avatar ?? null,
-    mirror: one.mirror ?? null,
-    upper_body_only: one.upperBodyOnly ?? null,
-    latency: one.latencyMs ?? null,
-    noise_position: one.trackerNoise?.positionMm ?? null,
-    noise_rotation: one.trackerNoise?.rotationDegrees ?? null,
-    dropouts_per_minute: one.dropouts?.perMinute ?? null,
-    dropout_seconds: one.dropouts?.seconds ?? null,
-  })),
+    ...conditions.map((one) => rowFrom(columns, {}, { compared: 'condition' }, one)),
+    ...cohorts.map((one) => rowFrom(columns, {}, { compared: 'cohort' }, one)),
+  ],
+});
+
+/** Returns the table of planned measures. */
+export const plannedTable = ({ planned = [] }: Pick<StudyPlan, 'planned'>): Table => ({
+  name: 'planned',
+  columns: [
+    text('measure', 'task/questionnaire/id or task/score', 'plan.json: planned', 'As the plan has it.'),
+    text('task', 'small letters, digits, hyphens', 'plan.json: planned', 'Id of the task.'),
+    text('questionnaire', 'small letters, digits, hyphens', 'plan.json: planned', 'Id; empty: the score of the task.'),
+    text('id', 'letters, digits, - and _', 'plan.json: planned', 'Question or scale; "score": points of the task.'),
+  ],
+  rows: planned.map((measure) => {
+    const parts = measure.split('/');
+    return {
+      measure,
+      task: parts[0] ?? '',
+      questionnaire: parts.length > 2 ? (parts[1] ?? '') : '',
+      id: parts.at(-1) ?? '',
+    };
+  }),
 });

@@ -1,9 +1,8 @@
 import { cohortsByParticipant } from '../plan/allocation';
-import type { StudyPlan } from '../plan/plan';
+import { languagesOf, type StudyPlan } from '../plan/plan';
 import type { Place, StudyEvent, StudyRecord } from '../records/study-record';
 import { type AnswerRow, answerRows, type BlockExclusion, questionTable, scaleRows, scaleTable } from './answer-tables';
-import { conditionTable } from './condition-table';
-import { plannedTable } from './planned-table';
+import { conditionTable, plannedTable } from './condition-table';
 import {
   answerColumns,
   eventColumns,
@@ -14,7 +13,7 @@ import {
   scaleColumns,
   trialColumns,
 } from './study-columns';
-import type { Cell, Table } from './tidy-csv';
+import { rowFrom, type Table } from './tidy-csv';
 
 /**
  * Returns a function that gives the reason why the records of a block are not counted, "voided: reason", or an empty
@@ -32,9 +31,6 @@ export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {
   return (participant, place) => voided.get(key(participant, place)) ?? '';
 }
 
-const identity = ({ study, participant, simulated }: StudyRecord) => ({ study, participant, simulated });
-const placed = ({ task, block, run }: Place) => ({ task, block, run });
-
 /** Returns the answers to every question, with voided ones marked. */
 export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
   answerRows(records, plan, voidedBlocks(records));
@@ -43,23 +39,13 @@ export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan): rea
 export const scalesIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
   scaleRows(records, plan, voidedBlocks(records));
 
-function trialRows(records: readonly StudyRecord[], exclusion: BlockExclusion) {
-  return records.flatMap((record) => {
+const trialRows = (records: readonly StudyRecord[], exclusion: BlockExclusion) =>
+  records.flatMap((record) => {
     if (record.kind !== 'trial') return [];
-    const { place, condition, estimator, repetition, group, outcome } = record.body;
+    const { place, condition } = record.body;
     const excluded = exclusion(record.participant, place) || (condition === null ? 'tutorial' : '');
-    const common = {
-      ...identity(record),
-      ...placed(place),
-      attempt: place.attempt,
-      condition,
-      estimator,
-      repetition,
-      excluded,
-    };
-    return [{ common, group, at: record.at, outcome }];
+    return [{ record, outcome: record.body.outcome, excluded }];
   });
-}
 
 /** A trial with its scores; voided ones and tutorials are marked. */
 export interface TrialRow {
@@ -76,32 +62,25 @@ export interface TrialRow {
 }
 
 export const trialsIn = (records: readonly StudyRecord[]): readonly TrialRow[] =>
-  trialRows(records, voidedBlocks(records)).map(({ common, group, outcome }) => ({
-    ...common,
-    group,
-    score: outcome.score,
-    maximum: outcome.maximum,
-  }));
+  trialRows(records, voidedBlocks(records)).map(({ record, outcome, excluded }) => {
+    const { place, condition, repetition, group } = record.body;
+    const { participant, simulated } = record;
+    const { score, maximum } = outcome;
+    return { participant, simulated, task: place.task, condition, repetition, group, score, maximum, excluded };
+  });
 
 function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
   const cohorts = cohortsByParticipant(plan);
-  const rows = new Map<string, Record<string, Cell>>();
+  const people = new Map<string, Pick<StudyRecord, 'study' | 'participant' | 'simulated'> & { body: object }>();
   for (const record of records) {
-    let row = rows.get(record.participant);
-    if (!row) {
-      row = Object.fromEntries(participantColumns.map(({ name }) => [name, null]));
-      Object.assign(row, identity(record), { cohort: cohorts.get(record.participant)?.id ?? null });
-      rows.set(record.participant, row);
-    }
-    if (record.kind === 'consent') {
-      const { version, motion, language = null } = record.body;
-      Object.assign(row, { consent_version: version, motion_consent: motion, language });
-    } else if (record.kind === 'demographics') {
-      const { vrExperience, vrSystems, ...rest } = record.body;
-      Object.assign(row, { ...rest, vr_experience: vrExperience, vr_systems: vrSystems });
-    }
+    const { study, participant, simulated } = record;
+    const known = people.get(participant) ?? { study, participant, simulated, body: {} };
+    if (record.kind === 'consent' || record.kind === 'demographics') Object.assign(known.body, record.body);
+    people.set(participant, known);
   }
-  return [...rows.values()];
+  return [...people.values()].map((one) =>
+    rowFrom(participantColumns, one, { cohort: cohorts.get(one.participant)?.id ?? null }),
+  );
 }
 
 /** Returns the text of an event. */
@@ -120,24 +99,14 @@ function saidIn(body: StudyEvent): string {
   }
 }
 
-function eventRows(records: readonly StudyRecord[]) {
-  return records.flatMap((record) => {
+const eventRows = (records: readonly StudyRecord[]) =>
+  records.flatMap((record) => {
     if (record.kind !== 'event') return [];
     const { body } = record;
     const place = 'place' in body ? body.place : body.type === 'void-block' ? body : null;
-    return [
-      {
-        ...identity(record),
-        event: body.type,
-        task: place?.task ?? null,
-        block: place?.block ?? null,
-        run: place?.run ?? null,
-        text: saidIn(body),
-        at: record.at,
-      },
-    ];
+    const { task = null, block = null, run = null } = place ?? {};
+    return [rowFrom(eventColumns, record, { task, block, run, text: saidIn(body) })];
   });
-}
 
 /** Throws if simulated records and records of people are mixed, because no table may contain both. */
 export function refuseMixture(records: readonly { readonly simulated: boolean }[]): void {
@@ -145,43 +114,6 @@ export function refuseMixture(records: readonly { readonly simulated: boolean }[
     throw new Error('simulated records and records of people must not be mixed');
   }
 }
-
-/** Returns a row of the table `trials`. */
-const trialTableRow = ({ common, group, at, outcome }: ReturnType<typeof trialRows>[number]) => ({
-  ...common,
-  group,
-  ended: outcome.ended,
-  score: outcome.score,
-  maximum: outcome.maximum,
-  percent: (100 * outcome.score) / outcome.maximum,
-  shots: outcome.shots,
-  hits: outcome.hits,
-  seconds: outcome.seconds,
-  frames: outcome.frames.count,
-  missed_frames: outcome.frames.missed,
-  device: outcome.device.name,
-  refresh_rate: outcome.device.refreshRateHz,
-  input: outcome.device.input,
-  eye_height: outcome.calibration?.eyeHeight ?? null,
-  arm_span: outcome.calibration?.armSpan ?? null,
-  forearm: outcome.calibration?.forearm ?? null,
-  gaze_pitch: outcome.calibration?.gazePitch ?? null,
-  left_hand_pitch: outcome.calibration?.handTilts?.left?.pitch ?? null,
-  left_hand_yaw: outcome.calibration?.handTilts?.left?.yaw ?? null,
-  right_hand_pitch: outcome.calibration?.handTilts?.right?.pitch ?? null,
-  right_hand_yaw: outcome.calibration?.handTilts?.right?.yaw ?? null,
-  head_losses: outcome.tracking.head.losses,
-  head_lost: outcome.tracking.head.seconds,
-  left_hand_losses: outcome.tracking.leftHand.losses,
-  left_hand_lost: outcome.tracking.leftHand.seconds,
-  right_hand_losses: outcome.tracking.rightHand.losses,
-  right_hand_lost: outcome.tracking.rightHand.seconds,
-  assists: outcome.assists.join('; '),
-  motion_frames: outcome.motionFrames,
-  started: outcome.clock?.epoch ?? null,
-  recording_start: outcome.clock?.start ?? null,
-  at,
-});
 
 /** Returns the tables of an export. Throws if simulated records and records of people are mixed. */
 export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
@@ -195,56 +127,50 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
     {
       name: 'answers',
       columns: answerColumns,
-      rows: answerRows(records, plan, exclusion).map(({ answer, ...row }) => ({
-        ...row,
-        answer: typeof answer === 'number' ? answer : null,
-        answer_text: typeof answer === 'string' ? answer : '',
-      })),
+      rows: answerRows(records, plan, exclusion).map(({ record, question, answer, excluded }) => {
+        const { language = languagesOf(plan)[0] } = record.body;
+        const given = typeof answer === 'string' ? { answer: null, answer_text: answer } : { answer, answer_text: '' };
+        return rowFrom(answerColumns, record, { question, ...given, language, excluded });
+      }),
     },
     questionTable(plan),
     {
       name: 'scales',
       columns: scaleColumns,
-      rows: scaleRows(records, plan, exclusion).map(({ question, answer, ...row }) => ({
-        ...row,
-        scale: question,
-        value: answer,
-      })),
+      rows: scaleRows(records, plan, exclusion).map(({ record, question, answer, excluded }) =>
+        rowFrom(scaleColumns, record, { scale: question, value: answer, excluded }),
+      ),
     },
     scaleTable(plan),
     {
       name: 'trials',
       columns: trialColumns,
-      rows: trials.map(trialTableRow),
+      rows: trials.map(({ record, outcome, excluded }) => {
+        const percent = (100 * outcome.score) / outcome.maximum;
+        return rowFrom(trialColumns, record, { percent, assists: outcome.assists.join('; '), excluded });
+      }),
     },
     {
       name: 'frame-times',
       columns: frameTimeColumns,
-      rows: trials.flatMap(({ common, outcome }) =>
-        Object.entries(outcome.frames.stages).map(([stage, { count, minMs, maxMs, meanMs, p50Ms, p95Ms }]) => ({
-          ...common,
-          stage,
-          count,
-          min: minMs,
-          max: maxMs,
-          mean: meanMs,
-          p50: p50Ms,
-          p95: p95Ms,
-        })),
+      rows: trials.flatMap(({ record, outcome, excluded }) =>
+        Object.entries(outcome.frames.stages).map(([stage, summary]) =>
+          rowFrom(frameTimeColumns, record, { stage, excluded }, summary),
+        ),
       ),
     },
     {
       name: 'hits',
       columns: hitColumns,
-      rows: trials.flatMap(({ common, outcome }) =>
-        outcome.events.map(({ onset = null, ...event }) => ({ ...common, ...event, onset })),
+      rows: trials.flatMap(({ record, outcome, excluded }) =>
+        outcome.events.map((event) => rowFrom(hitColumns, record, { excluded }, event)),
       ),
     },
     {
       name: 'pauses',
       columns: pauseColumns,
-      rows: trials.flatMap(({ common, outcome }) =>
-        (outcome.clock?.pauses ?? []).map((pause) => ({ ...common, ...pause })),
+      rows: trials.flatMap(({ record, outcome, excluded }) =>
+        (outcome.clock?.pauses ?? []).map((pause) => rowFrom(pauseColumns, record, { excluded }, pause)),
       ),
     },
     { name: 'events', columns: eventColumns, rows: eventRows(records) },

@@ -50,6 +50,35 @@ export interface Table {
   readonly rows: readonly Readonly<Record<string, Cell>>[];
 }
 
+/** Returns the value at the path that a source names, or null. */
+function cellAt(source: string, record: object, element: object): Cell {
+  const [path = ''] = source.replace(/^[a-z.]+: /, '').split(' ');
+  const [outer = '', inner] = path.split(/(?:\[\]|\*)\./);
+  const [from, keys] = inner === undefined ? [record, outer] : [element, inner];
+  const value = keys
+    .split('.')
+    .reduce<unknown>((of, key) => (of as Record<string, unknown> | null | undefined)?.[key], from);
+  return (value ?? null) as Cell;
+}
+
+/**
+ * Returns a row with the values at the paths that the sources of its columns name: "trial: body.group" in `record`,
+ * "events[].points" and "stages.*.count" in `element`. `computed` are the cells without such a path. What is absent is
+ * null.
+ */
+export const rowFrom = (
+  columns: readonly Column[],
+  record: object,
+  computed: Readonly<Record<string, Cell>>,
+  element: object = {},
+): Readonly<Record<string, Cell>> =>
+  Object.fromEntries(
+    columns.map(({ name, source }) => [
+      name,
+      computed[name] === undefined ? cellAt(source, record, element) : computed[name],
+    ]),
+  );
+
 /**
  * Text that a spreadsheet would take for a formula, also after white space and in full width (OWASP, CSV injection). An
  * apostrophe in front makes it text.

@@ -1,7 +1,8 @@
 import { button, element } from 'threepoint-ui/element';
+import { labelled } from '../fields';
 
 /** The content of a dialog and the button that confirms it. */
-export interface Question {
+interface Question {
   readonly content: readonly Node[];
   readonly confirm: HTMLButtonElement;
 }
@@ -29,5 +30,27 @@ export function askInDialog<T>(title: string, ask: (answer: (value: T) => void) 
     dialog.append(element('form', { method: 'dialog' }, element('h2', { style: 'margin:0' }, title), ...content, bar));
     document.body.append(dialog);
     dialog.showModal();
+  });
+}
+
+/** The texts of a dialog that asks for a sentence. */
+export interface SentenceQuestion {
+  readonly title: string;
+  readonly label: string;
+  /** The label of the confirming button. */
+  readonly confirm: string;
+  /** Further controls below the field. */
+  readonly extra?: readonly Node[];
+}
+
+/** Asks for a sentence in a dialog; resolves with null if it is cancelled. */
+export function askForSentence({ title, label, confirm, extra = [] }: SentenceQuestion): Promise<string | null> {
+  const text = element('textarea', { maxlength: 500, 'aria-label': label });
+  return askInDialog<string>(title, (answer) => {
+    const go = button(confirm, () => answer(text.value.trim()), { class: 'primary', disabled: true });
+    text.addEventListener('input', () => {
+      go.disabled = text.value.trim() === '';
+    });
+    return { content: [labelled(label, text), ...extra], confirm: go };
   });
 }

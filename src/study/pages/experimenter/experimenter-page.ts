@@ -3,9 +3,9 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { element, pageElement } from 'threepoint-ui/element';
 import { sentence } from 'threepoint-ui/phrase-parts';
 import { type ExperimenterClient, ServerRefusal } from '../../client/study-client';
-import type { StudyPlan } from '../../model/plan/plan';
+import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyInfo } from '../../model/progress/study-api';
-import { statedInWords } from '../../simulation/simulate-study';
+import { simulatedPlan, statedInWords } from '../../simulation/simulate-study';
 import { StudyAccess } from '../study-access';
 import {
   type NewStudy,
@@ -15,7 +15,6 @@ import {
   openStudy,
   type StudyActions,
 } from './experimenter-view';
-import { planToBegin } from './new-study';
 import { download, participantActions, type ServerAction } from './participant-actions';
 import { askForSimulation } from './simulation-dialog';
 import { storeSimulation } from './store-simulation';
@@ -118,7 +117,8 @@ class ExperimenterPage {
 
   #begin({ name, simulated, json }: NewStudy): Promise<void> {
     return this.#attempt(async (client) => {
-      const added = planToBegin(await json(), simulated);
+      const plan = checkedPlan(JSON.parse(await json()));
+      const added = simulated ? simulatedPlan(plan) : plan;
       const info = await addOrChange(client, added, simulated);
       if (!info) return `Nothing was changed: the study “${added.id}” keeps its plan.`;
       await this.#access.list(client);

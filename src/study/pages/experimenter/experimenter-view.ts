@@ -4,6 +4,7 @@ import { storePreviewPlan } from 'threepoint-ui/preview-plan';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { remarksOn } from '../../model/plan/plan-remarks';
 import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';
+import { fileField } from '../fields';
 import { tableNode } from '../table';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 
@@ -141,13 +142,9 @@ export interface NewStudyActions {
 
 /** Returns the card on which a study is started; `marked`: it is marked as simulated. */
 export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions): HTMLElement {
-  const file = element('input', { type: 'file', accept: '.json,application/json', 'aria-label': 'Study file' });
   const simulated = element('input', { type: 'checkbox', checked: marked });
   simulated.addEventListener('change', () => mark(simulated.checked));
-  file.addEventListener('change', () => {
-    const [chosen] = file.files ?? [];
-    if (chosen) begin({ name: chosen.name, simulated: simulated.checked, json: () => chosen.text() });
-  });
+  const open = (file: File) => begin({ name: file.name, simulated: simulated.checked, json: () => file.text() });
   const paper = async () => (await fetch(`${pageFolder()}/studies/paper.json`)).text();
   return element(
     'section',
@@ -159,7 +156,7 @@ export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions):
       button('The paper’s study', () =>
         begin({ name: 'The paper’s study', simulated: simulated.checked, json: paper }),
       ),
-      element('label', {}, element('span', {}, 'Or a study file (JSON, docs/study.md)'), file),
+      fileField('Or a study file (JSON, docs/study.md)', 'Study file', '.json,application/json', open),
       element('a', { href: './preview.html' }, 'Preview a study file first'),
       element('label', { class: 'inline' }, simulated, element('span', {}, 'simulated: a program takes part')),
     ),

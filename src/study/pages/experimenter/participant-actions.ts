@@ -1,9 +1,9 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import type { ExperimenterClient } from '../../client/study-client';
+import { askForSentence, type SentenceQuestion } from './ask-in-dialog';
 import { type OpenStudy, receiptText } from './experimenter-view';
 import type { ParticipantActions } from './participant-row';
-import { askForSentence, type SentenceQuestion } from './sentence-dialog';
 import { askHowToVoid, isIn } from './void-block-dialog';
 
 /** Does something with the server; resolves with a notice for the experimenter, or null for none. */

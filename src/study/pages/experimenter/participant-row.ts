@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import { studyLink } from '../../client/study-link';
 import type { StudyPlan } from '../../model/plan/plan';
-import { type Schedule, scheduleFor } from '../../model/plan/schedule';
+import { type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';
 import { clockText } from '../../model/progress/progress';
 import type { ParticipantState, StudyCommand } from '../../model/progress/study-api';
 import type { TableRow } from '../table';
@@ -79,10 +79,8 @@ function placeText(schedule: Schedule, id: string): string {
   const step = schedule.steps.find((other) => other.id === id);
   if (!step) return id;
   if (!('task' in step)) return step.kind === 'end' ? 'the end' : step.kind;
-  const condition = schedule.steps.find(
-    (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
-  );
-  const of = condition && 'condition' in condition ? ` (${condition.condition})` : '';
+  const trial = trialOf(schedule, step);
+  const of = trial ? ` (${trial.condition})` : '';
   return `${step.task}, block ${step.block}${of}: ${step.kind}`;
 }
 

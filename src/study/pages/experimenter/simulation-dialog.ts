@@ -1,11 +1,12 @@
 import { button, element } from 'threepoint-ui/element';
 import type { StudyPlan } from '../../model/plan/plan';
+import { labelled } from '../fields';
 import { askInDialog } from './ask-in-dialog';
 import type { Simulation } from './store-simulation';
 
 function numberField(label: string, attributes: Record<string, string | number>) {
   const input = element('input', { type: 'number', ...attributes });
-  return { input, node: element('label', {}, element('span', {}, label), input) };
+  return { input, node: labelled(label, input) };
 }
 
 /** Asks for the seed and the effects of a simulation; resolves with null if it is cancelled. */

@@ -2,6 +2,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { studyTitle } from '../../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
 import { button, element, pageElement } from 'threepoint-ui/element';
+import { chooser, fileField } from '../fields';
 import { StudyAccess } from '../study-access';
 import { openStudyFile } from '../study-file';
 import { paperCheck } from './paper-check';
@@ -63,21 +64,18 @@ class ResultsPage {
   #sourceBar(): HTMLElement {
     const access = this.#access;
     const shown = this.#shown;
-    const file = element('input', { type: 'file', accept: '.zip,application/zip', 'aria-label': 'Export of a study' });
-    file.addEventListener('change', () => {
-      const [chosen] = file.files ?? [];
-      if (chosen) void this.#openFile(chosen);
-    });
-    const fileField = element('label', {}, element('span', {}, 'Or an export (zip), from this computer'), file);
+    const label = 'Or an export (zip), from this computer';
+    const open = (file: File) => void this.#openFile(file);
+    const file = fileField(label, 'Export of a study', '.zip,application/zip', open);
     if (!access.client) {
-      return element('section', { class: 'card' }, access.form(), element('div', { class: 'bar' }, fileField));
+      return element('section', { class: 'card' }, access.form(), element('div', { class: 'bar' }, file));
     }
     return element(
       'section',
       { class: 'card bar' },
       access.select(shown?.plan.id, 'This server has no studies yet', (id) => void this.#load(id)),
       ...(shown ? [button('Refresh', () => void this.#load(shown.plan.id, shown.planVersion))] : []),
-      fileField,
+      file,
       access.signOutButton(),
     );
   }
@@ -119,23 +117,15 @@ class ResultsPage {
 function versionBar({ planVersion, versions = [] }: ShownStudy, choose: (version: number) => void): readonly Node[] {
   // An export holds one version only.
   if (planVersion === undefined || versions.length === 0) return [];
-  const select = element(
-    'select',
-    { 'aria-label': 'Version of the plan' },
-    ...versions.map(({ version, participants }) =>
-      element(
-        'option',
-        { value: version, selected: version === planVersion },
-        `Version ${version}: ${participants.length} participants`,
-      ),
-    ),
-  );
-  select.addEventListener('change', () => choose(Number(select.value)));
+  const choices = versions.map(({ version, participants }) => ({
+    id: String(version),
+    label: `Version ${version}: ${participants.length} participants`,
+  }));
   return [
     element(
       'div',
       { class: 'bar' },
-      element('label', {}, element('span', {}, 'Version of the plan'), select),
+      chooser('Version of the plan', choices, String(planVersion), (version) => choose(Number(version))),
       element(
         'p',
         { class: 'soft' },

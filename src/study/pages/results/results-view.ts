@@ -6,7 +6,7 @@ import { cohortViews } from '../../model/results/exported-results';
 import type { Exclusion } from '../../model/results/measures';
 import { studyTables } from '../../model/tables/study-tables';
 import { tidyCsv } from '../../model/tables/tidy-csv';
-import { chooser, pairChooser } from './choosers';
+import { type Choice, chooser } from '../fields';
 import { frameTimeParts } from './frame-time-results';
 import { overallResults } from './overall-results';
 import { bar } from './result-cells';
@@ -151,6 +151,22 @@ function cohortParts(results: ShownResults, selection: Selection, choose: Choose
     ...(cohorts[0] === cohorts[1]
       ? [element('p', { class: 'complaint' }, 'Choose two different cohorts.')]
       : cohortResults(results, { sides: cohorts, conditions: under })),
+  ];
+}
+
+/** Returns the choice of which two of several `what` are compared; nothing if there are only two. */
+function pairChooser(
+  what: 'condition' | 'cohort',
+  choices: readonly Choice[],
+  [first, second]: readonly [string, string],
+  choose: (pair: readonly [string, string]) => void,
+): readonly Node[] {
+  if (choices.length < 3) return [];
+  return [
+    bar(
+      chooser(`Compare ${what}`, choices, first, (id) => choose([id, second])),
+      chooser(`with ${what}`, choices, second, (id) => choose([first, id])),
+    ),
   ];
 }
 

@@ -4,8 +4,7 @@ import type { Questionnaire } from '../../model/questionnaires/questionnaires';
 import type { StudyRecord } from '../../model/records/study-record';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { aboutIn, measuresIn, type StudyMeasures } from '../../model/results/exported-results';
-import type { Measured } from '../../model/results/measures';
-import { isPlanned } from '../../model/results/planned';
+import { isPlanned, type Measured } from '../../model/results/measures';
 import type { TableFacts } from '../../model/results/result-tables';
 
 /** The data from which results are computed. */

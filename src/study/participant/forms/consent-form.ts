@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { inLanguage } from '../../model/phrases/words';
-import { complaintLine, type FormOf, paragraphs } from './form-parts';
+import { complaintLine, type FormOf, paragraphs, row } from './form-parts';
 import { languageChoice } from './language-choice';
 
 function box() {
@@ -71,6 +71,6 @@ export function consentForm(
     element('div', { class: 'checks' }, agreed.node, ...(motion ? [motion.node] : [])),
     note,
     complaint.node,
-    element('div', { class: 'row' }, go, decline),
+    row(go, decline),
   ];
 }

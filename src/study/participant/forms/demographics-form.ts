@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import type { Phrases } from '../../model/phrases/phrases';
 import { type DemographicField, demographicFields } from '../../model/records/demographics';
-import { complaintLine, type FormOf } from './form-parts';
+import { complaintLine, type FormOf, heading, row } from './form-parts';
 
 type Given = string | number | undefined;
 
@@ -75,16 +75,10 @@ export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>
     if (refusal !== null) complaint.say(refusal);
   }
   return [
-    element('p', { class: 'kicker' }, say('about.kicker')),
-    element('h1', {}, say('about.title')),
+    ...heading(say('about.kicker'), say('about.title')),
     element('p', { class: 'soft' }, say('question.neededNote')),
     ...fields.map(({ node }) => node),
     complaint.node,
-    element(
-      'div',
-      { class: 'row' },
-      button(say('continue'), handIn, { class: 'primary' }),
-      button(say('stopStudy'), stop),
-    ),
+    row(button(say('continue'), handIn, { class: 'primary' }), button(say('stopStudy'), stop)),
   ];
 }

@@ -4,7 +4,7 @@ import type { Phrases } from '../../model/phrases/phrases';
 import { inLanguage } from '../../model/phrases/words';
 import { consentForm } from './consent-form';
 import { demographicsForm } from './demographics-form';
-import { complaintLine, type FormOf, paragraphs } from './form-parts';
+import { complaintLine, type FormOf, heading, paragraphs, row } from './form-parts';
 import type { Invited, StudyForm } from './study-form';
 
 function participantForm({
@@ -40,13 +40,12 @@ function participantForm({
     { class: 'primary' },
   );
   return [
-    element('p', { class: 'kicker' }, say('study')),
-    element('h1', {}, say('entrance.title')),
+    ...heading(say('study'), say('entrance.title')),
     participant.node,
     invitation.node,
     complaint.node,
     element('p', { class: 'soft' }, say('consent.nothingRecorded')),
-    element('div', { class: 'row' }, submit, button(say('consent.decline'), decline)),
+    row(submit, button(say('consent.decline'), decline)),
   ];
 }
 
@@ -54,8 +53,7 @@ function withdrawalForm({ phrases: { say }, code, withdrawalPage, noted, stop }:
   const saved = `${say('code.file', { code, address: withdrawalPage })}\n`;
   const save = button(say('code.save'), () => offerDownload('withdrawal-code.txt', 'text/plain', saved));
   return [
-    element('p', { class: 'kicker' }, say('code.kicker')),
-    element('h1', {}, say('code.title')),
+    ...heading(say('code.kicker'), say('code.title')),
     element('p', {}, element('code', {}, code)),
     element(
       'p',
@@ -68,13 +66,7 @@ function withdrawalForm({ phrases: { say }, code, withdrawalPage, noted, stop }:
       ),
     ),
     ...paragraphs([say('code.once')]),
-    element(
-      'div',
-      { class: 'row' },
-      button(say('code.noted'), noted, { class: 'primary' }),
-      save,
-      button(say('stopStudy'), stop),
-    ),
+    row(button(say('code.noted'), noted, { class: 'primary' }), save, button(say('stopStudy'), stop)),
   ];
 }
 
@@ -86,23 +78,13 @@ function lockedOutForm({
   restart,
 }: FormOf<'locked-out'>): readonly Node[] {
   return [
-    element('p', { class: 'kicker trouble' }, say('study')),
-    element('h1', {}, contact === null ? say('callExperimenter') : say('lockedOut.title')),
+    ...heading(say('study'), contact === null ? say('callExperimenter') : say('lockedOut.title'), true),
     ...paragraphs([
       say('lockedOut.place', { participant }),
       ...(contact === null ? [] : [say('lockedOut.contact', { contact })]),
     ]),
     ...(unsent > 0 ? [element('p', { class: 'hint' }, say('lockedOut.unsent', { count: unsent }))] : []),
-    element('div', { class: 'row' }, button(say('lockedOut.restart'), restart)),
-  ];
-}
-
-/** Returns a final page: a heading and a reason. */
-function lastWords(kicker: string, title: string, text: string, trouble: boolean): readonly Node[] {
-  return [
-    element('p', { class: trouble ? 'kicker trouble' : 'kicker' }, kicker),
-    element('h1', {}, title),
-    ...paragraphs([text]),
+    row(button(say('lockedOut.restart'), restart)),
   ];
 }
 
@@ -115,7 +97,7 @@ export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => voi
     case 'consent':
       return consentForm(form, onLanguage);
     case 'declined':
-      return lastWords(form.title, say('declined.title'), say('declined.text'), false);
+      return [...heading(form.title, say('declined.title')), ...paragraphs([say('declined.text')])];
     case 'code':
       return withdrawalForm(form);
     case 'demographics':
@@ -123,7 +105,7 @@ export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => voi
     case 'locked-out':
       return lockedOutForm(form);
     case 'fault':
-      return lastWords(say('study'), say('entrance.fault'), form.text, true);
+      return [...heading(say('study'), say('entrance.fault'), true), ...paragraphs([form.text])];
   }
 }
 

@@ -3,6 +3,15 @@ import type { StudyForm } from './study-form';
 
 export type FormOf<Kind extends StudyForm['kind']> = Extract<StudyForm, { kind: Kind }>;
 
+/** Returns the heading of a form below the line that says where it belongs; `trouble`: something went wrong. */
+export const heading = (kicker: string, title: string, trouble = false): readonly Node[] => [
+  element('p', { class: trouble ? 'kicker trouble' : 'kicker' }, kicker),
+  element('h1', {}, title),
+];
+
+/** Returns the buttons at the end of a form. */
+export const row = (...buttons: readonly Node[]) => element('div', { class: 'row' }, ...buttons);
+
 export const paragraphs = (texts: readonly string[]) => texts.map((text) => element('p', {}, text));
 
 /** A line with the complaint about a form, which screen readers announce. */

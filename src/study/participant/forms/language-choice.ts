@@ -1,17 +1,7 @@
 import { element } from 'threepoint-ui/element';
 
-/** A choice of languages, each in its own name; `onChoice` is called with the chosen one. */
-export interface LanguageChoice {
-  readonly node: HTMLElement;
-  /** Sets its label, the word for "language". */
-  label(text: string): void;
-}
-
-export function languageChoice(
-  languages: readonly string[],
-  chosen: string,
-  onChoice: (language: string) => void,
-): LanguageChoice {
+/** Returns a choice of languages, each in its own name; `onChoice` is called with the chosen one. */
+export function languageChoice(languages: readonly string[], chosen: string, onChoice: (language: string) => void) {
   const nameOf = (language: string) => new Intl.DisplayNames([language], { type: 'language' }).of(language) ?? language;
   const select = element(
     'select',
@@ -22,7 +12,8 @@ export function languageChoice(
   const label = element('span', {});
   return {
     node: element('label', { class: 'field' }, label, select),
-    label(text) {
+    /** Sets its label, the word for "language". */
+    label(text: string): void {
       label.textContent = text;
     },
   };

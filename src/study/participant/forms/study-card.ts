@@ -6,14 +6,6 @@ import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
 import type { StudyForm } from './study-form';
 
-/** The card of the study over the page on the desktop. */
-export interface StudyCard {
-  /** null hides it. */
-  show(screen: StudyScreen | null): void;
-  /** Shows a form instead of a screen; it is built once until something else is shown. */
-  ask(form: StudyForm): void;
-}
-
 const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): HTMLButtonElement =>
   button(label, act, {
     'data-id': id,
@@ -39,8 +31,10 @@ function fill(card: HTMLElement, nodes: readonly Node[], held: boolean): void {
   words.focus({ preventScroll: true });
 }
 
-/** `parent` is the element that the card covers. */
-export function createStudyCard(parent: HTMLElement = document.body): StudyCard {
+export type StudyCard = ReturnType<typeof createStudyCard>;
+
+/** Returns the card of the study over the page on the desktop; `parent` is the element that it covers. */
+export function createStudyCard(parent: HTMLElement = document.body) {
   const kicker = element('p', { class: 'kicker' });
   const content = element('div', { class: 'content' });
   const figure = element('p', { class: 'figure', role: 'timer', 'aria-live': 'off' });
@@ -64,7 +58,8 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
   };
 
   return {
-    show(screen) {
+    /** null hides it. */
+    show(screen: StudyScreen | null): void {
       layer.hidden = screen === null;
       if (!screen) {
         // Answers may be given elsewhere in the meantime, so the next screen is built again.
@@ -107,7 +102,8 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
       put(hint, screen.hint);
       put(footnote, screen.footnote);
     },
-    ask(form) {
+    /** Shows a form instead of a screen; it is built once until something else is shown. */
+    ask(form: StudyForm): void {
       layer.hidden = false;
       speak(form.phrases);
       put(footnote, formNote(form));

@@ -3,17 +3,11 @@ import { height, type Target, width } from '../questions/sheet-target';
 import type { StudyScreen } from '../questions/study-screen';
 import { paintSheet, targetsOf } from '../sheet/study-sheet';
 
-/** The sheet of the headset on a flat page, drawn by the same code and pressed with the mouse. */
-export interface DrawnSheet {
-  readonly node: HTMLCanvasElement;
-  /** null hides it. */
-  show(screen: StudyScreen | null): void;
-}
-
 const within = ({ at: [left, top, wide, high] }: Target, x: number, y: number) =>
   x >= left && x < left + wide && y >= top && y < top + high;
 
-export function createDrawnSheet(): DrawnSheet {
+/** Returns the sheet of the headset on a flat page, drawn by the same code and pressed with the mouse. */
+export function createDrawnSheet() {
   const node = element('canvas', { class: 'drawn-sheet', width, height, role: 'img' });
   const context = node.getContext('2d');
   if (!context) throw new Error('The sheet of the headset cannot be drawn: this browser offers no 2D canvas.');
@@ -44,7 +38,8 @@ export function createDrawnSheet(): DrawnSheet {
   });
   return {
     node,
-    show(shown) {
+    /** null hides it. */
+    show(shown: StudyScreen | null): void {
       screen = shown;
       node.hidden = shown === null;
       targets = shown ? targetsOf(shown) : [];

@@ -1,16 +1,17 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element, pageElement } from 'threepoint-ui/element';
+import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
 import { withdrawalLink } from '../../client/study-link';
-import { languagesOf, participantsOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
+import { languagesOf, participantsOf, readPlan, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { durationOf } from '../../model/plan/plan-outline';
 import { remarksOn } from '../../model/plan/plan-remarks';
 import { createStudyCard } from '../forms/study-card';
 import { createDrawnSheet } from './drawn-sheet';
-import { planFrom, type ReadPlan, readPlan } from './plan-source';
 import { PreviewWalk } from './preview-walk';
 
+const planFile: FileKind = { what: 'a study file', megabytes: 1 };
 const shipped = ['paper.json', 'latency.json', 'example.json'] as const;
 
 /** The page that walks through every screen of a plan. */
@@ -41,28 +42,38 @@ class PreviewPage {
     const address = new URLSearchParams(location.search).get('plan');
     const left = loadPreviewPlan();
     if (address !== null) await this.#read(address);
-    else if (left !== null) this.#take(planFrom(left, 'the study of the experimenter’s page'));
+    else if (left !== null) this.#take('the study of the experimenter’s page', left);
     else this.#render();
   }
 
   async #read(source: string | File): Promise<void> {
     try {
-      this.#take(await readPlan(source));
+      const bytes = await readLimited(source, planFile);
+      this.#take(nameOf(source), new TextDecoder().decode(bytes));
     } catch (error) {
-      this.#take({ name: '', complaints: [reasonOf(error)] });
+      this.#complain('', [reasonOf(error)]);
     }
   }
 
-  #take(read: ReadPlan): void {
-    this.#name = read.name;
-    if ('complaints' in read) {
-      this.#plan = null;
-      this.#walk = null;
-      this.#render(read.complaints);
+  #take(name: string, json: string): void {
+    const read = readPlan(json, name);
+    if ('faults' in read) {
+      this.#complain(
+        name,
+        read.faults.map(({ message }) => message),
+      );
       return;
     }
+    this.#name = name;
     this.#plan = read.plan;
     this.#begin(participantsOf(read.plan)[0] as string);
+  }
+
+  #complain(name: string, complaints: readonly string[]): void {
+    this.#name = name;
+    this.#plan = null;
+    this.#walk = null;
+    this.#render(complaints);
   }
 
   #begin(participant: string): void {

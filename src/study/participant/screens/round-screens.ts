@@ -1,6 +1,6 @@
+import type { PlayedStep } from '../../model/plan/schedule';
 import type { StudyScreen } from '../questions/study-screen';
 import type { StudySituation } from '../questions/study-situation';
-import type { PlayedStep } from '../trial/study-trial';
 import { enterButton, pauseButton, type ScreenParts } from './screen-parts';
 
 /** Returns the screen of a round or a practice, or null while it is played. */

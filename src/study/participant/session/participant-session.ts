@@ -1,4 +1,4 @@
-import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
+import { type ParticipantClient, ServerRefusal, ServerUnreachable, type StudyPlace } from '../../client/study-client';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { languagesOf } from '../../model/plan/plan';
 import { type Schedule, scheduleFor } from '../../model/plan/schedule';
@@ -39,11 +39,10 @@ export interface ParticipantSessionOptions {
 }
 
 /** Returns the first session of a participant on this device; another device may have begun it. */
-export const startSession = (claim: Claim, study: string, participant: string): KeptSession => ({
+export const startSession = (claim: Claim, place: StudyPlace): KeptSession => ({
   ...claim,
-  study,
-  participant,
-  progress: claim.progress ?? begin(scheduleFor(claim.plan, participant), claim.simulated),
+  ...place,
+  progress: claim.progress ?? begin(scheduleFor(claim.plan, place.participant), claim.simulated),
 });
 
 /** The session of one participant on this device: its steps and the upload of its records. */
@@ -68,9 +67,8 @@ export class ParticipantSession {
     this.schedule = scheduleFor(kept.plan, kept.participant);
     this.#client = client;
     this.#store = new SessionStore(kept, unsent, { vault, onChange });
-    const { study, participant, token } = kept;
     this.#motion = new MotionSender(this.#store, {
-      send: (trial, recording) => client.sendMotion(study, participant, token, trial, recording),
+      send: (trial, recording) => client.sendMotion(kept, trial, recording),
       onFault: (error) => this.#noteFault(error),
       onChange,
     });
@@ -151,8 +149,7 @@ export class ParticipantSession {
    * if there is none.
    */
   seat(trial: PlayedTogether): Promise<SignedSeat> {
-    const { study, participant, token } = this.#session;
-    return this.#client.seat(study, participant, token, trial);
+    return this.#client.seat(this.#session, trial);
   }
 
   /** Keeps the tracking frames of a trial until the server has them. */
@@ -207,9 +204,8 @@ export class ParticipantSession {
     await this.#store.save();
     try {
       await this.#report();
-      const { study, participant, token } = this.#session;
       const { commandsSeen = 0 } = this.progress;
-      for (const command of await this.#client.commands(study, participant, token, commandsSeen)) this.#follow(command);
+      for (const command of await this.#client.commands(this.#session, commandsSeen)) this.#follow(command);
       // The changes of a command are reported at once, because the experimenter waits for them.
       if (this.progress !== this.#reported) await this.#report();
       this.#online = true;
@@ -222,11 +218,11 @@ export class ParticipantSession {
 
   /** Sends the unsent records and then the progress, which is not reported before consent. */
   async #report(): Promise<void> {
-    const { study, participant, token } = this.#session;
-    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
+    const session = this.#session;
+    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(session, records));
     const { progress } = this;
     if (progress.motion === null) return;
-    await this.#client.saveProgress(study, participant, token, reported(progress, this.#now()));
+    await this.#client.saveProgress(session, reported(progress, this.#now()));
     this.#reported = progress;
   }
 

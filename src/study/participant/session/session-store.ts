@@ -131,14 +131,14 @@ export class SessionStore {
   async acknowledge(ids: readonly string[]): Promise<void> {
     for (const id of ids) this.#records.delete(id);
     this.#unsaved = this.#unsaved.filter(({ id }) => !ids.includes(id));
-    await this.#remove((vault, { study, participant }) => vault.removeRecords(study, participant, ids));
+    await this.#remove((vault, session) => vault.removeRecords(session, ids));
   }
 
   /** Removes the recording of a trial, which the server has. */
   async acknowledgeMotion(trial: string): Promise<void> {
     this.#motion.delete(trial);
     this.#unsavedMotion.delete(trial);
-    await this.#remove((vault, { study, participant }) => vault.removeMotion(study, participant, trial));
+    await this.#remove((vault, session) => vault.removeMotion(session, trial));
   }
 
   /** What stays because the device fails is sent again by a later visit, and the server keeps it once. */
@@ -160,7 +160,7 @@ export class SessionStore {
       this.#unsaved = this.#unsaved.filter((record) => !records.includes(record));
       this.#saved = session;
       for (const motion of [...this.#unsavedMotion.values()]) {
-        await vault.saveMotion(session.study, session.participant, motion);
+        await vault.saveMotion(session, motion);
         this.#unsavedMotion.delete(motion.trial);
       }
       this.#fault = null;

@@ -1,11 +1,12 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { PhrasedError } from '../../model/phrases/phrases';
+import { isPlayed, type PlayedStep } from '../../model/plan/schedule';
 import { randomFor } from '../../model/plan/shuffle';
 import { placeOf } from '../../model/progress/progress';
 import { reasonFor } from '../reasons';
 import type { ParticipantSession } from '../session/participant-session';
 import type { StudyHost } from './study-host';
-import { type FinishedTrial, isPlayed, lastPlayedBefore, type PlayedStep, PlayedTrial } from './study-trial';
+import { type FinishedTrial, lastPlayedBefore, PlayedTrial } from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
 import { type Prepared, TrialPreparation } from './trial-preparation';
 

@@ -2,16 +2,11 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { cutRecording } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Schedule, StudyStep } from '../../model/plan/schedule';
+import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
 import { mostMotionBytes } from '../../model/progress/study-api';
 import { TrialSeconds } from '../../model/records/trial-clock';
 import { type FrameListener, TrialLog, type TrialOutcome } from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
-
-/** The steps that are played. */
-export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
-
-export const isPlayed = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
 
 /** Returns the last trial or tutorial before a step, or undefined. */
 export const lastPlayedBefore = ({ steps }: Pick<Schedule, 'steps'>, { id }: StudyStep): PlayedStep | undefined =>

@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { PlayedStep } from './study-trial';
+import type { PlayedStep } from '../../model/plan/schedule';
 
 /** How far the game and the body of a step are loaded. */
 export interface Prepared {

@@ -22,10 +22,10 @@ function field(label: string, attributes: Readonly<Record<string, string | numbe
 }
 
 /** Deletes the data of the participant in this browser; resolves with a sentence about the result. */
-async function forgottenHere({ study, participant }: Receipt, { say }: Phrases): Promise<string> {
+async function forgottenHere(receipt: Receipt, { say }: Phrases): Promise<string> {
   try {
     const vault = await openStudyVault();
-    await vault.forget(study, participant);
+    await vault.forget(receipt);
     vault.close();
     return say('receipt.hereToo');
   } catch {
@@ -172,8 +172,7 @@ function show({ about, fault }: Found, languages: readonly [string, ...string[]]
 
 async function begin(): Promise<void> {
   const found = await findStudy();
-  const [first = 'en', ...others] = shippedLanguages;
-  const languages = found.about?.languages ?? ([first, ...others] as const);
+  const languages = found.about?.languages ?? shippedLanguages;
   show(found, languages, preferredLanguage(languages, navigator.languages));
 }
 

@@ -1,17 +1,7 @@
 import type { Answer } from 'threepoint-http/answer';
-import type { Software } from 'threepoint-http/software';
 import { exportName } from '../export/export-zip';
-import type { Exporter } from '../export/exporter';
-import type { StudyStore } from '../storage/store';
 import type { StudyAccess } from './guard';
-import { type Handle, route, type StudyRoute } from './route';
-
-/** The parts of the server that an export needs. */
-export interface Exporting {
-  readonly store: Pick<StudyStore, 'plans' | 'places'>;
-  readonly software: Software;
-  readonly makeZip: Exporter;
-}
+import { type Handle, route, type StudyParts, type StudyRoute } from './route';
 
 interface ExportAsked {
   readonly at: number;
@@ -21,7 +11,7 @@ interface ExportAsked {
 }
 
 /** Resolves with the answer that contains an export. */
-export async function exportOf({ store, software, makeZip }: Exporting, asked: ExportAsked): Promise<Answer> {
+export async function exportOf({ store, software, makeZip }: StudyParts, asked: ExportAsked): Promise<Answer> {
   const { participant } = asked;
   const info = store.plans.get(asked.study, asked.version);
   const plan = participant === undefined ? info.plan : store.plans.planFor(asked.study, participant);

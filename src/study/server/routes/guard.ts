@@ -29,18 +29,6 @@ export interface Concerned {
   readonly participant: string;
 }
 
-/** Verifies tokens, invitations and withdrawal codes. Its methods throw HttpErrors. */
-export interface StudyGuard {
-  /** Returns whether the request has the token of this participant. */
-  isParticipant(concerned: Concerned): boolean;
-  /** Checks the head of a request; invitations and codes are in its body. */
-  admit(access: StudyAccess, concerned: Concerned): Promise<void>;
-  /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
-  claiming<T>(concerned: Concerned, invitation: string | undefined, claim: () => T): Promise<T>;
-  /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
-  withdrawing<T>(concerned: Omit<Concerned, 'participant'>, code: string, withdraw: () => T | null): Promise<T>;
-}
-
 /**
  * The most places of an open study that one address may take within an hour. Otherwise, one person with the link could
  * take them all.
@@ -77,8 +65,10 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
   };
 }
 
-export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
-  const { store, experimenterToken, onWrongGuess } = options;
+export type StudyGuard = ReturnType<typeof createStudyGuard>;
+
+/** Returns the checks of tokens, invitations and withdrawal codes, which throw HttpErrors. */
+export function createStudyGuard({ store, experimenterToken, onWrongGuess }: StudyGuardOptions) {
   const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
   const throttle = createAuthThrottle(onWrongGuess);
   const spendingOpenPlace = createOpenPlaces();
@@ -106,15 +96,19 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
     token !== null && store.places.holds(study, participant, token);
 
   return {
+    /** Returns whether the request has the token of this participant. */
     isParticipant,
-    async admit(access, concerned) {
+    /** Checks the head of a request; invitations and codes are in its body. */
+    async admit(access: StudyAccess, concerned: Concerned): Promise<void> {
       if (access !== 'participant' && access !== 'experimenter') return;
       // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
       if (access === 'participant' && isParticipant(concerned)) return;
       if (await isExperimenter(concerned)) return;
       throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
     },
-    async claiming({ token, address, study, participant }, invitation, claim) {
+    /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
+    async claiming<T>(concerned: Concerned, invitation: string | undefined, claim: () => T): Promise<T> {
+      const { token, address, study, participant } = concerned;
       const { plan } = store.plans.get(study);
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
@@ -128,9 +122,10 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
-    async withdrawing({ address, study }, code, withdraw) {
+    /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
+    async withdrawing<T>({ address, study }: Concerned, code: string, withdraw: () => T | null): Promise<T> {
       store.plans.get(study);
-      let result: ReturnType<typeof withdraw> = null;
+      let result: T | null = null;
       const secret = normalisedCode(code);
       await attempt({ what: 'withdrawal code', address, of: study, secret }, () => {
         result = withdraw();

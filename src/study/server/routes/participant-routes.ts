@@ -1,16 +1,15 @@
 import { parseRecording } from 'threepoint/core/tracking/recording';
-import { checked, identifier, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
+import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
 import { done, HttpError, json } from 'threepoint-http/answer';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
 import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/store';
-import { type Exporting, exporting, exportOf } from './export-routes';
-import type { StudyGuard } from './guard';
-import { bodyLimits, type Handle, route, type StudyCall, type StudyRoute } from './route';
-import type { StudySeats } from './seats';
+import { exporting, exportOf } from './export-routes';
+import { bodyLimits, type Handle, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
 
 export const mostRecordsAtOnce = 200;
 
@@ -22,22 +21,8 @@ const batchSchema = v.object({
   ),
 });
 
-const commandSchema = v.variant('type', [
-  v.strictObject({ type: v.literal('start') }),
-  v.strictObject({ type: v.literal('pause') }),
-  v.strictObject({ type: v.literal('resume') }),
-  v.strictObject({ type: v.literal('stop'), by: v.literal('experimenter'), reason: text(500) }),
-  v.strictObject({
-    type: v.literal('void-block'),
-    reason: text(500),
-    repeat: v.boolean('expected true or false'),
-    of: v.exactOptional(v.strictObject({ task: identifier, block: integerBetween(1, 1000) })),
-  }),
-]);
-
 /** `consent` is the version of the text that the participant has read. */
 const claimSchema = v.strictObject({ invitation: v.optional(text(60)), consent: v.optional(text(40)) });
-const seatSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
 const remarkSchema = v.strictObject({ text: text(2000) });
 const sinceSchema = v.object({ after: integerBetween(0, 2 ** 53 - 1) });
 const notATrial = 'expected the id of a trial record';
@@ -45,16 +30,8 @@ const motionSchema = v.object({
   trial: v.pipe(v.string(notATrial), v.regex(/^[a-z0-9][a-z0-9/@.:-]{0,119}$/, notATrial)),
 });
 
-/** The parts of the server that these routes use. */
-export interface ParticipantRouteOptions extends Exporting {
-  readonly store: Omit<StudyStore, 'overview' | 'software' | 'snapshot' | 'flushed' | 'forgetDeleted' | 'close'>;
-  readonly guard: StudyGuard;
-  /** Signs participants into the rooms of their trials. */
-  readonly seats: StudySeats;
-}
-
 /** Returns the state for a device that has taken a participant's place; a session of another device is continued. */
-const sessionOf = ({ store }: Pick<ParticipantRouteOptions, 'store'>, { study, participant, at }: StudyCall) => ({
+const sessionOf = (store: StudyStore, { study, participant, at }: StudyCall) => ({
   plan: store.plans.planFor(study, participant),
   simulated: store.plans.get(study).simulated,
   progress: store.places.progress(study, participant, at),
@@ -79,11 +56,7 @@ function refuseOutdated(plan: StudyPlan): void {
  * Takes a place. `read` is the version of the text that was consented to, if it was sent. Throws if the plan has
  * another one; the place stays free.
  */
-function takePlace(
-  { store }: Pick<ParticipantRouteOptions, 'store'>,
-  { study, participant, at }: StudyCall,
-  read: string | undefined,
-) {
+function takePlace(store: StudyStore, { study, participant, at }: StudyCall, read: string | undefined) {
   const plan = store.plans.planFor(study, participant);
   refuseOutdated(plan);
   const { version } = plan.consent;
@@ -100,14 +73,15 @@ const signing = (path: string, handle: Handle): StudyRoute => ({
 });
 
 /** Returns the routes of one participant. */
-export function participantRoutes({ store, guard, seats, software, makeZip }: ParticipantRouteOptions): StudyRoute[] {
+export function participantRoutes(parts: StudyParts): StudyRoute[] {
+  const { store, guard, seats } = parts;
   const own = '/:study/participants/:participant';
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
       const { invitation, consent } = checked(claimSchema, jsonOf(call));
-      const claim = () => takePlace({ store }, call, consent);
+      const claim = () => takePlace(store, call, consent);
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
-      return json({ token, withdrawalCode, ...sessionOf({ store }, call) }, 201);
+      return json({ token, withdrawalCode, ...sessionOf(store, call) }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
       store.places.reinvite(study, participant);
@@ -157,13 +131,13 @@ export function participantRoutes({ store, guard, seats, software, makeZip }: Pa
       return done;
     }),
     signing(`${own}/seat`, async (call) => {
-      const trial = checked(seatSchema, jsonOf(call));
+      const trial = checked(playedTogetherSchema, jsonOf(call));
       const plan = store.plans.planFor(call.study, call.participant);
       // A request that is admitted without the participant's token is from an experimenter, who watches.
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
     exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
-      exportOf({ store, software, makeZip }, { at, study, participant }),
+      exportOf(parts, { at, study, participant }),
     ),
     route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
       json(store.deletion.delete(study, participant, 'experimenter', at)),

@@ -1,8 +1,12 @@
 import type { Answer } from 'threepoint-http/answer';
 import type { ClientAddress } from 'threepoint-http/client-address';
 import type { Route } from 'threepoint-http/router';
+import type { Software } from 'threepoint-http/software';
 import { mostMotionBytes } from '../../model/progress/study-api';
-import type { Concerned, StudyAccess } from './guard';
+import type { Exporter } from '../export/exporter';
+import type { StudyStore } from '../storage/store';
+import type { Concerned, StudyAccess, StudyGuard } from './guard';
+import type { StudySeats } from './seats';
 
 /** The largest bodies [bytes]. */
 export const bodyLimits = { json: 512 * 1024, motion: mostMotionBytes } as const;
@@ -34,6 +38,17 @@ export interface StudyRoute extends Omit<Route<StudyAccess>, 'handle'> {
   /** Whether the answer has no time limit. */
   readonly isPatient: boolean;
   handle(call: StudyCall): Answer | Promise<Answer>;
+}
+
+/** The parts of the server that routes use. */
+export interface StudyParts {
+  readonly store: StudyStore;
+  readonly guard: StudyGuard;
+  /** Signs participants into the rooms of their trials. */
+  readonly seats: StudySeats;
+  /** The software that serves the studies, for exports. */
+  readonly software: Software;
+  readonly makeZip: Exporter;
 }
 
 /** Handles a request. */

@@ -1,32 +1,14 @@
 import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
 import { type Answer, HttpError } from 'threepoint-http/answer';
 import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
-import type { Software } from 'threepoint-http/software';
-import type { Exporter } from '../export/exporter';
 import { StoreRefusal } from '../storage/database';
-import type { StudyStore } from '../storage/store';
 import { type Concerned, createStudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';
-import type { StudyRequest, StudyRoute } from './route';
-import type { StudySeats } from './seats';
+import type { StudyParts, StudyRequest, StudyRoute } from './route';
 import { studyRoutes } from './study-routes';
 
-export interface StudyRoutesOptions extends StudyGuardOptions {
-  readonly store: StudyStore;
-  /** Signs participants into the rooms of their trials. */
-  readonly seats: StudySeats;
-  /** The software that serves the studies, for exports. */
-  readonly software: Software;
-  readonly makeZip: Exporter;
-}
-
-/** All routes below /api/studies. A participant's token gives access to this participant only. */
-export interface StudyRoutes {
-  readonly routes: readonly StudyRoute[];
-  /** Throws an HttpError if the request is not permitted; called before the body is read. */
-  admit(route: StudyRoute, request: StudyRequest): Promise<void>;
-  handle(route: StudyRoute, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Answer | Promise<Answer>;
-}
+/** The routes below /api/studies. A participant's token gives access to this participant only. */
+export type StudyRoutes = ReturnType<typeof createStudyRoutes>;
 
 const concerned = ({ token, address, names }: StudyRequest): Concerned => ({
   ...{ token, address },
@@ -52,13 +34,19 @@ export function refusalOf(error: unknown): HttpError | null {
 }
 
 /** Returns the routes of the studies. */
-export function createStudyRoutes({ seats, software, makeZip, ...guarded }: StudyRoutesOptions): StudyRoutes {
-  const guard = createStudyGuard(guarded);
-  const table = { store: guarded.store, guard, seats, software, makeZip };
+export function createStudyRoutes({
+  experimenterToken,
+  onWrongGuess,
+  ...parts
+}: Omit<StudyParts, 'guard'> & StudyGuardOptions) {
+  const guard = createStudyGuard({ store: parts.store, experimenterToken, onWrongGuess });
+  const serving = { ...parts, guard };
   return {
-    routes: [...studyRoutes(table), ...participantRoutes(table)],
-    admit: async ({ access }, request) => guard.admit(access, concerned(request)),
-    handle: ({ handle }, request, body) =>
+    routes: [...studyRoutes(serving), ...participantRoutes(serving)],
+    /** Throws an HttpError if the request is not permitted; called before the body is read. */
+    admit: async ({ access }: StudyRoute, request: StudyRequest): Promise<void> =>
+      guard.admit(access, concerned(request)),
+    handle: ({ handle }: StudyRoute, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Answer | Promise<Answer> =>
       handle({ ...concerned(request), at: request.at, query: new URLSearchParams(request.query), body }),
   };
 }

@@ -1,7 +1,7 @@
 import { createHmac, randomBytes } from 'node:crypto';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import type { StudyPlan } from '../../model/plan/plan';
-import { scheduleFor } from '../../model/plan/schedule';
+import { isPlayed, scheduleFor } from '../../model/plan/schedule';
 import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 
 /** The claims of a participant's place in a room, which the server's rooms read from a signed token. */
@@ -19,17 +19,13 @@ export interface SeatClaim {
 /** Returns the claim as signed text that the server's rooms accept. */
 export type SignSeat = (claim: SeatClaim) => Promise<string>;
 
-/** Signs participants into the rooms of their trials. */
-export interface StudySeats {
-  /**
-   * Resolves with the participant's seat, or with a spectator's place; throws a ValidationError if the step is not
-   * played together.
-   */
-  sign(plan: StudyPlan, participant: string, trial: PlayedTogether, watching: boolean): Promise<SignedSeat>;
-}
+export type StudySeats = ReturnType<typeof createStudySeats>;
 
-/** `secret` makes the names of rooms unguessable; all processes of a fleet have the same one. */
-export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats {
+/**
+ * Returns what signs participants into the rooms of their trials. `secret` makes the names of rooms unguessable; all
+ * processes of a fleet have the same one.
+ */
+export function createStudySeats(secret: string, signSeat: SignSeat) {
   const nameOf = (purpose: string, ...parts: readonly unknown[]): string =>
     createHmac('sha256', secret)
       .update(JSON.stringify([purpose, ...parts]))
@@ -37,10 +33,15 @@ export function createStudySeats(secret: string, signSeat: SignSeat): StudySeats
       .slice(0, 24);
 
   return {
-    async sign(plan, participant, { step: id, run }, watching) {
+    /**
+     * Resolves with the participant's seat, or with a spectator's place; throws a ValidationError if the step is not
+     * played together.
+     */
+    async sign(plan: StudyPlan, participant: string, trial: PlayedTogether, watching: boolean): Promise<SignedSeat> {
+      const { step: id, run } = trial;
       const schedule = scheduleFor(plan, participant);
       const step = schedule.steps.find((candidate) => candidate.id === id);
-      const played = step && (step.kind === 'trial' || step.kind === 'tutorial') ? step : null;
+      const played = step && isPlayed(step) ? step : null;
       const task = plan.tasks.find((candidate) => candidate.id === played?.task);
       if (!played || task?.game !== 'ball') {
         throw new ValidationError('step', `expected a step that ${participant} plays with others, not "${id}"`);

@@ -2,12 +2,11 @@ import { checked, integerBetween, participantId, text } from 'threepoint/core/va
 import { type Answer, done, json } from 'threepoint-http/answer';
 import { jsonOf } from 'threepoint-http/router';
 import * as v from 'valibot';
-import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
+import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import type { StudyStore } from '../storage/store';
-import { type Exporting, exporting, exportOf } from './export-routes';
-import type { StudyGuard } from './guard';
-import { bodyLimits, route, type StudyRoute } from './route';
+import { exporting, exportOf } from './export-routes';
+import { bodyLimits, route, type StudyParts, type StudyRoute } from './route';
 
 const newStudySchema = v.strictObject({
   plan: v.unknown(),
@@ -38,14 +37,9 @@ function recordsOf(store: Pick<StudyStore, 'records'>, info: StudyInfo): Answer 
   return { ...json(null), body };
 }
 
-/** The parts of the server that these routes use. */
-export interface StudyRouteOptions extends Exporting {
-  readonly store: Pick<StudyStore, 'plans' | 'places' | 'records' | 'deletion' | 'overview'>;
-  readonly guard: StudyGuard;
-}
-
 /** Returns the routes of the server and of one study. */
-export function studyRoutes({ store, guard, software, makeZip }: StudyRouteOptions): StudyRoute[] {
+export function studyRoutes(parts: StudyParts): StudyRoute[] {
+  const { store, guard } = parts;
   return [
     route('GET', '', 'experimenter', 0, () =>
       json({
@@ -57,7 +51,7 @@ export function studyRoutes({ store, guard, software, makeZip }: StudyRouteOptio
     ),
     route('POST', '', 'experimenter', bodyLimits.json, (call) => {
       const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
-      return json(store.plans.add(checkedPlan(plan), { simulated, newVersion, at: call.at }), 201);
+      return json(store.plans.add(plan, { simulated, newVersion, at: call.at }), 201);
     }),
     // Participants who have begun read the text of their version.
     route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
@@ -78,7 +72,7 @@ export function studyRoutes({ store, guard, software, makeZip }: StudyRouteOptio
       return json({ receipts: store.deletion.receipts(study) });
     }),
     exporting('/:study/export', 'experimenter', ({ study, at, query }) =>
-      exportOf({ store, software, makeZip }, { at, study, version: versionIn(query) }),
+      exportOf(parts, { at, study, version: versionIn(query) }),
     ),
     route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
       json({ participants: store.overview(study, at) }),

@@ -1,15 +1,8 @@
-import type { StudyCommand } from '../../model/progress/study-api';
+import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
 import { StoreRefusal, type StudyDatabase } from './database';
 import type { StudyPlaces } from './places';
 
 export const mostCommandsPerParticipant = 10_000;
-
-/** A command as a participant's page fetches it. */
-export interface NumberedCommand {
-  readonly number: number;
-  readonly at: number;
-  readonly command: StudyCommand;
-}
 
 /** The commands of experimenters to participants' pages. */
 export class StudyCommands {

@@ -3,6 +3,7 @@ import type { StudyCommands } from './commands';
 import { StoreRefusal, type StudyDatabase } from './database';
 import type { StudyMotion } from './motion';
 import type { StudyPlaces } from './places';
+import type { PlanPlaces } from './plan-places';
 import type { StudyPlans } from './plans';
 import type { StudyRecords } from './records';
 import { newCode } from './schema';
@@ -24,6 +25,7 @@ const receiptOf = ({ number, study, participant, reason, records, motion_files, 
 export interface StudyDeletionParts {
   readonly database: StudyDatabase;
   readonly plans: StudyPlans;
+  readonly planPlaces: PlanPlaces;
   readonly places: StudyPlaces;
   readonly records: StudyRecords;
   readonly motion: StudyMotion;
@@ -42,7 +44,7 @@ export class StudyDeletion {
   }
 
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
-    const { database, plans, places, records, motion, commands } = this.#parts;
+    const { database, plans, planPlaces, places, records, motion, commands } = this.#parts;
     const receipt = database.transaction(() => {
       // Refuses an unknown participant.
       places.get(study, participant);
@@ -51,7 +53,7 @@ export class StudyDeletion {
       const motionFiles = motion.delete(study, participant);
       commands.delete(study, participant);
       places.clear(study, participant, invitation, reason === 'withdrawn');
-      if (reason === 'experimenter') plans.freePlaces(study, participant);
+      if (reason === 'experimenter') planPlaces.free(plans.get(study), participant);
       return database.getOne<ReceiptRow>(
         `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
          RETURNING *`,
@@ -111,9 +113,9 @@ export class StudyDeletion {
    * the common one.
    */
   #invitationAfter(study: string, reason: Receipt['reason']): string | null {
-    const { plans } = this.#parts;
+    const { plans, planPlaces } = this.#parts;
     if (reason !== 'experimenter') return null;
-    const common = plans.get(study).plan.entry === 'open' ? plans.commonInvitation(study) : null;
+    const common = plans.get(study).plan.entry === 'open' ? planPlaces.commonInvitation(study) : null;
     return common ?? newCode();
   }
 }

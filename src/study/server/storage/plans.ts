@@ -3,7 +3,7 @@ import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { StoreRefusal, type StudyDatabase } from './database';
-import { PlanPlaces } from './plan-places';
+import type { PlanPlaces } from './plan-places';
 
 interface StudyRow {
   readonly id: string;
@@ -37,9 +37,9 @@ export class StudyPlans {
   readonly #database: StudyDatabase;
   readonly #places: PlanPlaces;
 
-  constructor(database: StudyDatabase) {
+  constructor(database: StudyDatabase, places: PlanPlaces) {
     this.#database = database;
-    this.#places = new PlanPlaces(database);
+    this.#places = places;
   }
 
   /** Returns a study with this version of its plan or with the newest; throws a StoreRefusal if it is unknown. */
@@ -70,47 +70,38 @@ export class StudyPlans {
 
   /**
    * Adds a study, or returns an equal one that exists. Another plan for a study that has begun is refused unless it is
-   * added as a new version. Participants who have begun, and those who play with them, keep their version.
+   * added as a new version. Participants who have begun, and those who play with them, keep their version. Throws a
+   * ValidationError for an invalid plan.
    */
-  add(plan: StudyPlan, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
+  add(given: unknown, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
+    const plan = checkedPlan(given);
     return this.#database.transaction(() => {
-      const checked = checkedPlan(plan);
-      const stored = this.#row(checked.id);
+      const stored = this.#row(plan.id);
       if (!stored) {
-        this.#insert(checked, simulated, at);
-        return this.get(checked.id);
+        this.#insert(plan, simulated, at);
+        return this.get(plan.id);
       }
       if (stored.simulated !== Number(simulated)) {
         throw new StoreRefusal(
           'conflict',
-          `the study "${checked.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
+          `the study "${plan.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
         );
       }
       const known = this.#infoOf(stored);
-      if (JSON.stringify(known.plan) === JSON.stringify(checked)) return known;
-      const begun = this.#places.begun(checked.id);
+      if (JSON.stringify(known.plan) === JSON.stringify(plan)) return known;
+      const begun = this.#places.begun(plan.id);
       if (begun.length === 0) {
-        this.remove(checked.id);
-        this.#insert(checked, simulated, at);
-      } else if (newVersion) this.#addVersion(known, checked, at);
+        this.remove(plan.id);
+        this.#insert(plan, simulated, at);
+      } else if (newVersion) this.#addVersion(known, plan, at);
       else {
         const text =
-          `the study "${checked.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
+          `the study "${plan.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
           `Add the plan as version ${known.version + 1} for later participants, or give it another id`;
         throw new StoreRefusal('begun', text);
       }
-      return this.get(checked.id);
+      return this.get(plan.id);
     });
-  }
-
-  /** Returns the invitation that all places of an open study share in its newest plan, or null if there is none. */
-  commonInvitation(id: string): string | null {
-    return this.#places.commonInvitation(id);
-  }
-
-  /** Moves a cleared place, and those that depend on it, to the newest plan, in a transaction. */
-  freePlaces(id: string, participant: string): void {
-    this.#places.free(this.get(id), participant);
   }
 
   /** Deletes a study without records, in a transaction. */

@@ -6,6 +6,7 @@ import { type DatabaseOptions, StudyDatabase } from './database';
 import { StudyDeletion } from './deletion';
 import { StudyMotion } from './motion';
 import { type PlaceRow, StudyPlaces } from './places';
+import { PlanPlaces } from './plan-places';
 import { StudyPlans } from './plans';
 import { StudyRecords } from './records';
 import { StudySoftware } from './software';
@@ -15,23 +16,7 @@ import { StudySoftware } from './software';
  * survive a power cut when `flushed` has resolved, and nothing is acknowledged before. Times are seconds since 1970 of
  * the caller's clock.
  */
-export interface StudyStore {
-  readonly plans: StudyPlans;
-  readonly places: StudyPlaces;
-  readonly records: StudyRecords;
-  readonly motion: StudyMotion;
-  readonly commands: StudyCommands;
-  readonly software: StudySoftware;
-  readonly deletion: StudyDeletion;
-  overview(study: string, now: number): readonly ParticipantState[];
-  /** Runs `body`, whose reads all see one state of the database. */
-  snapshot<T>(body: () => T): T;
-  /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
-  flushed(): Promise<void>;
-  /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
-  forgetDeleted(): boolean;
-  close(): void;
-}
+export type StudyStore = ReturnType<typeof openStudyStore>;
 
 /** Returns the state of a place for the experimenter at this time [s]. */
 function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number, now: number): ParticipantState {
@@ -65,9 +50,10 @@ const mostStoredBytes = 16 * 2 ** 30;
 export function openStudyStore(
   file: string,
   { mostBytes = mostStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},
-): StudyStore {
+) {
   const database = new StudyDatabase(file, { mostBytes, readOnly });
-  const plans = new StudyPlans(database);
+  const planPlaces = new PlanPlaces(database);
+  const plans = new StudyPlans(database, planPlaces);
   const places = new StudyPlaces(database, plans);
   const records = new StudyRecords(database, plans, places);
   const motion = new StudyMotion(database, places);
@@ -75,16 +61,20 @@ export function openStudyStore(
   return {
     ...{ plans, places, records, motion, commands },
     software: new StudySoftware(database),
-    deletion: new StudyDeletion({ database, plans, places, records, motion, commands }),
-    overview(study, now) {
+    deletion: new StudyDeletion({ database, plans, planPlaces, places, records, motion, commands }),
+    /** Returns the state of every place at this time [s]. */
+    overview(study: string, now: number): readonly ParticipantState[] {
       const { version: newest, versions } = plans.get(study);
       return places.all(study).map((row) => {
         const followed = versions.find(({ version }) => version === (row.plan_version ?? newest)) as PlanVersion;
         return stateOf(row, followed, records.count(study, row.participant), now);
       });
     },
-    snapshot: (body) => database.snapshot(body),
+    /** Runs `body`, whose reads all see one state of the database. */
+    snapshot: <T>(body: () => T): T => database.snapshot(body),
+    /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
     flushed: () => database.flushed(),
+    /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
     forgetDeleted: () => !database.holdsDeleted || database.forgetDeleted(),
     close: () => database.close(),
   };

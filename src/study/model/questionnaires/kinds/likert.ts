@@ -2,8 +2,16 @@ import { integerBetween, ValidationError } from 'threepoint/core/validation/vali
 import * as v from 'valibot';
 import { words } from '../../phrases/words';
 import type { QuestionKind } from '../question-kind';
-import { nearestOn, pointsOn, type SteppedScale } from '../scale-steps';
-import { checkSteps, ends, endTexts, numberOn, scaleInWords } from './scale-kind';
+import {
+  checkSteps,
+  ends,
+  endTexts,
+  nearestOn,
+  numberOn,
+  pointsOn,
+  type SteppedScale,
+  scaleInWords,
+} from './scale-kind';
 
 const mostPoints = 101;
 

@@ -1,9 +1,17 @@
 import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { QuestionKind } from '../question-kind';
-import { nearestOn, pointsOn, type SteppedScale } from '../scale-steps';
 import { limit, limitedNumber } from './limits';
-import { checkSteps, ends, endTexts, numberOn, scaleInWords } from './scale-kind';
+import {
+  checkSteps,
+  ends,
+  endTexts,
+  nearestOn,
+  numberOn,
+  pointsOn,
+  type SteppedScale,
+  scaleInWords,
+} from './scale-kind';
 
 const mostSteps = 200;
 
