@@ -145,7 +145,7 @@ function pairOf(
   return { root, limbs: [first, second], kind, score };
 }
 
-/** Returns pairs of limbs that may be arms or legs, the likeliest first. `short`: limbs of two joints without an end. */
+/** Returns pairs that may be arms or legs, the likeliest first. `short`: limbs of two joints, without an end. */
 export function findPairs(tree: JointTree, kind: LimbKind, short = false): readonly LimbPair[] {
   const pairs: LimbPair[] = [];
   for (const root of tree.order) {
