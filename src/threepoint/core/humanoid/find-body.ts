@@ -1,6 +1,6 @@
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
 import type { JointTree } from './joint-tree';
-import { findPairs, type Limb, type LimbPair, limbLength } from './limb-pairs';
+import { difference, findPairs, type Limb, type LimbPair, limbLength } from './limb-pairs';
 
 /** Arms, legs if there are any, and the trunk between them. */
 export interface Body {
@@ -13,8 +13,12 @@ export interface Body {
   readonly score: number;
 }
 
-function bestBody(tree: JointTree): Body | null {
-  const [arms, legs] = [findPairs(tree, 'arm'), findPairs(tree, 'leg')];
+/** Legs are this much longer than arms, from thigh to foot and from shoulder to hand. */
+const legsPerArms = 1.5;
+
+/** Returns the likeliest body. `handless`: its arms end at the elbow. */
+function bestBody(tree: JointTree, handless: boolean): Body | null {
+  const [arms, legs] = [findPairs(tree, 'arm', handless), findPairs(tree, 'leg')];
   let best: Body | null = null;
   for (const arm of arms) {
     for (const leg of [...legs, null]) {
@@ -26,6 +30,8 @@ function bestBody(tree: JointTree): Body | null {
 }
 
 function bodyOf(tree: JointTree, arms: LimbPair, legs: LimbPair | null): Body | null {
+  // One pair of limbs without names may be arms or legs.
+  if (!legs && Math.min(...arms.limbs.map(({ names }) => names)) === 0) return null;
   const armAncestors = tree.ancestors(arms.root);
   const within = (pair: LimbPair, joint: number): boolean => {
     const ancestors = new Set(tree.ancestors(joint));
@@ -48,7 +54,7 @@ function bodyOf(tree: JointTree, arms: LimbPair, legs: LimbPair | null): Body | 
   if (legs) {
     if (armAncestors.includes(legs.root) && legs.root !== arms.root) score += 0.6;
     const share = limbLength(tree, legs.limbs[0]) / limbLength(tree, arms.limbs[0]);
-    if (share > 0.6 && share < 2.5) score += 0.4;
+    score += Math.max(0, 1.2 - 1.5 * Math.abs(Math.log(share / legsPerArms)));
     score += 0.5 * legsBelow(tree, legs, arms);
   }
   return { arms, legs, trunk, above, score };
@@ -101,16 +107,18 @@ function chainToHead(
   trunk: readonly number[],
 ): readonly number[] {
   const trunkWay = normalise(subtract(tree.position(root), tree.position(trunk[0]!)), zero);
-  const branches = tree.children[root]!.filter((child) => !taken.has(child));
+  const chains = tree.children[root]!.filter((child) => !taken.has(child)).map((child) => headChain(tree, child));
   let best: readonly number[] = [];
   let most = 0;
-  for (const child of branches) {
-    const chain = headChain(tree, child);
+  for (const chain of chains) {
+    const child = chain[0]!;
+    // A head lies in the middle: what has a mirror image is a limb, a wing or an ear.
+    const mirrored = chains.some((other) => other !== chain && difference(tree, chain, other) < 0.05);
     const named = Math.max(...chain.map((joint) => Math.max(tree.vote(joint, 'head'), tree.vote(joint, 'neck'))));
     const way = normalise(subtract(tree.position(chain.at(-1)!), tree.position(root)), zero);
     const own = (tree.segments[child]! + tree.heights[child]!) / tree.size;
     const score = 3 * named + dot(way, trunkWay) + Math.min(own, 0.3) + (chain.length > 1 ? 0.3 : 0) + 0.5;
-    if (score > most && !(tree.auxiliary[child] && named === 0)) [best, most] = [chain, score];
+    if (score > most && !((tree.auxiliary[child] || mirrored) && named === 0)) [best, most] = [chain, score];
   }
   return best;
 }
@@ -128,6 +136,6 @@ function headChain(tree: JointTree, child: number): readonly number[] {
 
 /** Returns the body of a skeleton; null: it has none, or stands on four legs. */
 export function findBody(tree: JointTree): Body | null {
-  const body = bestBody(tree);
+  const body = bestBody(tree, false) ?? bestBody(tree, true);
   return body && !onFourLegs(tree, body) ? body : null;
 }

@@ -75,6 +75,12 @@ function legWithoutFoot(tree: JointTree, chain: readonly number[]): Limb | null 
   return named ? { chain, at: [0, 1, 1], shape: 0.8, names: 0.6 } : null;
 }
 
+/** Returns the first two joints of a chain as a limb without its end; null: there is one joint alone. */
+function shortLimb(tree: JointTree, first: number): Limb | null {
+  const chain = tree.mainChain(first, 2);
+  return chain.length === 2 ? { chain, at: [0, 1, 1], shape: 0, names: 0 } : null;
+}
+
 /** Two limbs that mirror each other and leave one joint. */
 export interface LimbPair {
   readonly root: number;
@@ -87,8 +93,8 @@ export interface LimbPair {
 export const limbLength = (tree: JointTree, { chain, at }: Limb): number =>
   chain.slice(at[0] + 1, at[2] + 1).reduce((sum, joint) => sum + tree.segments[joint]!, 0);
 
-/** How far the lengths of two chains differ, as a share. */
-function difference(tree: JointTree, a: readonly number[], b: readonly number[]): number {
+/** Returns how far the lengths of two chains differ, as a share. */
+export function difference(tree: JointTree, a: readonly number[], b: readonly number[]): number {
   const count = Math.min(a.length, b.length);
   let [apart, total] = [0, 0];
   for (let i = 0; i < count; i++) {
@@ -139,17 +145,19 @@ function pairOf(
   return { root, limbs: [first, second], kind, score };
 }
 
-/** Pairs of limbs that may be arms or legs, the likeliest first. */
-export function findPairs(tree: JointTree, kind: LimbKind): readonly LimbPair[] {
+/** Returns pairs that may be arms or legs, the likeliest first. `short`: limbs of two joints, without an end. */
+export function findPairs(tree: JointTree, kind: LimbKind, short = false): readonly LimbPair[] {
   const pairs: LimbPair[] = [];
   for (const root of tree.order) {
     const branches = tree.children[root]!.filter(
       (child) =>
         tree.segments[child]! + tree.heights[child]! >= shortestLimb * tree.size &&
-        tree.children[child]!.some((next) => kind === 'leg' || tree.children[next]!.length > 0),
+        tree.children[child]!.some((next) => kind === 'leg' || short || tree.children[next]!.length > 0),
     );
     if (branches.length < 2) continue;
-    const limbs = branches.slice(0, mostBranches).flatMap((child) => findLimb(tree, child, kind) ?? []);
+    const limbs = branches
+      .slice(0, mostBranches)
+      .flatMap((child) => (short ? shortLimb(tree, child) : findLimb(tree, child, kind)) ?? []);
     for (const [i, a] of limbs.entries())
       for (const b of limbs.slice(i + 1)) {
         const pair = pairOf(tree, root, [a, b], kind);

@@ -237,16 +237,12 @@ class Matcher {
     const [shoulder, elbow, hand] = at.map((i) => chain[i]!) as [number, number, number];
     this.#take(`${side}UpperArm`, shoulder, 'upperArm', 'begins the upper of two long bones that leave the spine');
     this.#take(`${side}LowerArm`, elbow, 'lowerArm', 'between shoulder and hand');
-    this.#take(
-      `${side}Hand`,
-      hand,
-      'hand',
-      tree.fansOut(hand) ? 'fingers leave it' : 'ends the two long bones of the arm',
-    );
+    const ending = tree.fansOut(hand) ? 'fingers leave it' : 'ends the two long bones of the arm';
+    if (hand !== elbow) this.#take(`${side}Hand`, hand, 'hand', ending);
     const before = chain.slice(0, at[0]);
     const clavicle = before.find((joint) => tree.vote(joint, 'shoulder') > 0.5) ?? before[0];
     if (clavicle !== undefined) this.#take(`${side}Shoulder`, clavicle, 'shoulder', 'between spine and upper arm');
-    for (const { bone, joint, reason, confidence } of matchFingers(tree, hand))
+    for (const { bone, joint, reason, confidence } of hand === elbow ? [] : matchFingers(tree, hand))
       this.map[`${side}${bone}` as BoneName] = { joint, reason, confidence };
   }
 

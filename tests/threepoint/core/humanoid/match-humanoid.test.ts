@@ -69,6 +69,36 @@ describe.each(rigs)('the skeleton of $name', ({ name, joints, bones }) => {
   });
 });
 
+/** Wings in the unit of `rigs`, from where they leave the spine. */
+const wings: readonly (readonly [string, readonly (readonly [number, number, number])[]])[] = [
+  ['of three joints, spread', [[8, 3, -12], [45, 35, -20], [90, 20, -25]]],
+  ['of four joints, spread', [[8, 3, -12], [30, 30, -20], [60, 35, -22], [95, 10, -25]]],
+  ['of four joints, folded', [[8, 3, -12], [30, 10, -20], [45, -40, -22], [50, -80, -25]]],
+]; // biome-ignore format: a place a wing
+
+test.each(wings)('wings without names %s are no arms and no head', (_, places) => {
+  for (const { name, joints, bones } of rigs) {
+    // Legs without a foot are known by their names alone.
+    if (name === 'feet that follow a control') continue;
+    const nameless: SkeletonJoint[] = renamed(joints, (_, i) => `q${i}`);
+    const root = joints[bones.leftShoulder ?? bones.leftUpperArm!]!.parent;
+    const from = joints[root]!.position;
+    for (const sign of [1, -1])
+      for (const [k, [x, y, z]] of places.entries())
+        nameless.push({
+          name: `q${nameless.length}`,
+          parent: k === 0 ? root : nameless.length - 1,
+          position: { x: from.x + sign * x, y: from.y + y, z: from.z + z },
+        });
+    const { map } = matchHumanoid(nameless);
+    for (const bone of ['head', 'leftUpperArm', 'rightLowerArm', 'rightHand', 'leftFoot'] as const) {
+      const found = nameless[map[bone]?.joint ?? -1];
+      // A hand may be the joint beyond the wrist.
+      expect(found && distance(found.position, joints[bones[bone]!]!.position), `${name}: ${bone}`).toBeLessThan(4);
+    }
+  }
+});
+
 test('ends of chains that move no skin may lie anywhere', () => {
   for (const { joints, bones } of rigs.filter(({ name }) => /Quaternius|feet that follow a control/.test(name))) {
     const leaf = (i: number) => joints.every(({ parent }) => parent !== i);
@@ -135,6 +165,25 @@ describe('what is no humanoid is refused with what was found and what is missing
     const match = matchHumanoid(bird);
     expect(humanoidComplaint(match)).toMatch(/no leftUpperArm, no leftLowerArm, no leftHand/);
     expect(match.map.leftFoot).toBeDefined();
+  });
+
+  const without = (part: RegExp) => {
+    const { joints, bones } = rigs.find(({ name }) => name === 'LAFAN1')!;
+    const gone = new Set(Object.entries(bones).flatMap(([bone, joint]) => (part.test(bone) ? [joint] : [])));
+    const kept = joints.flatMap((joint, i) => (gone.has(i) ? [] : [{ ...joint, name: `q${i}`, i }]));
+    const heir = (joint: number): number => (gone.has(joint) ? heir(joints[joint]!.parent) : joint);
+    return kept.map((joint) => ({ ...joint, parent: kept.findIndex(({ i }) => i === heir(joint.parent)) }));
+  };
+
+  test('arms that end without hands, and everything else is found', () => {
+    const match = matchHumanoid(without(/Hand|Shoulder/));
+    expect(match.missing).toEqual(['leftHand', 'rightHand']);
+    expect(humanoidComplaint(match)).toMatch(/found hips \(q0\), spine .* no leftHand, no rightHand/);
+    expect(Object.keys(match.map)).toEqual(expect.arrayContaining(['head', 'leftLowerArm', 'rightFoot']));
+  });
+
+  test('one pair of limbs without names, which may be arms or legs', () => {
+    expect(humanoidComplaint(matchHumanoid(without(/Leg|Foot|Toes/)))).toMatch(/none of its \d+ joints/);
   });
 
   test('any tree of joints gets an answer within a second', () => {
