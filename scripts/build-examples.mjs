@@ -4,8 +4,7 @@ import { cpSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writ
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
-import { buildLibrary } from './build-library.mjs';
-import { buildRooms } from './build-rooms.mjs';
+import { buildPackagesWhenStale, packages } from './build-packages.mjs';
 import { mainOf, root, runQuietly, SetupError } from './run-command.mjs';
 
 async function done(command, args, cwd) {
@@ -19,12 +18,6 @@ async function done(command, args, cwd) {
 }
 
 const quiet = ['--no-audit', '--no-fund', '--no-update-notifier', '--ignore-scripts', '--prefer-offline'];
-
-/** The packages under test, and how each is built. */
-const packages = {
-  threepoint: { build: buildLibrary, folder: 'dist-library' },
-  'threepoint-rooms': { build: buildRooms, folder: 'dist-rooms' },
-};
 
 const manifestOf = (name) => JSON.parse(readFileSync(join(root, 'examples', name, 'package.json'), 'utf8'));
 
@@ -46,8 +39,8 @@ export const exampleNames = allNames.filter((name) => !hasRooms(name));
  */
 export async function pack(names) {
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-examples-'));
+  await buildPackagesWhenStale(names);
   for (const name of names) {
-    await packages[name].build();
     mkdirSync(join(folder, name));
     await done('npm', ['pack', join(root, packages[name].folder), '--pack-destination', join(folder, name)], folder);
   }

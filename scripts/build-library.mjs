@@ -8,6 +8,7 @@ import { rolldown } from 'rolldown';
 import { staleSizes } from './library-sizes.mjs';
 import { mainOf, root, run, SetupError } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
+import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-library');
 const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill', 'trackers'];
@@ -305,13 +306,14 @@ async function weigh(input, plugins = [filesInModules]) {
   return { min: size(code), brotli: size(code.map((buffer) => brotliCompressSync(buffer))) };
 }
 
-export async function buildLibrary() {
-  rmSync(out, { recursive: true, force: true });
-  await writeCode();
-  await writeBundles();
-  await writeTypes();
-  writeFiles();
-}
+export const buildLibrary = () =>
+  buildPackage('dist-library', async () => {
+    rmSync(out, { recursive: true, force: true });
+    await writeCode();
+    await writeBundles();
+    await writeTypes();
+    writeFiles();
+  });
 
 /** The measured entries, by their names in the table of src/threepoint/README.md. */
 async function measureSizes() {

@@ -6,6 +6,7 @@ import { rolldown } from 'rolldown';
 import { builtExports, documentInPackage, writeDeclarations } from './build-library.mjs';
 import { mainOf, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
+import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-rooms');
 /** The entries and their folders, by the platform that they are for. */
@@ -60,15 +61,16 @@ function published() {
   };
 }
 
-export async function buildRooms() {
-  rmSync(out, { recursive: true, force: true });
-  mkdirSync(out);
-  for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
-  await writeTypes();
-  copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));
-  const readme = readFileSync(join(root, documents['README.md']), 'utf8');
-  writeFileSync(join(out, 'README.md'), documentInPackage(readme, 'README.md', documents));
-  writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
-}
+export const buildRooms = () =>
+  buildPackage('dist-rooms', async () => {
+    rmSync(out, { recursive: true, force: true });
+    mkdirSync(out);
+    for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
+    await writeTypes();
+    copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));
+    const readme = readFileSync(join(root, documents['README.md']), 'utf8');
+    writeFileSync(join(out, 'README.md'), documentInPackage(readme, 'README.md', documents));
+    writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
+  });
 
 await mainOf(import.meta.url, buildRooms);

@@ -1,10 +1,10 @@
-import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
-import { join, relative, resolve } from 'node:path';
+import { join, resolve } from 'node:path';
 import { parseArgs, promisify } from 'node:util';
 import { brotliCompress, constants, gzip } from 'node:zlib';
 import { buildServiceWorker } from './build-service-worker.mjs';
 import { mainOf, root, run, SetupError } from './run-command.mjs';
+import { filesUnder, isStamped, sourceHash } from './source-hash.mjs';
 
 /** The paths that the built page depends on. */
 const sources = [
@@ -22,6 +22,7 @@ const sources = [
   'scripts/build.mjs',
   'scripts/build-service-worker.mjs',
 ];
+
 const stampFile = '.source-hash';
 
 /**
@@ -32,14 +33,6 @@ const usual = { base: './', out: join(root, 'dist'), filesFrom: null };
 
 /** The files that are worth compressing: text and machine code, not pictures and quantised weights. */
 const compressible = /\.(html|js|css|json|svg|wasm|txt|vrm|glb|webmanifest)$/;
-
-function filesUnder(path) {
-  if (!existsSync(path)) return [];
-  if (!statSync(path).isDirectory()) return [path];
-  return readdirSync(path)
-    .sort()
-    .flatMap((name) => filesUnder(join(path, name)));
-}
 
 /** Returns the options of `npm run build -- …`. Throws a SetupError if they are invalid. */
 export function buildOptions(args) {
@@ -85,16 +78,7 @@ const studyPlugins = () =>
     .filter((path) => path.trim())
     .map((path) => resolve(process.env.INIT_CWD ?? process.cwd(), path.trim()));
 
-function sourceHash({ base, filesFrom }) {
-  const hash = createHash('sha256').update(`${base}\0${filesFrom}\0`);
-  for (const file of [...sources, ...studyPlugins()].flatMap((source) => filesUnder(resolve(root, source)))) {
-    hash
-      .update(`${relative(root, file)}\0`)
-      .update(readFileSync(file))
-      .update('\0');
-  }
-  return hash.digest('hex');
-}
+const hashOf = ({ base, filesFrom }) => sourceHash([...sources, ...studyPlugins()], `${base}\0${filesFrom}\0`);
 
 /** Writes .br and .gz next to the files that get smaller by it, so that the server never compresses on request. */
 async function precompress(directory) {
@@ -118,7 +102,7 @@ async function precompress(directory) {
  * @param {{ base: string, out: string, filesFrom?: string | null }} options
  */
 export async function build({ base, out, filesFrom = usual.filesFrom } = usual) {
-  const hash = sourceHash({ base, filesFrom });
+  const hash = hashOf({ base, filesFrom });
   const vite = ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'warn'];
   const buildPages = async (pages) => {
     const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out], {
@@ -139,8 +123,7 @@ export async function build({ base, out, filesFrom = usual.filesFrom } = usual) 
 
 /** Builds dist/ unless it was built from exactly these sources. */
 export async function buildWhenStale() {
-  const stamp = join(usual.out, stampFile);
-  if (existsSync(stamp) && readFileSync(stamp, 'utf8') === sourceHash(usual)) return;
+  if (isStamped(join(usual.out, stampFile), hashOf(usual))) return;
   const start = performance.now();
   console.log('Building the page ...');
   await build();

@@ -14,8 +14,6 @@ const vitest = (report, ...args) => [
   node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
 ];
 
-const buildPackages = ['library', 'rooms'].map((name) => [process.execPath, `scripts/build-${name}.mjs`]);
-
 /**
  * Returns the commands of browser tests: 'day' runs untagged tests, the others those with that tag
  * (playwright.config.ts).
@@ -41,8 +39,10 @@ export const stages = {
     suite: 'day',
     singleCore: true,
     commands: () => [
-      ...buildPackages,
-      [process.execPath, 'scripts/check-library-package.mjs'],
+      ...['build-library', 'build-rooms', 'check-library-package'].map((name) => [
+        process.execPath,
+        `scripts/${name}.mjs`,
+      ]),
       ...['dist-library', 'dist-rooms'].flatMap((folder) => [
         node('publint/src/cli.js', folder, '--strict'),
         node('@arethetypeswrong/cli/dist/index.js', '--pack', folder, '--profile', 'esm-only', '--quiet'),
@@ -101,7 +101,7 @@ export const stages = {
   'library-use': {
     suite: 'full',
     singleCore: true,
-    commands: () => [...buildPackages, [process.execPath, 'scripts/check-library-use.mjs']],
+    commands: () => ['build-packages', 'check-library-use'].map((name) => [process.execPath, `scripts/${name}.mjs`]),
   },
   // The reference of all public packages: every link in a comment leads somewhere.
   reference: {
@@ -111,6 +111,7 @@ export const stages = {
   },
   'unit-full': {
     suite: 'full',
+    waits: true,
     runner: 'vitest',
     chosen: (tags) => tags.includes('full'),
     // Most files have no test with that tag: they are read, not loaded.
