@@ -3,6 +3,7 @@ import { acceptDroppedFiles } from 'threepoint-ui/dropped-files';
 import { pageElement } from 'threepoint-ui/element';
 import { createOverlay } from 'threepoint-ui/overlay';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
+import { createPlayBar, type PlayBar } from '../activities/play-bar';
 import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
 import { frameReport } from './frame-report';
@@ -11,7 +12,6 @@ import { Measuring } from './measuring';
 import { MotionExport } from './motion-export';
 import { OpenedFiles } from './opened-files';
 import { createPanelActions } from './panel-actions';
-import { PlayControls } from './play-controls';
 import { isNarrow, WindowLayout } from './window-layout';
 
 /** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
@@ -24,7 +24,7 @@ export class Controls {
   readonly #parts: ControlledParts;
   readonly #measuring: Measuring;
   readonly #files: OpenedFiles;
-  readonly #play: PlayControls;
+  readonly #play: PlayBar;
   readonly #desktop: DesktopControls;
   readonly #inHeadset: HeadsetControls;
   readonly #layout: WindowLayout;
@@ -38,7 +38,7 @@ export class Controls {
     this.#parts = parts;
     this.#measuring = new Measuring(parts);
     this.#files = new OpenedFiles(parts);
-    this.#play = new PlayControls(parts);
+    this.#play = createPlayBar(parts.activities);
     const measuring = this.#measuring;
     const motionExport = new MotionExport(parts);
     const actions = createPanelActions({ ...parts, measuring, motionExport, files: this.#files });

@@ -15,7 +15,6 @@ export interface PanelActionsOptions extends ControlledParts {
 
 function bodyActions({
   store,
-  writer,
   body,
   notices,
   userCalibration,
