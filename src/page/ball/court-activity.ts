@@ -175,14 +175,8 @@ export class CourtActivity implements OpenActivity {
     const { pose } = this.#context.stage.view;
     this.#view.showBoards(this.#context.headset.worn || !this.#phone.matches);
     this.#view.show({
-      state: newest.state,
-      time: newest.time,
+      ...newest,
       attendants: this.#named(newest.players),
-      me: newest.me,
-      rotate: newest.rotate,
-      opening: newest.opening,
-      aim: newest.aim,
-      paused: newest.paused,
       secondsLeft: this.#clock.secondsLeft,
       head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
       pageTime: time,
