@@ -20,6 +20,12 @@ export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
+/** Builds a built-in avatar from its file. */
+export const buildBuiltIn = async (
+  body: BuiltInBody,
+  bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
+): Promise<Avatar> => createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body)));
+
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
@@ -54,12 +60,9 @@ export class AvatarLoader {
   async loadBuiltIn(
     body: BuiltInBody,
     skinTone: SkinTone | undefined,
-    bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
+    bytes?: Promise<ArrayBuffer>,
   ): Promise<LoadedUserAvatar> {
-    return {
-      avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body))),
-      worn: builtInAvatarOf(body, skinTone),
-    };
+    return { avatar: await buildBuiltIn(body, bytes), worn: builtInAvatarOf(body, skinTone) };
   }
 
   /** Reads a file and checks it in a worker. */
