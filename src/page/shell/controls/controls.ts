@@ -1,12 +1,13 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { acceptDroppedFiles } from 'threepoint-ui/dropped-files';
 import { pageElement } from 'threepoint-ui/element';
-import { createOverlay } from 'threepoint-ui/overlay';
+import { createOverlay, type FrameReport } from 'threepoint-ui/overlay';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { createPlayBar, type PlayBar } from '../activities/play-bar';
+import { estimatorTexts } from '../estimator-texts';
+import { stageNames } from '../frame-timing';
 import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
-import { frameReport } from './frame-report';
 import { HeadsetControls } from './headset-controls';
 import { Measuring } from './measuring';
 import { MotionExport } from './motion-export';
@@ -120,7 +121,7 @@ export class Controls {
   /** What changes by itself: frame times, a replay's progress, a round. */
   #report(): void {
     const { recorder, activities, mocap } = this.#parts;
-    const report = frameReport(this.#parts);
+    const report = this.#frameReport();
     this.#overlay.show(report);
     this.#inHeadset.showReport(report);
     mocap.show();
@@ -128,5 +129,18 @@ export class Controls {
     else if (activities.current) this.#play.show();
     if (activities.current) this.#inHeadset.show();
     this.#play.showBanner();
+  }
+
+  /** What frames cost over the last seconds, and what estimates the body in them. */
+  #frameReport(): FrameReport {
+    const { timing, body, difference } = this.#parts;
+    const summary = timing.summary();
+    return {
+      ...summary,
+      stages: stageNames.map((name) => ({ name, ...summary.stages[name] })),
+      estimator: estimatorTexts[body.estimator].label,
+      provider: body.provider ?? 'no network',
+      fromDevice: difference.report(),
+    };
   }
 }
