@@ -54,8 +54,8 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
       ? createHolder({ eyeHeight, arenaFromFloor })
       : createThrower({ eyeHeight, arenaFromFloor }, 3 + player),
   );
-  const gestures = stations.map((arenaFromFloor, player) =>
-    new BallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
+  const gestures = stations.map(
+    (arenaFromFloor, player) => new BallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
   );
   let waiting: BallInput[] = [0, 1, 2].flatMap((player): BallInput[] => [
     { type: 'join', player },
