@@ -11,7 +11,7 @@ import { requestVrSession } from 'threepoint/xr/session';
 import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
 import { type Emulator, installEmulator } from 'threepoint-page/emulator/emulator';
-import { createStage, type Shot, type Stage } from 'threepoint-page/shell/stage';
+import { type Shot, Stage } from 'threepoint-page/shell/stage';
 import type { DrawnCounts, World, WorldCounts } from '../counts';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
@@ -54,7 +54,7 @@ class CountedStage {
     withoutDevice(gl);
     const emulator = await installEmulator();
     emulator.device.stereoEnabled = true;
-    const stage = createStage(canvas, 'high');
+    const stage = new Stage(canvas, 'high');
     await stage.renderer.xr.setSession(await requestVrSession());
     const avatar = createAvatar(await parseAvatar(body, 'body.vrm'));
     avatar.setCalibration(defaultCalibration);

@@ -5,7 +5,7 @@ import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 import { createPage, type Page } from './shell/create-page';
 import { createFrameLoop } from './shell/frame/frame-loop';
 import type { Headset } from './shell/headset';
-import { type PageContext, readPageContext } from './shell/page-context';
+import { readPageContext } from './shell/page-context';
 import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
 import { joinStudy } from './shell/study/join-study';
@@ -22,7 +22,7 @@ async function offerSessions(headset: Headset, button: EnterButton, study: boole
 }
 
 /** Lets frames be drawn; the panel is as the address asks, else as it was left. */
-function run({ controls, stage, frame, body, timing }: Page, { switches, settings }: PageContext): void {
+function run({ controls, stage, frame, body, timing, switches, settings }: Page): void {
   controls.setPanelOpen(settings.panel);
   if (switches.view) stage.view.setView(switches.view);
   controls.layOut();
@@ -31,7 +31,7 @@ function run({ controls, stage, frame, body, timing }: Page, { switches, setting
 }
 
 /** Shows the first body: the built-in avatar, moved by the best estimator that is available. */
-async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading): Promise<void> {
+async function showFirstBody({ avatarShown, frame, loading }: Page): Promise<void> {
   await avatarShown;
   loading.mark('avatar');
   loading.report('the avatar', 1);
@@ -43,10 +43,7 @@ async function showFirstBody({ avatarShown, frame }: Page, loading: PageLoading)
  * Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and
  * closes the controls.
  */
-async function openFromAddress(
-  { activities, controls, mocap, recorder }: Page,
-  { switches }: PageContext,
-): Promise<void> {
+async function openFromAddress({ activities, controls, mocap, recorder, switches }: Page): Promise<void> {
   // Before anything that the user opens meanwhile.
   const [replay, motion] = [recorder.ask(), recorder.ask()];
   await activities.goTo(switches.play);
@@ -56,19 +53,19 @@ async function openFromAddress(
 }
 
 /** Takes part in the study that the address asks for, if it does. */
-async function joinStudyOfAddress(page: Page, context: PageContext): Promise<void> {
-  const { switches } = context;
-  if (!switches.study) return;
-  const joined = await joinStudy({ ...page, ...context, asked: switches.study });
+async function joinStudyOfAddress(page: Page): Promise<void> {
+  const asked = page.switches.study;
+  if (!asked) return;
+  const joined = await joinStudy({ ...page, asked });
   page.study.join(joined);
-  page.stage.studio.scene.add(joined.run.object);
+  page.scene.add(joined.run.object);
 }
 
 /**
  * Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server
  * serves.
  */
-function storeOfflineCopy({ kept }: Page, { switches }: PageContext): void {
+function storeOfflineCopy({ kept, switches }: Page): void {
   // Only what has been built for good can be kept.
   if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);
 }
@@ -81,9 +78,8 @@ async function start(): Promise<void> {
   const loading = new PageLoading();
   loading.mark('script');
   const context = readPageContext(notices);
-  const { switches, store } = context;
-  const page = createPage({ context, notices, loading });
-  const { avatar, body, controls, headset, timing } = page;
+  const page = createPage({ ...context, notices, loading });
+  const { switches, settings, store, writer, avatar, body, controls, headset, timing } = page;
 
   // The built-in avatar is shown until another one has been loaded, and stays if that fails.
   if (switches.avatar) {
@@ -91,24 +87,24 @@ async function start(): Promise<void> {
     void avatar.open(address).then((outcome) => (outcome === 'motion' ? page.mocap.open([address]) : undefined));
   }
   const enter = (passthrough: boolean) => {
-    if (passthrough !== context.settings.passthrough) context.writer.keep({ passthrough });
+    if (passthrough !== settings.passthrough) writer.keep({ passthrough });
     void headset.enter(passthrough);
   };
   const enterButton = createEnterButton(pageElement('enter', HTMLElement), enter);
-  run(page, context);
+  run(page);
 
   // The network loads in parallel to the avatar, and IK draws until it is ready.
   const sessionsOffered = offerSessions(headset, enterButton, switches.study !== null);
   const chosen = body.setEstimator(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
-  await showFirstBody(page, loading);
-  await Promise.all([chosen, sessionsOffered, openFromAddress(page, context)]);
-  await joinStudyOfAddress(page, context);
+  await showFirstBody(page);
+  await Promise.all([chosen, sessionsOffered, openFromAddress(page)]);
+  await joinStudyOfAddress(page);
   loading.finish();
   // Compiling shaders is loading, not drawing.
   timing.reset();
   controls.show();
-  storeOfflineCopy(page, context);
+  storeOfflineCopy(page);
 }
 
 start().catch(showStartFailure);

@@ -1,12 +1,6 @@
 import type { CalibrationFault } from 'threepoint/core/tracking/calibration-faults';
 import { button, element } from './element';
 
-/** The guided calibration as people see it: an instruction, a countdown, then a bar that fills. */
-export interface CalibrationDialog {
-  show(step: CalibrationStep): void;
-  hide(): void;
-}
-
 /**
  * countdown: seconds left until measuring. measuring: part of it done, 0 to 1. done, failed: a closing sentence, in
  * English.
@@ -27,8 +21,11 @@ export function calibrationHeadline(step: CalibrationStep): string {
   return step.kind === 'done' ? 'Done' : 'Not yet';
 }
 
-/** A modal dialog; Escape and the button cancel. */
-export function createCalibrationDialog(onCancel: () => void, onAgain: () => void): CalibrationDialog {
+/**
+ * The guided calibration as people see it: an instruction, a countdown, then a bar that fills. A modal dialog; Escape
+ * and the button cancel.
+ */
+export function createCalibrationDialog(onCancel: () => void, onAgain: () => void) {
   const headline = element('p', { class: 'countdown', role: 'status' });
   const text = element('p', {}, calibrationInstruction);
   const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Measuring' });
@@ -49,7 +46,7 @@ export function createCalibrationDialog(onCancel: () => void, onAgain: () => voi
   });
   document.body.append(dialog);
   return {
-    show(step) {
+    show(step: CalibrationStep): void {
       const over = step.kind === 'done' || step.kind === 'failed';
       const figure = calibrationHeadline(step);
       if (headline.textContent !== figure) headline.textContent = figure;
@@ -60,8 +57,10 @@ export function createCalibrationDialog(onCancel: () => void, onAgain: () => voi
       cancel.textContent = over ? 'Close' : 'Cancel';
       if (!dialog.open) dialog.showModal();
     },
-    hide() {
+    hide(): void {
       if (dialog.open) dialog.close();
     },
   };
 }
+
+export type CalibrationDialog = ReturnType<typeof createCalibrationDialog>;

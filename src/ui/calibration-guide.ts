@@ -20,14 +20,7 @@ export interface CalibrationGuideOptions {
 }
 
 /** Leads through two seconds of standing still. Its clock is that of the tracked frames. */
-export interface CalibrationGuide {
-  start(): void;
-  cancel(): void;
-  /** Every tracked frame, running or not. */
-  observe(frame: TrackingFrame): void;
-}
-
-export function createCalibrationGuide(options: CalibrationGuideOptions): CalibrationGuide {
+export function createCalibrationGuide(options: CalibrationGuideOptions) {
   let startTime: number | null = null;
   let running = false;
   let measuring: GuidedCalibration = startGuidedCalibration;
@@ -39,17 +32,18 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
   }
 
   return {
-    start() {
+    start(): void {
       running = true;
       startTime = null;
       endTime = null;
       measuring = startGuidedCalibration;
       options.onStep({ kind: 'countdown', secondsLeft: countdown });
     },
-    cancel() {
+    cancel(): void {
       if (running) stop();
     },
-    observe(frame) {
+    /** Every tracked frame, running or not. */
+    observe(frame: TrackingFrame): void {
       if (!running) return;
       startTime ??= frame.time;
       const elapsed = frame.time - startTime;
@@ -78,3 +72,5 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
     },
   };
 }
+
+export type CalibrationGuide = ReturnType<typeof createCalibrationGuide>;

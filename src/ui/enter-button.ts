@@ -9,18 +9,14 @@ export interface EnterState {
   readonly enabled: boolean;
 }
 
-export interface EnterButton {
-  show(state: EnterState): void;
-}
-
 /** The big button of the page, and beside it the one for passthrough. */
-export function createEnterButton(region: HTMLElement, onEnter: (passthrough: boolean) => void): EnterButton {
+export function createEnterButton(region: HTMLElement, onEnter: (passthrough: boolean) => void) {
   const node = button('Enter VR', () => onEnter(false), { class: 'enter', disabled: true });
   const passthrough = button('', () => onEnter(true), { class: 'enter-ar', hidden: true });
   const sentence = element('p', { class: 'sentence', role: 'status' });
   region.append(element('div', {}, node, passthrough), sentence);
   return {
-    show(state) {
+    show(state: EnterState): void {
       node.textContent = state.label;
       node.disabled = !state.enabled;
       passthrough.textContent = state.passthroughLabel;
@@ -30,3 +26,5 @@ export function createEnterButton(region: HTMLElement, onEnter: (passthrough: bo
     },
   };
 }
+
+export type EnterButton = ReturnType<typeof createEnterButton>;

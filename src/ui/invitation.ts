@@ -2,12 +2,6 @@ import { button, element } from './element';
 import { pageFolder } from './page-folder';
 import { qrCode, qrPicture } from './qr-code';
 
-/** Offers the address of a room: as a link to copy, and as a QR code for a device with a camera. */
-export interface Invitation {
-  /** Shows it for this room of this page's server. */
-  open(room: string): void;
-}
-
 /** Whether other devices can open an address of this host. */
 const onlyHere = (hostname: string): boolean => /^(localhost|.*\.localhost|127\..*|\[::1\])$/.test(hostname);
 
@@ -65,7 +59,8 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
   };
 }
 
-export function createInvitation(): Invitation {
+/** Offers the address of a room: as a link to copy, and as a QR code for a device with a camera. */
+export function createInvitation() {
   const link = createRoomLink({ main: true });
   const dialog = element(
     'dialog',
@@ -81,9 +76,12 @@ export function createInvitation(): Invitation {
   );
   document.body.append(dialog);
   return {
-    open(room) {
+    /** Shows it for this room of this page's server. */
+    open(room: string): void {
       link.show(room);
       if (!dialog.open) dialog.showModal();
     },
   };
 }
+
+export type Invitation = ReturnType<typeof createInvitation>;

@@ -1,19 +1,11 @@
 /** Whether fingers are the usual way to point here, as on a phone. */
 export const isTouchFirst = (): boolean => matchMedia('(pointer: coarse)').matches;
 
-/** What mouse, pen or finger want of an archer: where they point in the window, and whether they hold. */
-export interface MouseAim {
-  /** From −1 to 1, right and up. */
-  readonly x: number;
-  readonly y: number;
-  readonly pressed: boolean;
-  /** Escape, the other button or a second finger, since the press began. */
-  readonly cancelled: boolean;
-  setEnabled(on: boolean): void;
-}
-
-/** Listens on the canvas while enabled. */
-export function createMouseAim(canvas: HTMLCanvasElement): MouseAim {
+/**
+ * What mouse, pen or finger want of an archer: where they point in the window, and whether they hold. Listens on the
+ * canvas while enabled.
+ */
+export function createMouseAim(canvas: HTMLCanvasElement) {
   const aim = { x: 0, y: 0.1, pressed: false, cancelled: false };
   let enabled = false;
   const move = ({ clientX, clientY, isPrimary }: PointerEvent) => {
@@ -48,21 +40,25 @@ export function createMouseAim(canvas: HTMLCanvasElement): MouseAim {
     if (enabled) event.preventDefault();
   });
   return {
-    get x() {
+    /** From −1 to 1, right and up. */
+    get x(): number {
       return aim.x;
     },
-    get y() {
+    get y(): number {
       return aim.y;
     },
-    get pressed() {
+    get pressed(): boolean {
       return enabled && aim.pressed;
     },
-    get cancelled() {
+    /** Escape, the other button or a second finger, since the press began. */
+    get cancelled(): boolean {
       return aim.cancelled;
     },
-    setEnabled(on) {
+    setEnabled(on: boolean): void {
       enabled = on;
       if (!on) aim.pressed = false;
     },
   };
 }
+
+export type MouseAim = ReturnType<typeof createMouseAim>;

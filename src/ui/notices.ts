@@ -8,18 +8,6 @@ export interface Notice {
   readonly text: string;
 }
 
-export interface Notices {
-  /**
-   * Shows a sentence. The same sentence twice is shown once; information leaves by itself, trouble stays until closed
-   * or over.
-   */
-  show(level: NoticeLevel, text: string): void;
-  /** Removes a notice that is no longer true. */
-  withdraw(text: string): void;
-  /** What is on the screen now, oldest first. */
-  current(): readonly Notice[];
-}
-
 interface Shown {
   readonly notice: Notice;
   readonly node: HTMLElement;
@@ -32,7 +20,7 @@ const infoDurationMs = 6000;
 const most = 4;
 
 /** Sentences for the user, in the region given; trouble is announced at once, the rest politely. */
-export function createNotices(region: HTMLElement): Notices {
+export function createNotices(region: HTMLElement) {
   const shown = new Map<string, Shown>();
   const close = (text: string) => {
     const of = shown.get(text);
@@ -55,14 +43,22 @@ export function createNotices(region: HTMLElement): Notices {
     return opened;
   };
   return {
-    show(level, text) {
+    /**
+     * Shows a sentence. The same sentence twice is shown once; information leaves by itself, trouble stays until closed
+     * or over.
+     */
+    show(level: NoticeLevel, text: string): void {
       const of = shown.get(text) ?? open(level, text);
       if (of.notice.level !== 'info') return;
       // Said again, it stays as long again.
       clearTimeout(of.leaving);
       of.leaving = setTimeout(() => close(text), infoDurationMs);
     },
+    /** Removes a notice that is no longer true. */
     withdraw: close,
-    current: () => [...shown.values()].map(({ notice }) => notice),
+    /** What is on the screen now, oldest first. */
+    current: (): readonly Notice[] => [...shown.values()].map(({ notice }) => notice),
   };
 }
+
+export type Notices = ReturnType<typeof createNotices>;

@@ -21,11 +21,6 @@ export interface FrameReport {
   readonly fromDevice: readonly { readonly name: string; readonly cm: number }[] | null;
 }
 
-export interface Overlay {
-  setVisible(visible: boolean): void;
-  show(report: FrameReport): void;
-}
-
 /** Milliseconds with as many digits as mean something. */
 export function milliseconds(ms: number): string {
   if (!Number.isFinite(ms)) return '–';
@@ -48,7 +43,7 @@ export function differenceLines(fromDevice: NonNullable<FrameReport['fromDevice'
 }
 
 /** Frame time by stage, as a card on the desktop. Call `show` a few times a second, not per frame. */
-export function createOverlay(region: HTMLElement): Overlay {
+export function createOverlay(region: HTMLElement) {
   const total = element('strong', {}, '–');
   const tail = element('span', {}, '');
   const missed = element('p', { class: 'missed' });
@@ -96,10 +91,10 @@ export function createOverlay(region: HTMLElement): Overlay {
   }
 
   return {
-    setVisible(visible) {
+    setVisible(visible: boolean): void {
       region.hidden = !visible;
     },
-    show(report) {
+    show(report: FrameReport): void {
       if (region.hidden) return;
       total.textContent = `${milliseconds(report.p50Ms)} ms`;
       tail.textContent = ` p95 ${milliseconds(report.p95Ms)} ms`;

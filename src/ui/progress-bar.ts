@@ -6,17 +6,8 @@ export interface LoadingStep {
   readonly weight: number;
 }
 
-export interface Progress {
-  /** How far a step is, 0 to 1; never goes back. */
-  report(step: string, part: number): void;
-  /** The first body is drawn: further loading is shown as a thin bar above the picture. */
-  showBody(): void;
-  /** Everything has been loaded, or has failed: hides the bar. */
-  finish(): void;
-}
-
 /** The bar that index.html shows from the first paint until everything has been loaded. */
-export function createProgress(steps: readonly LoadingStep[]): Progress {
+export function createProgress(steps: readonly LoadingStep[]) {
   const region = pageElement('progress', HTMLDivElement);
   const text = pageElement('progress-text', HTMLParagraphElement);
   const bar = pageElement('progress-bar', HTMLProgressElement);
@@ -30,16 +21,21 @@ export function createProgress(steps: readonly LoadingStep[]): Progress {
   };
   show();
   return {
-    report(step, part) {
+    /** How far a step is, 0 to 1; never goes back. */
+    report(step: string, part: number): void {
       parts.set(step, Math.min(1, Math.max(parts.get(step) ?? 0, part)));
       show();
     },
-    showBody() {
+    /** The first body is drawn: further loading is shown as a thin bar above the picture. */
+    showBody(): void {
       document.body.classList.add('loaded');
     },
-    finish() {
+    /** Everything has been loaded, or has failed: hides the bar. */
+    finish(): void {
       region.hidden = true;
       document.body.classList.add('loaded');
     },
   };
 }
+
+export type Progress = ReturnType<typeof createProgress>;

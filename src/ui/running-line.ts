@@ -1,17 +1,12 @@
 import { element } from './element';
 
 /** A line whose words are announced when they change. The running figures after them are only shown. */
-export interface RunningLine {
-  readonly node: HTMLParagraphElement;
-  show(words: string, figures?: string): void;
-}
-
-export function createRunningLine(attributes: { readonly class?: string } = {}): RunningLine {
+export function createRunningLine(attributes: { readonly class?: string } = {}) {
   const status = element('span', { role: 'status' });
   const running = element('span');
   return {
     node: element('p', attributes, status, running),
-    show(words, figures = '') {
+    show(words: string, figures: string = ''): void {
       // Said again, it would be announced again.
       if (status.textContent !== words) status.textContent = words;
       running.textContent = figures;

@@ -1,19 +1,9 @@
-import type { Mesh } from 'three';
 import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
 import { dampVec3 } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
-
-/** Shows captions of sounds in the headset: a line low in the view, for players without sound. */
-export interface VrCaptions {
-  readonly object: Mesh;
-  /** Shows a caption; an empty text hides it. */
-  setText(text: string): void;
-  /** At this time [s] before these eyes, floor frame; null: no one reads. */
-  show(time: number, eyes: Pose<'floor'> | null): void;
-}
+import { createVrPanel, fillRounded, vrColors, widthOf, write } from './vr-panel';
 
 const [width, height] = [1000, 96];
 /** How far away [m], and how far below the gaze [m] there: 13 degrees. */
@@ -23,7 +13,8 @@ const readFor = 2.5;
 /** It comes after the head, so that a glance at it does not chase it away [s]. */
 const halfLife = 0.12;
 
-export function createVrCaptions(): VrCaptions {
+/** Shows captions of sounds in the headset: a line low in the view, for players without sound. */
+export function createVrCaptions() {
   const { mesh, draw } = createVrPanel(width, height, 1100);
   mesh.name = 'captions';
   mesh.renderOrder = 20;
@@ -37,20 +28,19 @@ export function createVrCaptions(): VrCaptions {
 
   return {
     object: mesh,
-    setText(text) {
+    /** Shows a caption; an empty text hides it. */
+    setText(text: string): void {
       current = text === '' ? null : { text, until: null };
       if (current === null) return;
       draw((context) => {
-        context.font = `600 46px ${vrFont}`;
-        const wide = Math.min(width, context.measureText(text).width + 64);
+        const wide = Math.min(width, widthOf(context, text, '600 46px') + 64);
         fillRounded(context, [(width - wide) / 2, 4, wide, height - 8], 28, vrColors.glass);
-        context.fillStyle = vrColors.ink;
-        context.textAlign = 'center';
-        context.textBaseline = 'middle';
-        context.fillText(text, width / 2, height / 2 + 2, width - 48);
+        const writing = { font: '600 46px', color: vrColors.ink, align: 'center', baseline: 'middle' } as const;
+        write(context, text, [width / 2, height / 2 + 2], { ...writing, most: width - 48 });
       });
     },
-    show(time, eyes) {
+    /** At this time [s] before these eyes, floor frame; null: no one reads. */
+    show(time: number, eyes: Pose<'floor'> | null): void {
       if (current) current.until ??= time + readFor;
       if (!current?.until || time > current.until || !eyes) {
         mesh.visible = false;

@@ -10,18 +10,9 @@ import {
 
 /**
  * A flat panel in the world that is drawn on a 2D canvas; visible from its front (+Z) only, so that a mirror shows no
- * back.
+ * back. Width and height in canvas pixels; pixelsPerMetre sets the size in the world.
  */
-export interface VrPanel {
-  readonly mesh: Mesh;
-  /** Clears the panel and draws. Call it only when something changed. */
-  draw(paint: (context: CanvasRenderingContext2D) => void): void;
-  /** Returns a point of the world on the canvas [pixels], and its distance in front of the panel [m]. */
-  locate(point: Vector3): { readonly x: number; readonly y: number; readonly distance: number };
-}
-
-/** Width and height in canvas pixels; pixelsPerMetre sets the size in the world. */
-export function createVrPanel(width: number, height: number, pixelsPerMetre: number): VrPanel {
+export function createVrPanel(width: number, height: number, pixelsPerMetre: number) {
   const canvas = document.createElement('canvas');
   canvas.width = width;
   canvas.height = height;
@@ -39,12 +30,14 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
   const scale = new Vector3();
   return {
     mesh,
-    draw(paint) {
+    /** Clears the panel and draws. Call it only when something changed. */
+    draw(paint: (context: CanvasRenderingContext2D) => void): void {
       context.clearRect(0, 0, width, height);
       paint(context);
       texture.needsUpdate = true;
     },
-    locate(point) {
+    /** Returns a point of the world on the canvas [pixels], and its distance in front of the panel [m]. */
+    locate(point: Vector3): { readonly x: number; readonly y: number; readonly distance: number } {
       mesh.worldToLocal(local.copy(point));
       const { z } = mesh.getWorldScale(scale);
       return {
@@ -55,6 +48,8 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
     },
   };
 }
+
+export type VrPanel = ReturnType<typeof createVrPanel>;
 
 /** The colours of the page (styles/page/base.css), for canvases. */
 export const vrColors = {
@@ -69,6 +64,56 @@ export const vrColors = {
 } as const;
 
 export const vrFont = 'Inter, "Segoe UI", system-ui, Roboto, sans-serif';
+
+/** How a text is written on a canvas. */
+export interface Writing {
+  /** Weight and size. */
+  readonly font: string;
+  readonly color: string;
+  /** Default: left. */
+  readonly align?: CanvasTextAlign;
+  /** Default: alphabetic. */
+  readonly baseline?: CanvasTextBaseline;
+  /** The greatest width [pixels]; a longer text is compressed. */
+  readonly most?: number;
+}
+
+/** Writes a text at a place of a canvas [pixels]. */
+export function write(
+  context: CanvasRenderingContext2D,
+  text: string,
+  [x, y]: readonly [number, number],
+  { font, color, align = 'left', baseline = 'alphabetic', most }: Writing,
+): void {
+  context.font = `${font} ${vrFont}`;
+  context.fillStyle = color;
+  context.textAlign = align;
+  context.textBaseline = baseline;
+  context.fillText(text, x, y, most);
+}
+
+/**
+ * Writes a text in lines of at most `width` pixels, broken at spaces, the first at (x, y) and each `step` below the one
+ * before. `mostLines`: further ones are left out.
+ */
+export function writeLines(
+  context: CanvasRenderingContext2D,
+  text: string,
+  [x, y, width]: readonly [number, number, number],
+  step: number,
+  writing: Writing,
+  mostLines?: number,
+): void {
+  context.font = `${writing.font} ${vrFont}`;
+  const lines = wrap(context, text, width).slice(0, mostLines);
+  for (const [index, line] of lines.entries()) write(context, line, [x, y + index * step], writing);
+}
+
+/** Returns the width of a text in a weight and size [pixels]. */
+export function widthOf(context: CanvasRenderingContext2D, text: string, font: string): number {
+  context.font = `${font} ${vrFont}`;
+  return context.measureText(text).width;
+}
 
 export function fillRounded(
   context: CanvasRenderingContext2D,

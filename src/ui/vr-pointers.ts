@@ -13,13 +13,6 @@ import {
 } from 'three';
 import type { Pointer } from 'threepoint/core/input/pointer';
 
-/** Shows where pointers point; in the space that they are given in. */
-export interface VrPointers {
-  readonly objects: Group;
-  /** Draws the pointers of a frame, after everything has reported what they point at. */
-  show(pointers: readonly Pointer[]): void;
-}
-
 /** Two hands, a pinch of each and a gaze. */
 const mostPointers = 5;
 /** A gaze that meets nothing shows its dot this far away [m]: the user must see where the head points. */
@@ -87,13 +80,15 @@ class DrawnPointer {
   }
 }
 
-export function createVrPointers(): VrPointers {
+/** Shows where pointers point; in the space that they are given in. */
+export function createVrPointers() {
   const objects = new Group();
   const drawn = Array.from({ length: mostPointers }, () => new DrawnPointer());
   for (const { object } of drawn) objects.add(object);
   return {
     objects,
-    show(pointers) {
+    /** Draws the pointers of a frame, after everything has reported what they point at. */
+    show(pointers: readonly Pointer[]): void {
       for (const [index, each] of drawn.entries()) {
         const pointer = pointers[index];
         if (pointer) each.show(pointer);
@@ -102,3 +97,5 @@ export function createVrPointers(): VrPointers {
     },
   };
 }
+
+export type VrPointers = ReturnType<typeof createVrPointers>;

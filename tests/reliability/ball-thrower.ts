@@ -3,7 +3,7 @@ import { invertTransform, type TrackedPose, transformPoint, transformPose } from
 import { identity } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createBallGestures } from 'threepoint-games/ball/gestures';
+import { BallGestures } from 'threepoint-games/ball/gestures';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { wristAround } from 'threepoint-games/fist';
@@ -22,7 +22,7 @@ export function ballThrower(rateHz = 90) {
   const arenaFromFloor = stations[leftThrower]!;
   const floorFromArena = invertTransform(arenaFromFloor);
   let { state } = told();
-  const gestures = createBallGestures(() => ({ player: leftThrower, matchAhead: -100, arenaFromFloor, state }));
+  const gestures = new BallGestures(() => ({ player: leftThrower, matchAhead: -100, arenaFromFloor, state }));
   const actions: string[] = [];
   let time = 100;
   let held: Readonly<Record<Side, number | null>> = { left: null, right: null };

@@ -2,7 +2,7 @@ import { allReleased } from 'threepoint/core/input/button-presses';
 import { otherSide, type Side } from 'threepoint/core/math/side';
 import { archeryRules } from 'threepoint-games/archery/rules';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { createBallGestures } from 'threepoint-games/ball/gestures';
+import { BallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { stations } from 'threepoint-games/ball/stations';
@@ -54,8 +54,8 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
       ? createHolder({ eyeHeight, arenaFromFloor })
       : createThrower({ eyeHeight, arenaFromFloor }, 3 + player),
   );
-  const gestures = stations.map((arenaFromFloor, player) =>
-    createBallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
+  const gestures = stations.map(
+    (arenaFromFloor, player) => new BallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
   );
   let waiting: BallInput[] = [0, 1, 2].flatMap((player): BallInput[] => [
     { type: 'join', player },

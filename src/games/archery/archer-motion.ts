@@ -15,12 +15,6 @@ interface Movement {
   readonly waits?: boolean;
 }
 
-/** The built-in archer, which produces hands and buttons for a whole round. */
-export interface Archer {
-  /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing], for this state of the match. */
-  follow(time: number, state: ArcheryState): PlayerInput;
-}
-
 /**
  * Returns the next target: the nearest one that has not scored; if all have and every hit counts, the one worth most.
  */
@@ -33,10 +27,10 @@ function nextTarget(state: ArcheryState): Target | null {
 }
 
 /**
- * Creates an archer that stands at the centre of the zone, shoots at every target, nearest first, and then rests.
- * Deterministic.
+ * The built-in archer, which produces hands and buttons for a whole round. Creates an archer that stands at the centre
+ * of the zone, shoots at every target, nearest first, and then rests. Deterministic.
  */
-export function createArcher(body: ArcherBody): Archer {
+export function createArcher(body: ArcherBody) {
   const postures = new ArcherPostures(body);
   const { eyes } = postures;
 
@@ -101,7 +95,8 @@ export function createArcher(body: ArcherBody): Archer {
   }
 
   return {
-    follow(time, state) {
+    /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing], for this state of the match. */
+    follow(time: number, state: ArcheryState): PlayerInput {
       proceed(time, state);
       const current = plan[0];
       const share = current ? minimumJerk(clamp((time - began) / current.seconds, 0, 1)) : 0;
@@ -113,3 +108,5 @@ export function createArcher(body: ArcherBody): Archer {
     },
   };
 }
+
+export type Archer = ReturnType<typeof createArcher>;

@@ -8,10 +8,9 @@ import {
   pressureOf,
   releasedBelow,
 } from 'threepoint/core/input/button-presses';
-import { copyPose, makePose, type TrackedPose, type Transform, transformPoint } from 'threepoint/core/math/pose';
-import { identity, rotate } from 'threepoint/core/math/quat';
+import { copyPose, makePose, type TrackedPose } from 'threepoint/core/math/pose';
 import { otherSide, type Side, sides } from 'threepoint/core/math/side';
-import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
+import { addScaled, copyVec3, distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { longestStep } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fistOf } from '../fist';
@@ -25,23 +24,18 @@ import { releaseInterval } from './rules';
 
 /** Settings of the gestures, which are read in every frame and may change during play. */
 export interface ArcheryGestureSettings {
-  /** The hand that holds the bow; null: it hangs on its rest until a hand takes it. A change applies at once. */
-  readonly bowSide: Side | null;
-  /** Position of the bow's rest, floor frame [m]. */
-  readonly rest: Vec3;
+  /** The hand that holds the bow. A change applies at once. */
+  readonly bowSide: Side;
   /** Whether one hand does both: it draws by holding a button and aims along its knuckles. */
   readonly oneHanded: boolean;
   /** Whether there is an arrow to nock: the quiver is not empty, and the bell has not rung. */
   readonly armed: boolean;
-  readonly arenaFromFloor: Transform<'arena', 'floor'>;
 }
 
 export const defaultArcheryGestureSettings: ArcheryGestureSettings = {
   bowSide: 'left',
-  rest: vec3(0, 0.95, -0.45),
   oneHanded: false,
   armed: true,
-  arenaFromFloor: { position: zero, orientation: identity },
 };
 
 /**
@@ -74,7 +68,7 @@ export interface BowCue {
 export interface GestureFrame {
   /** The bow; null: no hand holds it, or its hand has been lost for long. */
   readonly bow: BowView | null;
-  /** Actions in the arena frame, with `delay` 0: the match adds the delay in its tick. */
+  /** Actions in the arena frame (the archer's floor frame) with `delay` 0: the match adds the delay in its tick. */
   readonly actions: readonly ArcheryAction[];
   readonly haptics: readonly HapticPulse[];
   readonly cues: readonly BowCue[];
@@ -111,7 +105,7 @@ export class ArcheryGestures {
   readonly #settings: () => ArcheryGestureSettings;
   readonly #presses = createButtonPresses();
   /** The last `bowSide` of the settings. */
-  #requestedSide: Side | null | undefined;
+  #requestedSide: Side | null = null;
   readonly #bow = new HeldBow();
   #nocked: NockedArrow | null = null;
   #wasNear = false;
@@ -168,7 +162,7 @@ export class ArcheryGestures {
     this.#haptics.length = 0;
     this.#cues.length = 0;
     this.#actions.length = 0;
-    this.#actions.push({ type: 'stand', head: transformPoint(this.#now.arenaFromFloor, head.position) });
+    this.#actions.push({ type: 'stand', head: copyVec3(head.position) });
   }
 
   /** Handles a suspended session: an arrow on the string waits for the hands, and the bow is shown as it was. */
@@ -187,7 +181,6 @@ export class ArcheryGestures {
     this.#look('right', frame.rightHand);
     this.#changeHands();
     this.#take();
-    if (this.#bow.side === null) return null;
     const roles = this.#rolesOf(this.#bow.side);
     this.#bow.follow(roles.bowSide, roles.bowHand, this.#time, this.#nocked !== null);
     if (!this.#bow.isHeld) return null;
@@ -227,11 +220,11 @@ export class ArcheryGestures {
     if (bowSide === this.#requestedSide) return;
     this.#requestedSide = bowSide;
     if (bowSide === this.#bow.side) return;
-    if (this.#bow.side) this.#cancel(this.#bow.side);
+    this.#cancel(this.#bow.side);
     this.#bow.giveTo(bowSide);
   }
 
-  /** Lets a free hand take the bow from its rest, or from the other hand while no arrow is nocked. */
+  /** Lets a free hand take the bow out of the other one while no arrow is nocked. */
   #take(): void {
     for (const taker of sides) {
       const hand = this.#hands[taker];
@@ -249,11 +242,9 @@ export class ArcheryGestures {
   }
 
   #isAtBow(fist: Vec3): boolean {
-    const { rest, oneHanded } = this.#now;
     const { side } = this.#bow;
-    if (side === null) return this.#bow.isOnRestAt(fist, rest);
     const giver = this.#hands[side];
-    return !oneHanded && giver !== null && this.#bow.isInHandAt(fist, side, giver);
+    return !this.#now.oneHanded && giver !== null && this.#bow.isInHandAt(fist, side, giver);
   }
 
   /** Returns whether to cancel the shot: after a pause, without arrows, or when the input device has changed. */
@@ -342,13 +333,12 @@ export class ArcheryGestures {
 
   #shoot(arrow: NockedArrow, { bowSide, stringSide }: Roles): void {
     this.#shotAt = this.#time;
-    const { arenaFromFloor } = this.#now;
     const tip = arrow.nock(this.#bow.inHand, this.#point);
     addScaled(tip, arrow.direction, arrowLength, tip);
     this.#actions.push({
       type: 'release',
-      position: transformPoint(arenaFromFloor, tip),
-      direction: rotate(arenaFromFloor.orientation, arrow.direction),
+      position: copyVec3(tip),
+      direction: copyVec3(arrow.direction),
       draw: arrow.draw,
       delay: 0,
     });

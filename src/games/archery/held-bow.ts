@@ -4,12 +4,8 @@ import type { Side } from 'threepoint/core/math/side';
 import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { bowInHand, forwardOf, stringAtRest, turnBow, turnTowards } from './bow-hand';
 
-/**
- * A press takes the bow within these distances of the fist: from its grip in the other hand, or from the bow on its
- * rest [m].
- */
+/** A press takes the bow out of the other hand within this distance of the fist from its grip [m]. */
 export const takeReach = 0.1;
-export const restReach = 0.25;
 /** Half-life of the bow's return to the hand's orientation after a shot [s]. */
 export const settleHalfLife = 0.08;
 /** After this long without its hand [s] the bow is no longer held, and a drawn arrow returns to the quiver. */
@@ -24,8 +20,8 @@ const string = vec3(0, 0, 0);
 
 /** The bow of one archer: the hand that holds it, its pose, and its return after a shot; floor frame. */
 export class HeldBow {
-  /** The hand that holds the bow; null: it hangs on its rest. */
-  side: Side | null = null;
+  /** The hand that holds the bow. */
+  side: Side = 'left';
   /** The bow's last pose in the hand, without an arrow. */
   readonly inHand = makePose<'floor'>();
   /** The time of that pose [s]; null: no hand holds the bow. */
@@ -38,15 +34,10 @@ export class HeldBow {
     return this.#heldAt !== null;
   }
 
-  giveTo(side: Side | null): void {
+  giveTo(side: Side): void {
     this.side = side;
     this.#heldAt = null;
     this.#settling = null;
-  }
-
-  /** Returns whether a fist can take the bow from its rest. */
-  isOnRestAt(fist: Vec3, rest: Vec3): boolean {
-    return distance(fist, rest) <= restReach;
   }
 
   /**

@@ -13,14 +13,6 @@ export interface Steering {
   readonly cancelled: boolean;
 }
 
-/** An archer that is steered by a pointer instead of two hands. */
-export interface SteeredArcher {
-  /** The hands return from a shot, and a press is not heeded yet. */
-  readonly recovers: boolean;
-  /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
-  follow(time: number, steering: Steering): PlayerInput;
-}
-
 /** Half-life of the aim [s], because a mouse jumps and arms do not. */
 const aimHalfLife = 0.06;
 const nockSeconds = 0.4;
@@ -32,8 +24,11 @@ const returnSeconds = 0.45;
 
 type Phase = 'ready' | 'nocking' | 'grabbing' | 'drawing' | 'loosing' | 'following' | 'returning' | 'lowering';
 
-/** Creates an archer at the centre of the zone, with the postures of the built-in archer. */
-export function createSteeredArcher(body: ArcherBody): SteeredArcher {
+/**
+ * An archer that is steered by a pointer instead of two hands. Creates an archer at the centre of the zone, with the
+ * postures of the built-in archer.
+ */
+export function createSteeredArcher(body: ArcherBody) {
   const postures = new ArcherPostures(body);
   const { eyes } = postures;
   let phase: Phase = 'ready';
@@ -51,10 +46,12 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
   }
 
   return {
-    get recovers() {
+    /** The hands return from a shot, and a press is not heeded yet. */
+    get recovers(): boolean {
       return phase === 'loosing' || phase === 'following' || phase === 'returning' || phase === 'lowering';
     },
-    follow(time, { target, pressed, cancelled }) {
+    /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
+    follow(time: number, { target, pressed, cancelled }: Steering): PlayerInput {
       aim = aim === null || last === null ? target : dampVec3(aim, target, aimHalfLife, time - last);
       last = time;
       const taking = postures.ready(yawOf(subtract(aim, eyes)));
@@ -107,3 +104,5 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
     },
   };
 }
+
+export type SteeredArcher = ReturnType<typeof createSteeredArcher>;

@@ -7,7 +7,7 @@ import {
 } from 'threepoint-rooms/protocol/messages';
 import * as v from 'valibot';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
-import type { BallAction, BallEvent } from './ball-state';
+import { type BallAction, type BallEvent, refusals } from './ball-state';
 
 /** The types of the ball game in the messages of its Room. */
 export interface SentBallGame {
@@ -64,20 +64,7 @@ const ballEvent = v.variant('type', [
     type: v.literal('refused'),
     player,
     sequence: v.number(),
-    reason: v.picklist([
-      'phase',
-      'role',
-      'absent',
-      'seen-before',
-      'no-such-ball',
-      'taken',
-      'hand-full',
-      'not-held',
-      'reach',
-      'zone',
-      'speed',
-      'time',
-    ]),
+    reason: v.picklist(refusals),
   }),
   v.strictObject({ type: v.literal('ended'), end: v.picklist(['balls', 'time']), score: wholeFrom(0, 20) }),
 ]);

@@ -106,19 +106,21 @@ export type BallAction =
     };
 
 /** Why the rules refuse an action. */
-export type Refusal =
-  | 'phase'
-  | 'role'
-  | 'absent'
-  | 'seen-before'
-  | 'no-such-ball'
-  | 'taken'
-  | 'hand-full'
-  | 'not-held'
-  | 'reach'
-  | 'zone'
-  | 'speed'
-  | 'time';
+export const refusals = [
+  'phase',
+  'role',
+  'absent',
+  'seen-before',
+  'no-such-ball',
+  'taken',
+  'hand-full',
+  'not-held',
+  'reach',
+  'zone',
+  'speed',
+  'time',
+] as const;
+export type Refusal = (typeof refusals)[number];
 
 export type BallEvent =
   | { readonly type: 'joined' | 'left'; readonly player: number }

@@ -116,7 +116,7 @@ const makeHandMemory = (): HandMemory => ({
 
 type PoseAction = Extract<BallInput, { type: 'pose' }>;
 
-/** Turns tracked hands and their buttons into actions of the ball game. */
+/** Turns the tracked hands of one player and their buttons into actions of the ball game, numbered from 1. */
 export class BallGestures {
   /** The number of the last action. */
   private sequence = 0;
@@ -362,9 +362,6 @@ export class BallGestures {
     this.slipped.push({ type: 'slipped', side, ball: holding.ball });
   }
 }
-
-/** Creates the gestures of one player; actions are numbered from 1. */
-export const createBallGestures = (settings: () => BallGestureSettings): BallGestures => new BallGestures(settings);
 
 /** Returns the ball in a rack that a fist would take, without those that a hand has just taken. */
 function nearestBall(state: BallState, fist: Vec3, left: Holding | null, right: Holding | null): number | null {

@@ -118,23 +118,6 @@ export function mixPostures(
   return target;
 }
 
-/** Building blocks for the postures of throwers and holders. */
-export interface PlayerPostures {
-  /** Shoulder to wrist [m]. */
-  readonly arm: number;
-  /** The eyes of an upright player at the station, floor frame. */
-  readonly eyes: Vec3;
-  inFloor(pointInArena: Vec3, target?: MutableVec3): MutableVec3;
-  /** Returns a shoulder for these eyes of a player that faces −Z. */
-  shoulder(side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3;
-  /** Returns the gaze from the eyes to a point. */
-  looking(eyes: Vec3, at: Vec3, target?: MutableQuat): MutableQuat;
-  /** Writes a hanging hand. */
-  hang(side: Side, eyes: Vec3, target: MutableGrasp): void;
-  /** Returns head, hands and buttons of a posture at a time [s], with postural sway; pressures in [0, 1]. */
-  seen(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): PlayerInput;
-}
-
 const signOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
 /** Directions of a hanging hand, far enough from the thigh for a ball. */
@@ -151,12 +134,11 @@ const ofBothSides = <T>(make: (sign: -1 | 1) => T): Readonly<Record<Side, T>> =>
   right: make(signOf('right')),
 });
 
-/** Creates the postures of a body that faces −Z of its floor frame. */
-export function createPlayerPostures({
-  eyeHeight,
-  arenaFromFloor,
-  armLength = armShare * eyeHeight,
-}: PlayerBody): PlayerPostures {
+/**
+ * Building blocks for the postures of throwers and holders. Creates the postures of a body that faces −Z of its floor
+ * frame.
+ */
+export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = armShare * eyeHeight }: PlayerBody) {
   const arm = armLength;
   const floorFromArena = invertTransform(arenaFromFloor);
   const half = (shoulderShare / armShare) * arm;
@@ -173,11 +155,15 @@ export function createPlayerPostures({
   const pressing = (pressure: number): HandButtons => ({ ...allReleased, trigger: pressure });
 
   return {
+    /** Shoulder to wrist [m]. */
     arm,
+    /** The eyes of an upright player at the station, floor frame. */
     eyes: vec3(0, eyeHeight, 0),
-    inFloor: (point, target) => transformPoint(floorFromArena, point, target),
+    inFloor: (point: Vec3, target?: MutableVec3): MutableVec3 => transformPoint(floorFromArena, point, target),
+    /** Returns a shoulder for these eyes of a player that faces −Z. */
     shoulder,
-    looking(eyes, at, target) {
+    /** Returns the gaze from the eyes to a point. */
+    looking(eyes: Vec3, at: Vec3, target?: MutableQuat): MutableQuat {
       const { x, y, z } = subtract(at, eyes, sight);
       // The head turns only within its limits; the eyes would do the rest.
       const yaw = clamp(yawOf(sight), -mostYaw, mostYaw);
@@ -185,12 +171,14 @@ export function createPlayerPostures({
       const turn = fromAxisAngle(up, yaw, target);
       return multiply(turn, fromAxisAngle(right, pitch, nod), turn);
     },
-    hang(side, eyes, target) {
+    /** Writes a hanging hand. */
+    hang(side: Side, eyes: Vec3, target: MutableGrasp): void {
       add(shoulder(side, eyes, target.fist), hanging[side], target.fist);
       copyVec3(hangingKnuckles, target.knuckles);
       copyVec3(hangingThumb[side], target.thumb);
     },
-    seen(posture, time, leftPressure, rightPressure) {
+    /** Returns head, hands and buttons of a posture at a time [s], with postural sway; pressures in [0, 1]. */
+    seen(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): PlayerInput {
       swayAt(time, drift);
       const head = makeTrackedPose();
       add(posture.eyes, drift, head.position);
@@ -204,3 +192,5 @@ export function createPlayerPostures({
     },
   };
 }
+
+export type PlayerPostures = ReturnType<typeof createPlayerPostures>;

@@ -50,3 +50,11 @@ export const bottomButton = (id: string, label: string, act: () => void): MenuBu
   look: 'plain',
   act,
 });
+
+/** Lays out buttons in two columns; `top`: of the first row, `rowHeight`: from row to row [pixels]. */
+export const inColumns = (entries: readonly MenuEntry[], top: number, rowHeight: number): readonly MenuButton[] =>
+  entries.map((entry, index) => {
+    const x = menuMargin + (index % 2) * (halfWidth + buttonGap);
+    const y = top + Math.floor(index / 2) * rowHeight;
+    return { ...entry, at: [x, y, halfWidth, rowHeight - buttonGap], look: 'plain' };
+  });

@@ -4,17 +4,13 @@ import { isTouchFirst } from 'threepoint-ui/mouse-aim';
 import { toggle } from 'threepoint-ui/toggle';
 import type { ActivityPanel } from '../activity/activity';
 import type { ActivityContext, StoredActivitySettings } from '../activity/activity-context';
+import type { roundOf } from './archery-play';
 
 /** Settings of hands and rules. */
 export type ArcheryRules = Partial<Pick<StoredActivitySettings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>;
 
 /** A round as the panel shows it. */
-export interface ArcheryRound {
-  readonly score: number;
-  readonly of: number;
-  readonly arrowsLeft: number;
-  readonly secondsLeft: number;
-  readonly over: boolean;
+export interface ArcheryRound extends ReturnType<typeof roundOf> {
   /** A sentence about what the round waits for; null: it waits for nothing. */
   readonly waiting: string | null;
 }

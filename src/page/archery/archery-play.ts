@@ -3,7 +3,6 @@ import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import type { Buttons } from 'threepoint/core/input/button-presses';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { TrackedPose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
 import { add, subtract, type Vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { aimOf } from 'threepoint-games/archery/aim-point';
@@ -15,17 +14,13 @@ import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archer
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import { createMatch, type Match } from 'threepoint-games/match';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */
-export interface ArcherySettings {
-  readonly bowSide: Side;
-  readonly oneHanded: boolean;
-  readonly everyHitCounts: boolean;
-  /** Whether the round waits for its signal; absent: the first arrow starts it too. */
-  readonly startSignal?: boolean;
-  /** Until the bell; absent: as the game has it. */
-  readonly seconds?: number;
-}
+export type ArcherySettings = Pick<
+  ActivitySettings,
+  'bowSide' | 'oneHanded' | 'everyHitCounts' | 'startSignal' | 'seconds'
+>;
 
 /** The result of one frame of play, for view, sound and haptics. */
 export interface ArcheryFrame {
@@ -38,66 +33,24 @@ export interface ArcheryFrame {
   readonly haptics: readonly HapticPulse[];
 }
 
-/** A round and its player, without the view. */
-export interface ArcheryPlay {
-  /** The targets of this round. */
-  readonly targets: ArcheryState['targets'];
-  /** The newest frame; null before the first. */
-  readonly newest: ArcheryFrame | null;
-  /** The tracked frame and its buttons become play. */
-  follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
-  /** Returns the input of the simulated archer at a time [s]. */
-  act(time: number): PlayerInput;
-  /**
-   * Returns the input of an archer who aims along a pointer (arena frame) and draws while it is held. `place`: where
-   * the archer stands, from the middle of the zone [m].
-   */
-  steer(time: number, pointer: Pointer, place?: Vec3): PlayerInput;
-  /**
-   * Starts another round for a person with this calibration, whose eyes are at this height now [m], standing or seated.
-   */
-  restart(calibration: Calibration, eyeHeight?: number): void;
-  /** The user's floor frame changes with the next frame. */
-  discontinuity(): void;
-  /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
-  handedOver(): void;
-  /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
-  signal(): void;
-}
-
-/** What tools may know of a round. */
-export interface ArcheryProbe {
-  readonly name: 'archery';
-  readonly phase: ArcheryState['phase'];
-  readonly end: ArcheryState['end'];
-  readonly score: number;
-  readonly arrowsLeft: number;
-  readonly secondsLeft: number;
-  readonly inZone: boolean;
-  readonly bowSide: Side | null;
-  readonly stage: BowView['stage'] | null;
-  readonly draw: number;
+/** Returns what tools may know of a round. */
+export const probeOf = ({ state, bow }: ArcheryFrame) => ({
+  name: 'archery' as const,
+  phase: state.phase,
+  end: state.end,
+  score: state.score,
+  arrowsLeft: state.arrowsLeft,
+  secondsLeft: secondsLeft(state),
+  inZone: state.inZone,
+  bowSide: bow?.bowSide ?? null,
+  stage: bow?.stage ?? null,
+  draw: bow?.draw ?? 0,
   /** The middle of the string, floor frame [m]; null: no hand holds the bow. */
-  readonly nockPoint: readonly [number, number, number] | null;
-  readonly hits: readonly (number | null)[];
-}
+  nockPoint: bow && ([bow.nockPoint.x, bow.nockPoint.y, bow.nockPoint.z] as const),
+  hits: state.arrows.map(({ landing }) => landing?.target ?? null),
+});
 
-export function probeOf({ state, bow }: ArcheryFrame): ArcheryProbe {
-  return {
-    name: 'archery',
-    phase: state.phase,
-    end: state.end,
-    score: state.score,
-    arrowsLeft: state.arrowsLeft,
-    secondsLeft: secondsLeft(state),
-    inZone: state.inZone,
-    bowSide: bow?.bowSide ?? null,
-    stage: bow?.stage ?? null,
-    draw: bow?.draw ?? 0,
-    nockPoint: bow && [bow.nockPoint.x, bow.nockPoint.y, bow.nockPoint.z],
-    hits: state.arrows.map(({ landing }) => landing?.target ?? null),
-  };
-}
+export type ArcheryProbe = ReturnType<typeof probeOf>;
 
 /** The round in the numbers of a scoreboard. */
 export function roundOf({ state }: ArcheryFrame) {
@@ -120,101 +73,127 @@ function movedTo(place: Vec3, { frame, buttons }: PlayerInput): PlayerInput {
   return { frame: { ...frame, leftHand: moved(frame.leftHand), rightHand: moved(frame.rightHand) }, buttons };
 }
 
-/** `seed` gives each round its own layout. */
-export function createArcheryPlay(
-  calibration: Calibration,
-  settings: () => ArcherySettings,
-  seed: () => number,
-): ArcheryPlay {
-  let match: Match<ArcheryState, ArcheryAction, ArcheryEvent>;
-  let archer: Archer;
-  let steered: SteeredArcher;
-  let newest: ArcheryFrame | null = null;
+/** A round and its player, without the view. */
+export class ArcheryPlay {
+  readonly #settings: () => ArcherySettings;
+  readonly #seed: () => number;
+  readonly #gestures: ArcheryGestures;
+  #match!: Match<ArcheryState, ArcheryAction, ArcheryEvent>;
+  #archer!: Archer;
+  #steered!: SteeredArcher;
+  #newest: ArcheryFrame | null = null;
   /** The time of the newest frame on the page's clock [s]. */
-  let followedAt = Number.NaN;
+  #followedAt = Number.NaN;
   /** The target at which a pointer drew last; null: none, or the arrow was put back. */
-  let drawnAt: number | null = null;
+  #drawnAt: number | null = null;
   /** The point that a pointer aimed at last, arena frame. */
-  let aimedAt: Vec3 | null = null;
-  let signalled = false;
-  let otherHands = false;
-  const gestures = new ArcheryGestures(() => ({
-    ...defaultArcheryGestureSettings,
-    bowSide: settings().bowSide,
-    oneHanded: settings().oneHanded,
-    armed: isArmed(match.state),
-  }));
+  #aimedAt: Vec3 | null = null;
+  #signalled = false;
+  #otherHands = false;
 
-  function restart(person: Calibration, eyeHeight = person.eyeHeight): void {
-    const { bowSide, everyHitCounts, startSignal, seconds } = settings();
-    match = createMatch(
-      archeryRules,
-      archeryRules.start(['archer'], seed(), {
-        eyeHeight,
-        everyHitCounts,
-        startedBy: startSignal ? 'signal' : 'arrow',
-        ...(seconds && { seconds }),
-      }),
-      {
-        delayed,
-      },
-    );
-    const body = { bowSide, eyeHeight, armLength: chestSpaceBody(person).arm };
-    archer = createArcher(body);
-    steered = createSteeredArcher(body);
-    newest = null;
-    signalled = false;
+  /** `seed` gives each round its own layout. */
+  constructor(calibration: Calibration, settings: () => ArcherySettings, seed: () => number) {
+    this.#settings = settings;
+    this.#seed = seed;
+    this.#gestures = new ArcheryGestures(() => ({
+      ...defaultArcheryGestureSettings,
+      bowSide: settings().bowSide,
+      oneHanded: settings().oneHanded,
+      armed: isArmed(this.#match.state),
+    }));
+    this.restart(calibration);
   }
-  restart(calibration);
 
-  return {
-    get targets() {
-      return match.state.targets;
-    },
-    get newest() {
-      return newest;
-    },
-    follow(frame, buttons) {
-      const { bow, actions, cues, haptics } = gestures.follow(
-        otherHands ? { ...frame, suspended: true } : frame,
-        buttons,
-      );
-      otherHands = false;
-      const signals: readonly ArcheryAction[] = signalled ? [{ type: 'start' }] : [];
-      signalled = false;
-      const events = match.advance(frame.time, [...signals, ...actions]);
-      const { state } = match;
-      const before = state.phase === 'over' ? newest : null;
-      const time = before ? before.time + Math.max(0, frame.time - followedAt) : matchTime(state) + match.lead;
-      followedAt = frame.time;
-      newest = { state, time: Math.max(0, time), bow, events, cues, haptics };
-      return newest;
-    },
-    act: (time) => archer.follow(time, match.state),
-    steer(time, pointer, place = zero) {
-      const aim = aimOf(pointer.origin, pointer.direction, match.state.targets);
-      const pressed = pointer.isHeldFor(owner);
-      const { cancelled } = pointer;
-      if (pressed) drawnAt = aim.target;
-      else if (cancelled) drawnAt = null;
-      // Until the hands are back from a shot, a gaze can rest on no other target: its hold would not be heeded.
-      const heeded = !steered.recovers || aim.target === drawnAt;
-      if (aim.target !== null && isArmed(match.state) && heeded) {
-        pointer.pointAt({ distance: aim.distance, owner, id: `target ${aim.target}`, dwellSeconds });
-      }
-      // A gaze looks around, also at the menu, which a bow that followed it would cover.
-      if (pointer.releases || aim.target !== null) aimedAt = aim.point;
-      // The simulated archer stands in the middle of the zone: what it sees and does moves to the place.
-      const input = steered.follow(time, { target: subtract(aimedAt ?? aim.point, place), pressed, cancelled });
-      return movedTo(place, input);
-    },
-    restart,
-    discontinuity: () => gestures.discontinuity(),
-    handedOver() {
-      otherHands = true;
-    },
-    signal() {
-      signalled = true;
-    },
-  };
+  /** The targets of this round. */
+  get targets(): ArcheryState['targets'] {
+    return this.#match.state.targets;
+  }
+
+  /** The newest frame; null before the first. */
+  get newest(): ArcheryFrame | null {
+    return this.#newest;
+  }
+
+  /** The tracked frame and its buttons become play. */
+  follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame {
+    const followed = this.#otherHands ? { ...frame, suspended: true as const } : frame;
+    const { bow, actions, cues, haptics } = this.#gestures.follow(followed, buttons);
+    this.#otherHands = false;
+    const signals: readonly ArcheryAction[] = this.#signalled ? [{ type: 'start' }] : [];
+    this.#signalled = false;
+    const match = this.#match;
+    const events = match.advance(frame.time, [...signals, ...actions]);
+    const { state } = match;
+    const before = state.phase === 'over' ? this.#newest : null;
+    const since = Math.max(0, frame.time - this.#followedAt);
+    const time = before ? before.time + since : matchTime(state) + match.lead;
+    this.#followedAt = frame.time;
+    this.#newest = { state, time: Math.max(0, time), bow, events, cues, haptics };
+    return this.#newest;
+  }
+
+  /** Returns the input of the simulated archer at a time [s]. */
+  act(time: number): PlayerInput {
+    return this.#archer.follow(time, this.#match.state);
+  }
+
+  /**
+   * Returns the input of an archer who aims along a pointer (arena frame) and draws while it is held. `place`: where
+   * the archer stands, from the middle of the zone [m].
+   */
+  steer(time: number, pointer: Pointer, place: Vec3 = zero): PlayerInput {
+    const { state } = this.#match;
+    const aim = aimOf(pointer.origin, pointer.direction, state.targets);
+    const pressed = pointer.isHeldFor(owner);
+    const { cancelled } = pointer;
+    if (pressed) this.#drawnAt = aim.target;
+    else if (cancelled) this.#drawnAt = null;
+    // Until the hands are back from a shot, a gaze can rest on no other target: its hold would not be heeded.
+    const heeded = !this.#steered.recovers || aim.target === this.#drawnAt;
+    if (aim.target !== null && isArmed(state) && heeded) {
+      pointer.pointAt({ distance: aim.distance, owner, id: `target ${aim.target}`, dwellSeconds });
+    }
+    // A gaze looks around, also at the menu, which a bow that followed it would cover.
+    if (pointer.releases || aim.target !== null) this.#aimedAt = aim.point;
+    // The simulated archer stands in the middle of the zone: what it sees and does moves to the place.
+    const target = subtract(this.#aimedAt ?? aim.point, place);
+    return movedTo(place, this.#steered.follow(time, { target, pressed, cancelled }));
+  }
+
+  /**
+   * Starts another round for a person with this calibration, whose eyes are at this height now [m], standing or seated.
+   */
+  restart(person: Calibration, eyeHeight = person.eyeHeight): void {
+    const { bowSide, everyHitCounts, startSignal, seconds } = this.#settings();
+    const options = {
+      eyeHeight,
+      everyHitCounts,
+      startedBy: startSignal ? ('signal' as const) : ('arrow' as const),
+      ...(seconds && { seconds }),
+    };
+    this.#match = createMatch(archeryRules, archeryRules.start(['archer'], this.#seed(), options), { delayed });
+    const body = { bowSide, eyeHeight, armLength: chestSpaceBody(person).arm };
+    this.#archer = createArcher(body);
+    this.#steered = createSteeredArcher(body);
+    this.#newest = null;
+    this.#signalled = false;
+  }
+
+  /** The user's floor frame changes with the next frame. */
+  discontinuity(): void {
+    this.#gestures.discontinuity();
+  }
+
+  /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
+  handedOver(): void {
+    this.#otherHands = true;
+  }
+
+  /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
+  signal(): void {
+    this.#signalled = true;
+  }
 }
+
+export const createArcheryPlay = (...options: ConstructorParameters<typeof ArcheryPlay>): ArcheryPlay =>
+  new ArcheryPlay(...options);

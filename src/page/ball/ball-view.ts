@@ -1,20 +1,18 @@
 import type { Group } from 'three';
 import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/core/math/pose';
-import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
-import type { Opening } from 'threepoint-games/ball/basket';
 import type { BallCue } from 'threepoint-games/ball/gestures';
 import { stations } from 'threepoint-games/ball/stations';
-import type { Launch } from 'threepoint-games/ballistics';
 import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
 import type { Surroundings } from '../scene/surroundings';
 import { type Court, createCourt } from './court/court';
 import { createZoneRing } from './court/zone-ring';
-import { type BallSounds, createBallSounds } from './sound/ball-sounds';
+import type { BallFrame, PlayerFrame } from './match/ball-frame';
+import { BallSounds } from './sound/ball-sounds';
 import { createAimArc } from './view/aim-arc';
-import { type Balls, createBalls } from './view/balls';
+import { Balls } from './view/balls';
 import { lineOfEvent, type Person, type Standing, waitingLine } from './view/board-drawing';
 import { type Boards, createBoards } from './view/boards';
 import { CatchPops } from './view/catch-pops';
@@ -24,30 +22,12 @@ import { createWickerBasket } from './view/wicker-basket';
 import type { SeatVoices } from './voices/seat-voices';
 
 /** A player at the court as they are drawn in this frame. */
-export interface Attendant extends Person {
-  /** The position of the head, arena frame; null: it is not visible now. */
-  readonly head: Vec3 | null;
-  /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
-  readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
-  /** 1: live; less: a ghost. */
-  readonly opacity: number;
-}
+export type Attendant = Person & Pick<PlayerFrame, 'head' | 'palms' | 'opacity'>;
 
 /** One frame of a match as it is drawn. */
-export interface BallScene {
-  readonly state: BallState;
-  /** Seconds of the match. */
-  readonly time: number;
+export interface BallScene extends Pick<BallFrame, 'state' | 'time' | 'me' | 'rotate' | 'opening' | 'aim' | 'paused'> {
   /** By player; null: the seat is free. */
   readonly attendants: readonly (Attendant | null)[];
-  readonly me: number | null;
-  readonly rotate: boolean;
-  /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
-  readonly opening: Opening | null;
-  /** The flight of a ball if it were released now, arena frame; null: no player here aims with a mouse. */
-  readonly aim: Launch | null;
-  /** The match's clock is paused. */
-  readonly paused: boolean;
   /** Seconds until the bell; after a match what was left at its end. */
   readonly secondsLeft: number;
   /** The page's time [s], and whether it is still in the room. */
@@ -60,22 +40,6 @@ export interface BallScene {
   readonly hidden: ReadonlySet<number>;
   /** The viewer's eyes and ears, floor frame of the user. */
   readonly head: Pose<'floor'>;
-}
-
-/** Everything that is seen of the ball game but the people. */
-export interface BallView {
-  /** Returns the court for the user's floor frame. Call it again after a change of the seat. */
-  placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
-  /** The parts in the user's floor frame, to be added to the scene. */
-  readonly own: Group;
-  /** Shows or hides the boards. A phone's window is covered by the bar, which has their figures. */
-  showBoards(visible: boolean): void;
-  readonly lobby: Pick<LobbySheet, 'buttonAt' | 'setHovered'>;
-  show(scene: BallScene): void;
-  /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
-  playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void;
-  readonly sound: AudibleStage;
-  dispose(): void;
 }
 
 export interface BallViewOptions {
@@ -101,9 +65,9 @@ const writtenOf = (attendant: Attendant | null): Person | null =>
 const stationOf = ({ players }: BallState, me: number | null): number | null =>
   me === null ? null : (players[me]?.station ?? null);
 
-export const createBallView = (options: BallViewOptions): BallView => new CourtView(options);
-
-class CourtView implements BallView {
+/** Everything that is seen of the ball game but the people. */
+export class BallView {
+  /** The parts in the user's floor frame, to be added to the scene. */
   readonly own: Group;
   readonly lobby: LobbySheet;
   readonly sound: AudibleStage;
@@ -123,23 +87,25 @@ class CourtView implements BallView {
 
   constructor({ quality, balls, onCaption }: BallViewOptions) {
     this.#court = createCourt(quality, balls);
-    this.#balls = createBalls(balls, quality);
+    this.#balls = new Balls(balls, quality);
     this.#boards = createBoards(quality);
     this.#pops = new CatchPops(quality);
     this.#names = createNameLabels(stations.length, quality);
     this.lobby = createLobbySheet(quality);
     this.own = this.lobby.object;
-    this.#sounds = createBallSounds(onCaption);
+    this.#sounds = new BallSounds(onCaption);
     this.sound = this.#sounds.stage;
     const standing = [this.#balls, this.#basket, this.#boards, this.#pops, this.#names];
     this.#court.object.add(...standing.map(({ object }) => object), this.#ring.mesh, this.#arc.object);
   }
 
+  /** Returns the court for the user's floor frame. Call it again after a change of the seat. */
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings {
     this.#floorFromArena = floorFromArena;
     return this.#court.placed(floorFromArena);
   }
 
+  /** Shows or hides the boards. A phone's window is covered by the bar, which has their figures. */
   showBoards(visible: boolean): void {
     this.#boards.object.visible = visible;
   }
@@ -160,6 +126,7 @@ class CourtView implements BallView {
     this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
   }
 
+  /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
   playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
     const { state, pageTime, attendants: people, me, opening } = this.#shown;
@@ -203,3 +170,5 @@ class CourtView implements BallView {
     );
   }
 }
+
+export const createBallView = (options: BallViewOptions): BallView => new BallView(options);

@@ -7,7 +7,7 @@ export const ball = {
   place: 'The ball court',
   floor: { halfWidth: 1.75, ahead: 5.6, behind: 0.5 },
   async load(context) {
-    const { openCourt } = await import('./open-court');
+    const { openCourt } = await import('./court-activity');
     return openCourt(context);
   },
   async createRunner(host) {

@@ -1,5 +1,6 @@
 import type { Holding } from 'threepoint/avatar/hands/holding';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
@@ -23,7 +24,7 @@ import { createCourtAvatars } from './court-avatars';
 import { CourtCamera } from './court-camera';
 import { graspAtCourt } from './court-grasp';
 import { CourtInput } from './court-input';
-import type { BallPlace } from './match/ball-connections';
+import { assignedSeat, type BallPlace, connectionsFor } from './match/ball-connections';
 import type { BallFrame, BallProbe } from './match/ball-frame';
 import { type BallPlay, createBallPlay } from './match/ball-play';
 import { createMatchClock } from './match/displayed-clock';
@@ -34,8 +35,7 @@ import { type BallRound, ballRound } from './panel/ball-round';
 import { eventHaptics } from './sound/ball-haptics';
 import { type LobbyButton, ownName, seatOfButton } from './view/board-drawing';
 import { BlockList } from './voices/block-list';
-import { Voices } from './voices/voices';
-import type { VoicesProbe } from './voices/voices-state';
+import { Voices, type VoicesProbe } from './voices/voices';
 
 /** The state of a match and of its voices, for tests and tools. */
 export type CourtProbe = BallProbe & { readonly voices: VoicesProbe };
@@ -175,14 +175,8 @@ export class CourtActivity implements OpenActivity {
     const { pose } = this.#context.stage.view;
     this.#view.showBoards(this.#context.headset.worn || !this.#phone.matches);
     this.#view.show({
-      state: newest.state,
-      time: newest.time,
+      ...newest,
       attendants: this.#named(newest.players),
-      me: newest.me,
-      rotate: newest.rotate,
-      opening: newest.opening,
-      aim: newest.aim,
-      paused: newest.paused,
       secondsLeft: this.#clock.secondsLeft,
       head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
       pageTime: time,
@@ -306,4 +300,23 @@ export class CourtActivity implements OpenActivity {
     else if (id === 'rotate') this.play.rotate(!(newest?.rotate ?? false));
     else this.play.ready(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
   }
+}
+
+/** Returns the room to play in: the one that a study assigned, the one in the address, or one in this page. */
+async function roomFor({ place, switches, clock, server, layout }: ActivityContext): Promise<BallPlace> {
+  if (place) return assignedSeat(place.seat, clock);
+  // A server that does not answer now may answer later. Without a server the match is in this page.
+  const hosted = switches.room !== null && (await server.known()) !== 'none';
+  return connectionsFor(hosted ? switches.room : null, {
+    seed: layout.seed,
+    clock,
+    ...(switches.seconds && { seconds: switches.seconds }),
+    ...(switches.balls && { balls: switches.balls }),
+  });
+}
+
+/** Downloads the body of other players and connects to the room. Rejects with a reason. */
+export async function openCourt(context: ActivityContext): Promise<CourtActivity> {
+  const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(plainAvatar), roomFor(context)]);
+  return new CourtActivity(context, room, mannequin);
 }

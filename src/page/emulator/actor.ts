@@ -2,28 +2,23 @@ import { type Calibration, defaultCalibration } from 'threepoint/core/body/calib
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
-/** Moves in place of a person while no one wears a headset. */
-export interface Actor {
-  /** Returns head and hands of the performance at a time [s] on any monotonic clock. */
-  frameAt(time: number): TrackingFrame;
-  /** Returns head and hands of the actor standing still at a time [s]. */
-  standAt(time: number): TrackingFrame;
-  /** The body that performs. */
-  calibrate(calibration: Calibration): void;
-}
-
-/** Performs from its first frame on. */
-export function createActor(): Actor {
+/** Moves in place of a person while no one wears a headset. Performs from its first frame on. */
+export function createActor() {
   let began: number | null = null;
   let body = defaultCalibration;
   return {
-    frameAt(time) {
+    /** Returns head and hands of the performance at a time [s] on any monotonic clock. */
+    frameAt(time: number): TrackingFrame {
       began ??= time;
       return { ...actorFrame(time - began, body), time };
     },
-    standAt: (time) => ({ ...actorFrame(0, body), time }),
-    calibrate(calibration) {
+    /** Returns head and hands of the actor standing still at a time [s]. */
+    standAt: (time: number): TrackingFrame => ({ ...actorFrame(0, body), time }),
+    /** The body that performs. */
+    calibrate(calibration: Calibration): void {
       body = calibration;
     },
   };
 }
+
+export type Actor = ReturnType<typeof createActor>;

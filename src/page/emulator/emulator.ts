@@ -7,21 +7,6 @@ import { vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
 
-/** An emulated headset, for browsers without a device. */
-export interface Emulator {
-  readonly device: XRDevice;
-  /** Head and wrists as the emulator has them now, outside of any session. */
-  read(time: number): TrackingFrame;
-  /**
-   * Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons.
-   */
-  drive(frame: TrackingFrame, buttons?: Buttons): void;
-  /** Lets the panel move headset and controllers again. */
-  release(): void;
-  /** Shows or hides the developer's panel; it is loaded when first shown. */
-  setPanelVisible(visible: boolean): Promise<void>;
-}
-
 /** The initial head and hands of a person of 1.70 m [m]. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };
 
@@ -35,10 +20,11 @@ export async function installEmulator(): Promise<Emulator> {
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   markAsTracked(device);
-  return new EmulatedHeadset(device, metaQuest3.controllerConfig);
+  return new Emulator(device, metaQuest3.controllerConfig);
 }
 
-class EmulatedHeadset implements Emulator {
+/** An emulated headset, for browsers without a device. */
+export class Emulator {
   readonly device: XRDevice;
   readonly #config: ControllerConfig;
   readonly #fit: HandleFit;
@@ -56,6 +42,7 @@ class EmulatedHeadset implements Emulator {
     }
   }
 
+  /** Head and wrists as the emulator has them now, outside of any session. */
   read(time: number): TrackingFrame {
     return {
       time,
@@ -65,6 +52,9 @@ class EmulatedHeadset implements Emulator {
     };
   }
 
+  /**
+   * Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons.
+   */
   drive(frame: TrackingFrame, buttons?: Buttons): void {
     // Else the panel puts everything back where its mouse left it, in every frame.
     this.device.controlMode = 'programmatic';
@@ -84,10 +74,12 @@ class EmulatedHeadset implements Emulator {
     }
   }
 
+  /** Lets the panel move headset and controllers again. */
   release(): void {
     this.device.controlMode = 'manual';
   }
 
+  /** Shows or hides the developer's panel; it is loaded when first shown. */
   async setPanelVisible(visible: boolean): Promise<void> {
     this.#panelWanted = visible;
     // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in

@@ -166,16 +166,6 @@ function createTimeline(actions: CardActions) {
   };
 }
 
-export interface MocapCard {
-  readonly node: HTMLElement;
-  /** What it covers of the window; null: it is not shown. */
-  readonly covers: DOMRect | null;
-  /** Shows the progress of reading a file; null: none is being read. */
-  showProgress(name: string, progress: WorkProgress | null): void;
-  /** null: no clip is open. */
-  show(state: CardState | null): void;
-}
-
 /** Lists the clips of a file unless they are listed already: rebuilding an open select element closes it. */
 function listClips(select: HTMLSelectElement, names: readonly string[]): void {
   const listed = Array.from(select.options, ({ text }) => text);
@@ -184,7 +174,7 @@ function listClips(select: HTMLSelectElement, names: readonly string[]): void {
 }
 
 /** What is known of an opened motion: errors by joint, the time, which methods draw it. */
-export function createMocapCard(labels: Labels, actions: CardActions): MocapCard {
+export function createMocapCard(labels: Labels, actions: CardActions) {
   const methods = threePointNames.map((name) => [name, labels[name]] as const);
   const clip = choice<string>('Clip', [], (index) => actions.chooseClip(Number(index)));
   const method = choice<EstimatorName>(
@@ -247,20 +237,25 @@ export function createMocapCard(labels: Labels, actions: CardActions): MocapCard
   };
   return {
     node,
-    get covers() {
+    /** What it covers of the window; null: it is not shown. */
+    get covers(): DOMRect | null {
       return node.hidden ? null : node.getBoundingClientRect();
     },
-    showProgress(name, progress) {
+    /** Shows the progress of reading a file; null: none is being read. */
+    showProgress(name: string, progress: WorkProgress | null): void {
       reading.hidden = progress === null;
       if (progress) told.show(`Reading ${name}`, `: ${percent(progress)}`);
       else told.show('');
       bar.value = progress?.share ?? 0;
       node.hidden = reading.hidden && opened.hidden;
     },
-    show(state) {
+    /** null: no clip is open. */
+    show(state: CardState | null): void {
       opened.hidden = state === null;
       node.hidden = reading.hidden && opened.hidden;
       if (state) showOpened(state);
     },
   };
 }
+
+export type MocapCard = ReturnType<typeof createMocapCard>;

@@ -1,4 +1,4 @@
-import { type BufferGeometry, Color, Float32BufferAttribute } from 'three';
+import { BoxGeometry, type BufferGeometry, Color, Float32BufferAttribute } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 
 /**
@@ -22,6 +22,13 @@ export function painted(
   flat.setAttribute('color', new Float32BufferAttribute(colors, 3));
   return flat;
 }
+
+/** Creates a box of one colour; `size`: width, height and depth, `middle`: where it is [m]. */
+export const paintedBox = (
+  [width, height, depth]: readonly [number, number, number],
+  [x, y, z]: readonly [number, number, number],
+  color: string,
+): BufferGeometry => painted(new BoxGeometry(width, height, depth).translate(x, y, z), color);
 
 /** One geometry, one draw call. */
 export function merged(geometries: readonly BufferGeometry[]): BufferGeometry {

@@ -1,6 +1,7 @@
 import { Sprite, SpriteMaterial } from 'three';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { ink, signFont } from './boards/lettering';
+import { vrFont } from 'threepoint-ui/vr-panel';
+import { ink } from './boards/lettering';
 import { createDrawnTexture } from './drawn-texture';
 import type { Quality } from './renderer';
 
@@ -41,7 +42,7 @@ export class RisingWord {
     this.#drawn.draw((context) => {
       context.textAlign = 'center';
       context.textBaseline = 'middle';
-      context.font = `800 100px ${signFont}`;
+      context.font = `800 100px ${vrFont}`;
       context.lineWidth = 18;
       context.lineJoin = 'round';
       context.strokeStyle = ink.accentInk;

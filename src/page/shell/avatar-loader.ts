@@ -30,6 +30,12 @@ export interface MappedFile {
   readonly bones: BoneMap | undefined;
 }
 
+/** Builds a built-in avatar from its file. */
+export const buildBuiltIn = async (
+  body: BuiltInBody,
+  bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
+): Promise<Avatar> => createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body)));
+
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
@@ -71,13 +77,9 @@ export class AvatarLoader {
   async loadBuiltIn(
     body: BuiltInBody,
     skinTone: SkinTone | undefined,
-    bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
+    bytes?: Promise<ArrayBuffer>,
   ): Promise<LoadedUserAvatar> {
-    return {
-      avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body))),
-      worn: builtInAvatarOf(body, skinTone),
-      source: null,
-    };
+    return { avatar: await buildBuiltIn(body, bytes), worn: builtInAvatarOf(body, skinTone), source: null };
   }
 
   /** Reads a file and checks it in a worker. */

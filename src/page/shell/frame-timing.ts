@@ -12,6 +12,8 @@ interface Ring {
   count: number;
 }
 
+const makeRing = (): Ring => ({ values: new Float32Array(length), count: 0 });
+
 function push(ring: Ring, value: number): void {
   ring.values[ring.count % length] = value;
   ring.count += 1;
@@ -50,105 +52,113 @@ export interface FrameSummary {
   readonly rateHz: number;
 }
 
+/** The object is the same in every frame: copy what must stay. */
+export type FrameListener = (spentMs: Readonly<Record<StageName | 'frame', number>>, late: boolean) => void;
+
+const noTimes = (): Record<StageName, number> =>
+  Object.fromEntries(stageNames.map((name) => [name, 0])) as Record<StageName, number>;
+
 /** Measures the stages of a frame. A frame only writes numbers into rings; `summary` sorts them. */
-export interface FrameTiming {
-  /** The device starts a frame now. Its time stamp [ms] gives the time since the last one. */
-  begin(timestampMs: number): void;
-  /** Counts the time since the last mark of this frame towards this stage; a stage may be marked several times. */
-  mark(stage: StageName): void;
-  end(): void;
+export class FrameTiming {
+  readonly #now: () => number;
+  readonly #rings = Object.fromEntries(stageNames.map((name) => [name, makeRing()])) as Record<StageName, Ring>;
+  readonly #spent = noTimes();
+  readonly #reported = { ...noTimes(), frame: 0 };
+  readonly #total = makeRing();
+  readonly #intervals = makeRing();
+  #rateHz = 60;
+  #lastTimestamp = Number.NaN;
+  #started = 0;
+  #marked = 0;
+  #late = false;
+  #lastMs = 0;
+  #inFrame = false;
+  #afterwards = 0;
+  #listener: FrameListener | null = null;
+
+  /** `now`: milliseconds on a monotonic clock. */
+  constructor(now: () => number) {
+    this.#now = now;
+  }
+
   /** The work of the newest complete frame [ms]. */
-  readonly lastMs: number;
+  get lastMs(): number {
+    return this.#lastMs;
+  }
+
+  /** The device starts a frame now. Its time stamp [ms] gives the time since the last one. */
+  begin(timestampMs: number): void {
+    const interval = timestampMs - this.#lastTimestamp;
+    this.#late = interval > this.#latestMs;
+    if (!Number.isNaN(interval)) push(this.#intervals, interval);
+    this.#lastTimestamp = timestampMs;
+    this.#inFrame = true;
+    this.#started = this.#now();
+    this.#marked = this.#started;
+  }
+
+  /** Counts the time since the last mark of this frame towards this stage; a stage may be marked several times. */
+  mark(stage: StageName): void {
+    const time = this.#now();
+    this.#spent[stage] += time - this.#marked;
+    if (!this.#inFrame) this.#afterwards += time - this.#marked;
+    this.#marked = time;
+  }
+
+  end(): void {
+    const spent = this.#spent;
+    const whole = this.#now() - this.#started + this.#afterwards;
+    for (let i = 0; i < stageNames.length; i++) push(this.#rings[stageNames[i]!], spent[stageNames[i]!]);
+    push(this.#total, whole);
+    this.#lastMs = whole;
+    if (this.#listener) {
+      Object.assign(this.#reported, spent);
+      this.#reported.frame = whole;
+      this.#listener(this.#reported, this.#late);
+    }
+    this.#inFrame = false;
+    this.#afterwards = 0;
+    for (let i = 0; i < stageNames.length; i++) spent[stageNames[i]!] = 0;
+  }
+
   /** After the frame: what is marked from now on is work that it left for later. It counts with the next frame. */
-  resume(): void;
+  resume(): void {
+    this.#marked = this.#now();
+  }
+
   /** The rate at which the device wants frames [Hz]. */
-  setRate(rateHz: number): void;
+  setRate(rateHz: number): void {
+    this.#rateHz = rateHz;
+  }
+
   /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
-  reset(): void;
-  summary(): FrameSummary;
+  reset(): void {
+    for (const each of [this.#total, this.#intervals, ...Object.values(this.#rings)]) each.count = 0;
+    this.#lastTimestamp = Number.NaN;
+  }
+
+  summary(): FrameSummary {
+    const stages = Object.fromEntries(
+      stageNames.map((name) => [name, quantilesOf(this.#rings[name])]),
+    ) as unknown as FrameSummary['stages'];
+    const { values, count } = this.#intervals;
+    const frames = Math.min(count, length);
+    const missed = values.subarray(0, frames).filter((interval) => interval > this.#latestMs).length;
+    return { ...quantilesOf(this.#total), stages, missed, frames, rateHz: this.#rateHz };
+  }
+
   /**
    * Passes every frame to a listener: the duration of each stage and of the whole ("frame") [ms], and whether it was
    * late; null: no listener.
    */
-  listen(listener: FrameListener | null): void;
+  listen(listener: FrameListener | null): void {
+    this.#listener = listener;
+  }
+
+  get #latestMs(): number {
+    return (lateAfterIntervals * 1000) / this.#rateHz;
+  }
 }
 
-/** The object is the same in every frame: copy what must stay. */
-export type FrameListener = (spentMs: Readonly<Record<StageName | 'frame', number>>, late: boolean) => void;
-
-/** now: milliseconds on a monotonic clock. */
-export function createFrameTiming(now: () => number): FrameTiming {
-  const ring = (): Ring => ({ values: new Float32Array(length), count: 0 });
-  const rings = Object.fromEntries(stageNames.map((name) => [name, ring()])) as Record<StageName, Ring>;
-  const spent = Object.fromEntries(stageNames.map((name) => [name, 0])) as Record<StageName, number>;
-  const total = ring();
-  const intervals = ring();
-  let rateHz = 60;
-  let lastTimestamp = Number.NaN;
-  let started = 0;
-  let marked = 0;
-  let late = false;
-  let lastMs = 0;
-  let inFrame = false;
-  let afterwards = 0;
-  let listener: FrameListener | null = null;
-  const told = { ...spent, frame: 0 };
-  const latestMs = () => (lateAfterIntervals * 1000) / rateHz;
-  return {
-    begin(timestampMs) {
-      late = timestampMs - lastTimestamp > latestMs();
-      if (Number.isFinite(lastTimestamp)) push(intervals, timestampMs - lastTimestamp);
-      lastTimestamp = timestampMs;
-      inFrame = true;
-      started = now();
-      marked = started;
-    },
-    mark(stage) {
-      const time = now();
-      spent[stage] += time - marked;
-      if (!inFrame) afterwards += time - marked;
-      marked = time;
-    },
-    end() {
-      const whole = now() - started + afterwards;
-      for (let i = 0; i < stageNames.length; i++) push(rings[stageNames[i]!], spent[stageNames[i]!]);
-      push(total, whole);
-      lastMs = whole;
-      if (listener) {
-        Object.assign(told, spent);
-        told.frame = whole;
-        listener(told, late);
-      }
-      inFrame = false;
-      afterwards = 0;
-      for (let i = 0; i < stageNames.length; i++) spent[stageNames[i]!] = 0;
-    },
-    get lastMs() {
-      return lastMs;
-    },
-    resume() {
-      marked = now();
-    },
-    setRate(rate) {
-      rateHz = rate;
-    },
-    reset() {
-      for (const each of [total, intervals, ...Object.values(rings)]) each.count = 0;
-      lastTimestamp = Number.NaN;
-    },
-    summary() {
-      const stages = Object.fromEntries(stageNames.map((name) => [name, quantilesOf(rings[name])])) as Record<
-        StageName,
-        { p50Ms: number; p95Ms: number }
-      >;
-      const frames = Math.min(intervals.count, length);
-      const latest = latestMs();
-      let missed = 0;
-      for (let i = 0; i < frames; i++) if (intervals.values[i]! > latest) missed += 1;
-      return { ...quantilesOf(total), stages, missed, frames, rateHz };
-    },
-    listen(next) {
-      listener = next;
-    },
-  };
-}
+/** `now`: milliseconds on a monotonic clock. */
+export const createFrameTiming = (now: () => number): FrameTiming => new FrameTiming(now);

@@ -1,7 +1,7 @@
-import { BodySolver, type BodySolverOptions, type CalibrationSource } from 'threepoint/api/body-solver';
+import { BodySolver, type CalibrationSource } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { firstLine } from 'threepoint/core/errors/reasons';
-import { createPageClock, type PageClock } from 'threepoint/core/tracking/page-clock';
+import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { Notices } from 'threepoint-ui/notices';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
@@ -10,30 +10,21 @@ import { createNetworkLoader } from './network-loading';
 import type { PageContext } from './page-context';
 import type { PageLoading } from './page-loading';
 
-/** The user's body, its networks and clock, and the events that other parts of the page listen to. */
-export interface PageBody {
-  readonly body: BodySolver;
-  readonly networks: BodySolverOptions['networks'];
-  readonly clock: PageClock;
-  readonly calibrated: Emitter<[calibration: Calibration, source: CalibrationSource]>;
-  /** The user is taller than their calibration by this much [m]. */
-  readonly outgrown: Emitter<[difference: number]>;
-  readonly discontinuity: Emitter;
-}
-
-export interface PageBodyOptions {
-  readonly context: PageContext;
+export interface PageBodyOptions extends Pick<PageContext, 'switches' | 'store' | 'changes'> {
   readonly notices: Notices;
   readonly loading: PageLoading;
   readonly timing: FrameTiming;
 }
 
-/** Creates the body that head and hands move. */
-export function createPageBody({ context, notices, loading, timing }: PageBodyOptions): PageBody {
-  const { switches, store, changes } = context;
+/**
+ * Creates the body that head and hands move, with its networks and clock, and the events that other parts of the page
+ * listen to.
+ */
+export function createPageBody({ switches, store, changes, notices, loading, timing }: PageBodyOptions) {
   const clock = createPageClock(() => performance.now());
-  const calibrated: PageBody['calibrated'] = new Emitter();
-  const outgrown: PageBody['outgrown'] = new Emitter();
+  const calibrated = new Emitter<[calibration: Calibration, source: CalibrationSource]>();
+  /** The user is taller than their calibration by this much [m]. */
+  const outgrown = new Emitter<[difference: number]>();
   const discontinuity = new Emitter();
   const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
   const body = new BodySolver({
@@ -58,5 +49,5 @@ export function createPageBody({ context, notices, loading, timing }: PageBodyOp
       },
     },
   });
-  return { body, networks, clock, calibrated, outgrown, discontinuity };
+  return { body, networks, clock, bodyEvents: { calibrated, outgrown, discontinuity } };
 }

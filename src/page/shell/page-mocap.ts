@@ -1,8 +1,6 @@
 import type { Object3D } from 'three';
 import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-bodies';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import type { Avatar } from 'threepoint/avatar/avatar';
 import { palettes } from 'threepoint/avatar/palettes';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -11,7 +9,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
-import { fetchBuiltInAvatar } from './avatar-loader';
+import { buildBuiltIn } from './avatar-loader';
 import { estimatorTexts } from './estimator-texts';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
@@ -112,9 +110,7 @@ export class PageMocap {
   /** A built-in avatar in other colours than those of the first. */
   async #loadAvatar(): Promise<Avatar> {
     const { builtInBody, palette } = this.#options.settings;
-    const avatar = await createAvatarBetweenFrames(
-      await parseAvatar(await fetchBuiltInAvatar(builtInBody), labelOf(builtInBody)),
-    );
+    const avatar = await buildBuiltIn(builtInBody);
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
     await this.#options.prepare(avatar.object);
     return avatar;

@@ -58,14 +58,6 @@ const schema = v.object({
 /** What the page remembers from one visit to the next, on this device only. */
 export type Preferences = v.InferOutput<typeof schema>;
 
-export interface PreferenceStore {
-  readonly preferences: Preferences;
-  /** Why what was stored could not be used; null: it could. */
-  readonly complaint: string | null;
-  /** Remembers a part; undefined forgets it. Where the browser stores nothing, it lasts as long as the page. */
-  remember(part: Part): void;
-}
-
 const key = 'threepoint.preferences.1';
 
 type Part = { readonly [Key in keyof Preferences]: Preferences[Key] | undefined };
@@ -106,7 +98,7 @@ const denied =
 export function createPreferenceStore(
   storage: Pick<Storage, 'getItem' | 'setItem'> | null,
   onDenied: (sentence: string) => void = () => undefined,
-): PreferenceStore {
+) {
   const read = parsePreferences(storage?.getItem(key) ?? null);
   let preferences = read.preferences;
   let told = false;
@@ -127,11 +119,13 @@ export function createPreferenceStore(
   if (storage === null) tellOfDenial();
 
   return {
-    get preferences() {
+    get preferences(): Preferences {
       return preferences;
     },
+    /** Why what was stored could not be used; null: it could. */
     complaint: read.complaint,
-    remember(part) {
+    /** Remembers a part; undefined forgets it. Where the browser stores nothing, it lasts as long as the page. */
+    remember(part: Part): void {
       preferences = joined(preferences, part);
       try {
         if (kept) preferences = joined(stored() ?? preferences, part);
@@ -146,6 +140,8 @@ export function createPreferenceStore(
     },
   };
 }
+
+export type PreferenceStore = ReturnType<typeof createPreferenceStore>;
 
 /** The browser's storage, or null where a policy or a private window forbids it. */
 export function browserStorage(): Storage | null {

@@ -1,91 +1,25 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { FingerName } from 'threepoint/core/body/hand-shape';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Savings } from 'threepoint/xr/frame-rate';
-import type { StudyProbe } from 'threepoint-study/participant/study-run';
 import type { Notices } from 'threepoint-ui/notices';
 import type { PlayerProbe } from '../activity/activity';
-import type { OfflineCopy, OfflineCopyState } from '../offline/offline-copy';
+import type { OfflineCopy } from '../offline/offline-copy';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities/activities';
 import type { GameProbe } from './activity-registry';
 import type { TrackingSource } from './frame/tracking-source';
-import type { FrameSummary, FrameTiming } from './frame-timing';
+import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageLoading } from './page-loading';
 import type { PassthroughHost } from './session/passthrough-host';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
-import type { DrawnCounts, Stage } from './stage';
+import type { Stage } from './stage';
 import type { PageStudy } from './study/page-study';
 
+/** A point of the floor frame [m]. */
 type Triple = readonly [number, number, number];
-
-/** The state of the page as plain data, for tests and tools; read-only. */
-export interface Probe {
-  /** The first body is drawn. */
-  readonly ready: boolean;
-  /** 'loading', 'desktop', 'vr'. */
-  readonly activity: 'loading' | 'desktop' | 'vr';
-  readonly estimator: EstimatorName;
-  readonly provider: string;
-  readonly frame: Pick<FrameSummary, 'p50Ms' | 'p95Ms' | 'stages' | 'missed' | 'frames' | 'rateHz'> & {
-    /** Frames drawn since the page opened. */
-    readonly count: number;
-  };
-  /** Joints of the avatar's bones as drawn, floor frame [m]. */
-  readonly avatar: {
-    readonly name: string;
-    readonly joints: Readonly<Record<string, Triple>>;
-    /** The positions of the finger tips. */
-    readonly fingertips: Readonly<Record<Side, Readonly<Partial<Record<FingerName, Triple>>>>>;
-  };
-  /** What was tracked in the newest frame, floor frame [m]; null: not seen. */
-  readonly tracking: {
-    /** The frame's own time [s]: what estimators and filters go by. */
-    readonly time: number;
-    readonly head: Triple;
-    readonly leftHand: Triple | null;
-    readonly rightHand: Triple | null;
-  } | null;
-  readonly calibration: Calibration & { readonly source: string };
-  readonly session: { readonly state: 'none' | 'visible' | 'visible-blurred' | 'hidden'; readonly emulated: boolean };
-  /** The user's own room; null: no session shows it. */
-  readonly passthrough: {
-    readonly showsRoom: boolean;
-    readonly mirror: { readonly x: number; readonly y: number; readonly z: number; readonly turned: number };
-    readonly anchored: boolean;
-  } | null;
-  readonly view: string;
-  readonly recorder: { readonly mode: string; readonly frames: number; readonly seconds: number };
-  readonly notices: readonly { readonly level: string; readonly text: string }[];
-  /** Milliseconds from opening the page to each mark of loading. */
-  readonly loading: Readonly<Record<string, number>>;
-  /** What this browser keeps of the page for a visit without a network. */
-  readonly kept: OfflineCopyState;
-  /** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
-  readonly drawing: {
-    readonly geometries: number;
-    readonly textures: number;
-    readonly programs: number;
-    readonly darkness: number;
-    /** What the newest picture asked of the graphics device. */
-    readonly mirror: DrawnCounts;
-    readonly scene: DrawnCounts;
-    /** What the pictures of a session give up so that its frames are in time. */
-    readonly savings: Savings;
-  };
-  /** The others as they are drawn here. */
-  readonly players: readonly PlayerProbe[];
-  /** The round being played; null in the studio. */
-  readonly game: GameProbe | null;
-  /** The state of the study; null: there is none. */
-  readonly study: StudyProbe | null;
-}
 
 /** The parts of the page that a probe reads. */
 export interface ProbeParts {
@@ -108,53 +42,58 @@ export interface ProbeParts {
 
 const triple = ({ x, y, z }: Vec3): Triple => [x, y, z];
 
-function trackingOf(newest: TrackingFrame | null): Probe['tracking'] {
-  return (
-    newest && {
-      time: newest.time,
-      head: triple(newest.head.position),
-      leftHand: newest.leftHand && triple(newest.leftHand.position),
-      rightHand: newest.rightHand && triple(newest.rightHand.position),
-    }
-  );
-}
-
-function avatarOf({ current, name }: ProbeParts['avatar']): Probe['avatar'] {
-  const joints = Object.entries(current?.jointPositions() ?? {});
-  const tips = (side: Side) => {
-    const found = Object.entries(current?.fingertips(side) ?? {});
-    return Object.fromEntries(found.map(([finger, at]) => [finger, triple(at)]));
+/** What was tracked in the newest frame, floor frame [m]; null: not seen. `time`: the frame's own [s]. */
+const trackingOf = (newest: TrackingFrame | null) =>
+  newest && {
+    time: newest.time,
+    head: triple(newest.head.position),
+    leftHand: newest.leftHand && triple(newest.leftHand.position),
+    rightHand: newest.rightHand && triple(newest.rightHand.position),
   };
+
+const triples = <Name extends string>(points: Readonly<Partial<Record<Name, Vec3>>> | undefined) =>
+  Object.fromEntries(
+    Object.entries<Vec3>((points ?? {}) as Readonly<Record<Name, Vec3>>).map(([name, at]) => [name, triple(at)]),
+  ) as Readonly<Partial<Record<Name, Triple>>>;
+
+/** Joints of the avatar's bones as drawn, and the tips of its fingers; floor frame [m]. */
+function avatarOf({ current, name }: ProbeParts['avatar']) {
+  const tips = (side: Side) => triples(current?.fingertips(side));
   return {
     name,
-    joints: Object.fromEntries(joints.map(([joint, at]) => [joint, triple(at)])),
+    joints: triples<string>(current?.jointPositions()) as Readonly<Record<string, Triple>>,
     fingertips: { left: tips('left'), right: tips('right') },
   };
 }
 
-function drawingOf({ renderer, vignette, drawn, savings }: ProbeParts['stage']): Probe['drawing'] {
-  return {
-    ...renderer.info.memory,
-    programs: renderer.info.programs?.length ?? 0,
-    darkness: vignette.darkness,
-    mirror: { ...drawn.mirror },
-    scene: { ...drawn.scene },
-    savings: { ...savings },
-  };
-}
+/** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
+const drawingOf = ({ renderer, vignette, drawn, savings }: ProbeParts['stage']) => ({
+  ...renderer.info.memory,
+  programs: renderer.info.programs?.length ?? 0,
+  darkness: vignette.darkness,
+  /** What the newest picture asked of the graphics device. */
+  mirror: { ...drawn.mirror },
+  scene: { ...drawn.scene },
+  /** What the pictures of a session give up so that its frames are in time. */
+  savings: { ...savings },
+});
 
-const passthroughOf = ({ room }: ProbeParts['passthrough']): Probe['passthrough'] =>
+/** The user's own room; null: no session shows it. */
+const passthroughOf = ({ room }: ProbeParts['passthrough']) =>
   room && { showsRoom: room.showsRoom, mirror: { ...room.mirror.place }, anchored: room.mirror.anchored };
 
-/** What the page is doing now. */
-export function readProbe(parts: ProbeParts): Probe {
+/** Reads the state of the page as plain data, for tests and tools; read-only. */
+export function readProbe(parts: ProbeParts) {
   const { loading, kept, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
   const { current } = parts.activities;
+  const activity: 'loading' | 'desktop' | 'vr' = headset.worn ? 'vr' : loading.ready ? 'desktop' : 'loading';
   return {
+    /** The first body is drawn. */
     ready: loading.ready,
-    activity: headset.worn ? 'vr' : loading.ready ? 'desktop' : 'loading',
+    activity,
     estimator: body.estimator,
     provider: body.provider ?? 'none',
+    /** `count`: frames drawn since the page opened. */
     frame: { ...timing.summary(), count: frame.count },
     avatar: avatarOf(parts.avatar),
     tracking: trackingOf(source.newest),
@@ -164,14 +103,22 @@ export function readProbe(parts: ProbeParts): Probe {
     view: stage.view.view,
     recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
     notices: notices.current(),
+    /** Milliseconds from opening the page to each mark of loading. */
     loading: { ...loading.marks },
+    /** What this browser keeps of the page for a visit without a network. */
     kept: kept.state,
     drawing: drawingOf(stage),
-    players: current?.players?.() ?? [],
+    /** The others as they are drawn here. */
+    players: current?.players?.() ?? ([] as readonly PlayerProbe[]),
+    /** The round being played; null in the studio. */
     game: (current?.probe?.() ?? null) as GameProbe | null,
+    /** The state of the study; null: there is none. */
     study: study.run?.probe() ?? null,
   };
 }
+
+/** The state of the page as plain data, for tests and tools; read-only. */
+export type Probe = ReturnType<typeof readProbe>;
 
 declare global {
   interface Window {

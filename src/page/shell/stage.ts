@@ -9,7 +9,7 @@ import { createVrCaptions } from 'threepoint-ui/vr-captions';
 import type { Watched } from '../activity/activity';
 import { DesktopView, type Insets } from '../scene/desktop-view';
 import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../scene/renderer';
-import { createVignette, type Vignette } from '../scene/vignette';
+import { createVignette } from '../scene/vignette';
 import { createStudio, type Studio } from '../studio/studio';
 
 /** The user stands at the origin and looks along −Z, at the mirror [m]. */
@@ -22,12 +22,6 @@ const outOfSight = 100;
 const longestStep = 0.1;
 /** The height of the pelvis as a share of the eye height, without a body. */
 const pelvisShare = 0.58;
-
-/** What a picture, or a part of it, asks of the graphics device. */
-export interface DrawnCounts {
-  readonly drawCalls: number;
-  readonly triangles: number;
-}
 
 /** One picture: its people and its viewer. */
 export interface Shot {
@@ -52,126 +46,129 @@ export interface Shot {
 }
 
 /** What is always there to be drawn, and the cameras it is drawn with. */
-export interface Stage {
+export class Stage {
   readonly renderer: ReturnType<typeof createRenderer>;
   readonly studio: Studio;
   readonly view: DesktopView;
-  readonly vignette: Vignette;
+  readonly vignette = createVignette();
   /** The newest picture: its reflections in the mirror, and the rest with all eyes and shadows. */
-  readonly drawn: Readonly<Record<'mirror' | 'scene', DrawnCounts>>;
+  readonly drawn = { mirror: { drawCalls: 0, triangles: 0 }, scene: { drawCalls: 0, triangles: 0 } };
+  readonly #quality: Quality;
+  readonly #mirror: Mirror;
+  readonly #mirrorHeight: number;
+  readonly #skeleton = createDebugSkeleton();
+  readonly #headLoss = createHeadLoss();
+  readonly #headsetCamera = createHeadsetCamera();
+  readonly #captions = createVrCaptions();
+  #lastTime = 0;
+  #savings = unjudgedSavings;
+
+  constructor(canvas: HTMLCanvasElement, quality: Quality) {
+    this.#quality = quality;
+    this.renderer = createRenderer(canvas, quality);
+    this.studio = createStudio(this.renderer, quality);
+    this.view = new DesktopView(canvas);
+    this.#mirror = new Mirror({
+      distance: mirrorDistance,
+      ...(quality === 'low' && { resolution: 400, samples: 0 }),
+    });
+    this.#mirrorHeight = this.#mirror.object.position.y;
+    const parts = [this.#mirror, this.#skeleton, this.vignette, this.#captions];
+    this.studio.scene.add(...parts.map(({ object }) => object));
+    // A picture has several renders, and three.js would restart its counts in each of them.
+    this.renderer.info.autoReset = false;
+  }
+
   /** What the newest picture gave up. */
-  readonly savings: Savings;
-  /** A line low before the eyes of a session; empty: none. */
-  caption(text: string): void;
+  get savings(): Savings {
+    return this.#savings;
+  }
+
+  /** Shows a line low before the eyes of a session; empty: none. */
+  caption(text: string): void {
+    this.#captions.setText(text);
+  }
+
   /** Places the mirror at this side of the user; null: ahead of the user. */
-  placeMirror(side: Side | null): void;
+  placeMirror(side: Side | null): void {
+    const { x, z, turned } = mirrorAside;
+    const sign = side === 'right' ? 1 : -1;
+    if (side) this.standMirror(sign * x, 0, z, sign * turned);
+    else this.standMirror(0, 0, -mirrorDistance, 0);
+  }
+
   /** Stands the mirror on the floor at this height, its middle at (x, z) [m]; turned by 0 it faces +Z [rad]. */
-  standMirror(x: number, floor: number, z: number, turned: number): void;
-  setSkeletonVisible(visible: boolean): void;
+  standMirror(x: number, floor: number, z: number, turned: number): void {
+    this.#mirror.place(x, z, turned);
+    this.#mirror.object.position.y = this.#mirrorHeight + floor;
+  }
+
+  setSkeletonVisible(visible: boolean): void {
+    this.#skeleton.setVisible(visible);
+  }
+
   /** Fits picture and camera to the window; insets: what the controls cover [CSS pixels]. */
-  layOut(insets: Insets): void;
-  /** Light and camera go where the body is: before anything is drawn that depends on the camera. */
-  look(shot: Shot): void;
-  draw(shot: Shot): void;
-}
+  layOut(insets: Insets): void {
+    this.view.setInsets(insets);
+    this.view.resize();
+    fitToWindow(this.renderer, this.#quality);
+  }
 
-export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage {
-  const renderer = createRenderer(canvas, quality);
-  const studio = createStudio(renderer, quality);
-  const view = new DesktopView(canvas);
-  const mirror = new Mirror({
-    distance: mirrorDistance,
-    ...(quality === 'low' && { resolution: 400, samples: 0 }),
-  });
-  const skeleton = createDebugSkeleton();
-  const headLoss = createHeadLoss();
-  const vignette = createVignette();
-  const headsetCamera = createHeadsetCamera();
-  const captions = createVrCaptions();
-  studio.scene.add(mirror.object, skeleton.object, vignette.object, captions.object);
-  const mirrorHeight = mirror.object.position.y;
-  let lastTime = 0;
-  const { info } = renderer;
-  let spared = unjudgedSavings;
-  const save = (savings: Savings): void => {
-    if (savings === spared) return;
-    spared = savings;
-    renderer.xr.setFoveation(savings.foveation);
-    mirror.setMostRate(savings.mirrorRateHz);
-  };
-  // A picture has several renders, and three.js would restart its counts in each of them.
-  info.autoReset = false;
-  const drawn = { mirror: { drawCalls: 0, triangles: 0 }, scene: { drawCalls: 0, triangles: 0 } };
-  const count = (part: 'mirror' | 'scene'): void => {
-    drawn[part].drawCalls = info.render.calls;
-    drawn[part].triangles = info.render.triangles;
+  /** Moves light and camera to where the body is: before anything is drawn that depends on the camera. */
+  look({ time, frame, avatar, inSession, aside, watched, beside }: Shot): void {
+    const { view, studio } = this;
+    const elapsed = Math.min(longestStep, Math.max(0, time - this.#lastTime));
+    this.#lastTime = time;
+    const hips = avatar?.jointPositions().hips;
+    view.setHeight(avatar?.height ?? 0);
+    if (watched) studio.follow(watched.pelvis.x, outOfSight);
+    else if (hips) studio.follow(hips.x + beside, hips.z);
+    if (inSession) return;
+    if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
+    else if (frame) {
+      const { position } = frame.head;
+      const pelvis = hips ?? { ...position, y: position.y * pelvisShare };
+      view.update(aside === 0 ? pelvis : { ...pelvis, x: pelvis.x + aside }, frame.head, elapsed);
+    }
+  }
+
+  draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted, savings }: Shot): void {
+    const { renderer, view } = this;
+    this.#save(savings);
+    const inside = inSession || view.view === 'first-person';
+    if (avatar) {
+      this.#skeleton.show(avatar.jointPositions());
+      this.#skeleton.object.position.x = beside;
+      avatar.object.position.x = beside;
+      avatar.object.visible = watched === null;
+      avatar.setOpacity(this.#headLoss.follow(time, frame !== null));
+      avatar.setFirstPerson(inside && beside === 0);
+    }
+    const eyes = inSession && frame ? frame.head : null;
+    this.vignette.show(time, eyes);
+    this.#captions.show(time, eyes);
+    const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
+    this.#mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
+    const camera = inSession ? this.#headsetCamera : view.camera;
+    const { scene } = this.studio;
+    renderer.info.reset();
+    this.#mirror.reflect(renderer, scene, camera, time);
+    this.#count('mirror');
+    renderer.render(scene, camera);
+    this.#count('scene');
+  }
+
+  #save(savings: Savings): void {
+    if (savings === this.#savings) return;
+    this.#savings = savings;
+    this.renderer.xr.setFoveation(savings.foveation);
+    this.#mirror.setMostRate(savings.mirrorRateHz);
+  }
+
+  #count(part: 'mirror' | 'scene'): void {
+    const { info } = this.renderer;
+    this.drawn[part].drawCalls = info.render.calls;
+    this.drawn[part].triangles = info.render.triangles;
     info.reset();
-  };
-
-  return {
-    renderer,
-    studio,
-    view,
-    vignette,
-    drawn,
-    get savings() {
-      return spared;
-    },
-    caption: captions.setText,
-    placeMirror(side) {
-      const { x, z, turned } = mirrorAside;
-      const sign = side === 'right' ? 1 : -1;
-      if (side) mirror.place(sign * x, z, sign * turned);
-      else mirror.place(0, -mirrorDistance, 0);
-      mirror.object.position.y = mirrorHeight;
-    },
-    standMirror(x, floor, z, turned) {
-      mirror.place(x, z, turned);
-      mirror.object.position.y = mirrorHeight + floor;
-    },
-    setSkeletonVisible: (visible) => skeleton.setVisible(visible),
-    layOut(insets) {
-      view.setInsets(insets);
-      view.resize();
-      fitToWindow(renderer, quality);
-    },
-    look({ time, frame, avatar, inSession, aside, watched, beside }) {
-      const elapsed = Math.min(longestStep, Math.max(0, time - lastTime));
-      lastTime = time;
-      const hips = avatar?.jointPositions().hips;
-      view.setHeight(avatar?.height ?? 0);
-      if (watched) studio.follow(watched.pelvis.x, outOfSight);
-      else if (hips) studio.follow(hips.x + beside, hips.z);
-      if (inSession) return;
-      if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
-      else if (frame) {
-        const { position } = frame.head;
-        const pelvis = hips ?? { ...position, y: position.y * pelvisShare };
-        view.update(aside === 0 ? pelvis : { ...pelvis, x: pelvis.x + aside }, frame.head, elapsed);
-      }
-    },
-    draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted, savings }) {
-      save(savings);
-      const inside = inSession || view.view === 'first-person';
-      if (avatar) {
-        skeleton.show(avatar.jointPositions());
-        skeleton.object.position.x = beside;
-        avatar.object.position.x = beside;
-        avatar.object.visible = watched === null;
-        avatar.setOpacity(headLoss.follow(time, frame !== null));
-        avatar.setFirstPerson(inside && beside === 0);
-      }
-      const eyes = inSession && frame ? frame.head : null;
-      vignette.show(time, eyes);
-      captions.show(time, eyes);
-      const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
-      mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
-      const camera = inSession ? headsetCamera : view.camera;
-      info.reset();
-      mirror.reflect(renderer, studio.scene, camera, time);
-      count('mirror');
-      renderer.render(studio.scene, camera);
-      count('scene');
-    },
-  };
+  }
 }

@@ -1,44 +1,8 @@
-import { type EstimatorName, estimatorNames, threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { estimatorNames, threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import * as v from 'valibot';
-import type { Outlook } from '../mocap/mocap-view';
 import { truthPlaces } from '../mocap/truth-places';
-import { type ViewName, viewNames } from '../scene/desktop-view';
-import type { Quality } from '../scene/renderer';
+import { viewNames } from '../scene/desktop-view';
 import { home, placeNames } from './activity-registry';
-
-/** What the address asks for; null: nothing asked, the page decides. Listed in src/page/README.md. */
-export interface Switches {
-  readonly emulate: boolean;
-  readonly actor: boolean;
-  readonly estimator: EstimatorName | null;
-  readonly executionProvider: 'wasm' | 'webgpu';
-  readonly avatar: string | null;
-  readonly quality: Quality | null;
-  readonly replay: string | null;
-  /** The addresses of the files of one motion, and how it is shown; null: none is requested. */
-  readonly mocap: ({ readonly addresses: readonly string[] } & Outlook) | null;
-  readonly view: ViewName | null;
-  /** Whether the controls are open; null: as they were left. */
-  readonly panel: boolean | null;
-  /** What the page opens with. */
-  readonly play: string;
-  /** The seed of the first round's layout; null: a random one. */
-  readonly seed: number | null;
-  /** The length of a round [s]; null: the default of the game. */
-  readonly seconds: number | null;
-  /** A study and its participant (null: the page asks); null: no study. */
-  readonly study: { readonly study: string; readonly participant: string | null } | null;
-  /** The room on the server; null: a room in this page. */
-  readonly room: string | null;
-  /** The user watches, with a free camera. */
-  readonly spectate: boolean;
-  /** Whether bots take free seats; null: in a room of one's own they do. */
-  readonly bots: boolean | null;
-  /** What the others call the player of this page; null: the page asks. */
-  readonly name: string | null;
-  /** The number of balls in a game in this page; null: the default of the game. */
-  readonly balls: number | null;
-}
 
 const onOff = v.picklist(['on', 'off']);
 const address = v.pipe(v.string(), v.minLength(1));
@@ -109,10 +73,49 @@ function complaintOf(key: keyof typeof takes, value: string): string {
   return `${problem}: ${key} takes ${takes[key]}.`;
 }
 
-function mocapOf({ mocap, clip, at, beside, truth }: v.InferOutput<typeof schema>): Switches['mocap'] {
+function mocapOf({ mocap, clip, at, beside, truth }: v.InferOutput<typeof schema>) {
   if (mocap === undefined) return null;
   return { addresses: mocap.split(/\s+/), clip: clip && clip - 1, at, beside, truth };
 }
+
+/**
+ * Returns what the address asks for; null: nothing asked, the page decides. `flag`: whether the query has a switch
+ * without a value. Listed in src/page/README.md.
+ */
+const switchesOf = (output: v.InferOutput<typeof schema>, flag: (name: string) => boolean) => ({
+  emulate: flag('emulate'),
+  actor: output.actor === 'on',
+  /** Whether the controls are open; null: as they were left. */
+  panel: output.panel ? output.panel === 'on' : null,
+  estimator: output.estimator ?? null,
+  executionProvider: output.ep,
+  avatar: output.avatar ?? null,
+  quality: output.quality ?? null,
+  replay: output.replay ?? null,
+  /** The addresses of the files of one motion, and how it is shown; null: none is requested. */
+  mocap: mocapOf(output),
+  view: output.view ?? null,
+  /** What the page opens with. */
+  play: output.play,
+  /** The seed of the first round's layout; null: a random one. */
+  seed: output.seed ?? null,
+  /** The length of a round [s]; null: the default of the game. */
+  seconds: output.seconds ?? null,
+  /** A study and its participant (null: the page asks); null: no study. */
+  study: output.study === undefined ? null : { study: output.study, participant: output.participant ?? null },
+  /** The room on the server; null: a room in this page. */
+  room: output.room ?? null,
+  /** The user watches, with a free camera. */
+  spectate: flag('spectate'),
+  /** Whether bots take free seats; null: in a room of one's own they do. */
+  bots: output.bots ? output.bots === 'on' : null,
+  /** What the others call the player of this page; null: the page asks. */
+  name: output.name ?? null,
+  /** The number of balls in a game in this page; null: the default of the game. */
+  balls: output.balls ?? null,
+});
+
+export type Switches = Readonly<ReturnType<typeof switchesOf>>;
 
 /** Reads the query of the address. A value that a switch does not take counts as not given and yields a sentence. */
 export function readSwitches(query: string): { readonly switches: Switches; readonly complaints: readonly string[] } {
@@ -128,29 +131,6 @@ export function readSwitches(query: string): { readonly switches: Switches; read
     }
     result = v.safeParse(schema, given);
   }
-  const { output } = result;
-  return {
-    complaints,
-    switches: {
-      emulate: 'emulate' in given && given.emulate !== 'off',
-      actor: output.actor === 'on',
-      panel: output.panel ? output.panel === 'on' : null,
-      estimator: output.estimator ?? null,
-      executionProvider: output.ep,
-      avatar: output.avatar ?? null,
-      quality: output.quality ?? null,
-      replay: output.replay ?? null,
-      mocap: mocapOf(output),
-      view: output.view ?? null,
-      play: output.play,
-      seed: output.seed ?? null,
-      seconds: output.seconds ?? null,
-      study: output.study === undefined ? null : { study: output.study, participant: output.participant ?? null },
-      room: output.room ?? null,
-      spectate: 'spectate' in given && given.spectate !== 'off',
-      bots: output.bots ? output.bots === 'on' : null,
-      name: output.name ?? null,
-      balls: output.balls ?? null,
-    },
-  };
+  const flag = (name: string): boolean => name in given && given[name] !== 'off';
+  return { complaints, switches: switchesOf(result.output, flag) };
 }

@@ -15,13 +15,6 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
  */
 const most = 108_000;
 
-/** The header of a new recording. */
-export interface RecordingSource {
-  readonly device: string;
-  readonly rateHz: number;
-  readonly calibration: Calibration;
-}
-
 /** Keeps tracked frames and replays them, one recording at a time. Times are seconds of the caller's clock. */
 export class Recorder {
   #mode: 'idle' | 'recording' | 'replaying' = 'idle';
@@ -94,8 +87,8 @@ export class Recorder {
     this.#loop = loop;
   }
 
-  /** Starts a new recording, which replaces the current one. */
-  record(source: RecordingSource): void {
+  /** Starts a new recording, which replaces the current one. `source`: its header. */
+  record(source: Omit<Replayable, 'frames'>): void {
     this.stop();
     this.#newest = this.ask();
     this.#about = source;

@@ -6,7 +6,6 @@ import {
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
-  type Object3D,
   PlaneGeometry,
   RingGeometry,
   Scene,
@@ -28,25 +27,6 @@ const floorRadius = 24;
  * and SwiftShader clips the triangles of such a vertex wrongly.
  */
 const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
-
-/** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
-export interface Studio {
-  readonly scene: Scene;
-  /** The studio itself, which other surroundings take the place of. */
-  readonly home: Object3D;
-  /** What is around the user now. */
-  readonly surroundings: Surroundings;
-  /** Lights people and things as a device estimates the light of its room; null: as the surroundings are lit. */
-  setEstimatedLight(light: EstimatedLight | null): void;
-  /** Moves shadow and light to the person at (x, z) [m], floor frame. */
-  follow(x: number, z: number): void;
-  /** Shows or hides the mark on the floor of the studio where to stand. */
-  setMarkVisible(visible: boolean): void;
-  /** Puts another place, with its own light and fog, where the studio is; null brings the studio back. */
-  setSurroundings(surroundings: Surroundings | null): void;
-  /** Builds again what a lost context took with it. */
-  restore(): void;
-}
 
 /** A sphere of smooth colour, darker overhead; drawn behind everything, deaf to fog. */
 function createSky(): Mesh {
@@ -164,8 +144,11 @@ const studioLighting = (quality: Quality): Lighting => ({
   contactShadow: quality === 'high' ? 0.45 : 0.7,
 });
 
-/** Builds the studio: floor, sky, light and shadow, all made here, nothing loaded. */
-export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio {
+/**
+ * Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. Builds the studio: floor,
+ * sky, light and shadow, all made here, nothing loaded.
+ */
+export function createStudio(renderer: WebGLRenderer, quality: Quality) {
   const scene = new Scene();
   scene.background = null;
   const lights = new Lights(scene, renderer, quality);
@@ -178,16 +161,22 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio 
   let place = studioPlace;
   return {
     scene,
+    /** The studio itself, which other surroundings take the place of. */
     home: studio,
-    get surroundings() {
+    /** What is around the user now. */
+    get surroundings(): Surroundings {
       return place;
     },
-    setEstimatedLight: (light) => lights.setEstimate(light),
-    follow: (x, z) => lights.follow(x, z),
-    setMarkVisible(visible) {
+    /** Lights people and things as a device estimates the light of its room; null: as the surroundings are lit. */
+    setEstimatedLight: (light: EstimatedLight | null): void => lights.setEstimate(light),
+    /** Moves shadow and light to the person at (x, z) [m], floor frame. */
+    follow: (x: number, z: number): void => lights.follow(x, z),
+    /** Shows or hides the mark on the floor of the studio where to stand. */
+    setMarkVisible(visible: boolean): void {
       mark.visible = visible;
     },
-    setSurroundings(surroundings) {
+    /** Puts another place, with its own light and fog, where the studio is; null brings the studio back. */
+    setSurroundings(surroundings: Surroundings | null): void {
       const next = surroundings ?? studioPlace;
       if (next === place) return;
       scene.remove(place.object);
@@ -195,6 +184,9 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio 
       place = next;
       lights.set(next.lighting);
     },
-    restore: () => lights.set(place.lighting),
+    /** Builds again what a lost context took with it. */
+    restore: (): void => lights.set(place.lighting),
   };
 }
+
+export type Studio = ReturnType<typeof createStudio>;

@@ -66,7 +66,7 @@ export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 9
   const gestures = new ArcheryGestures(() => settings);
   let time = 5;
   let frames: GestureFrame[] = [];
-  const bowSide = (): Side => settings.bowSide ?? 'left';
+  const bowSide = (): Side => settings.bowSide;
   const stringSide = (): Side => (settings.oneHanded ? bowSide() : otherSide(bowSide()));
 
   const self = {

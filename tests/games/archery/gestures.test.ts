@@ -1,5 +1,4 @@
 import { allReleased, type Button, createButtonPresses } from 'threepoint/core/input/button-presses';
-import type { Transform } from 'threepoint/core/math/pose';
 import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { add, addScaled, distance, dot, normalise, up, vec3 } from 'threepoint/core/math/vec3';
@@ -343,21 +342,5 @@ describe('the aim', () => {
       .hold(turned, 1 / 90, 1)
       .hold(turned, 1 / 90, 0);
     expect(distance(archer.releases[0]!.direction, turned.direction)).toBeLessThan(1e-3);
-  });
-
-  test('is told in the arena wherever the floor lies in it', () => {
-    const arenaFromFloor: Transform<'arena', 'floor'> = {
-      position: vec3(3, 0.2, -2),
-      orientation: fromAxisAngle(up, 1.2),
-    };
-    const here = bowman();
-    const there = bowman({ arenaFromFloor });
-    for (const archer of [here, there]) archer.drawTo(0.5).hold({ draw: 0.5 }, 0.1, 0);
-    const [a] = here.releases;
-    const [b] = there.releases;
-    const moved = add(arenaFromFloor.position, rotate(arenaFromFloor.orientation, a!.position));
-    expect(distance(b!.position, moved)).toBeLessThan(1e-9);
-    expect(distance(b!.direction, rotate(arenaFromFloor.orientation, a!.direction))).toBeLessThan(1e-9);
-    expect(distance(there.bow!.bow.position, here.bow!.bow.position)).toBeLessThan(1e-9);
   });
 });

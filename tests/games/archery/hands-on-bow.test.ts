@@ -80,26 +80,6 @@ describe('hands', () => {
     archer.frame({ draw: -braceHeight }, { right: { grip: 1 } });
     expect(archer.bow).toMatchObject({ bowSide: 'left' });
   });
-
-  test('do not draw with the press that took the bow', () => {
-    const archer = bowman({ oneHanded: true, bowSide: null, rest: bowAt });
-    archer.hold({}, 0.1).hold({}, 0.3, 1, 'grip');
-    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'empty' });
-  });
-
-  test('take the bow from its rest, left or right', () => {
-    for (const side of sides) {
-      const archer = bowman({ bowSide: null, rest: vec3(0.1, 1, -0.5) });
-      // Both hands of this pose are within a step of the rest; only the one that grips takes it.
-      const pose = { bowSide: side, bowAt: vec3(0.1, 1.1, -0.5), draw: 0.4 };
-      archer.hold(pose, 0.1);
-      expect(archer.bow).toBeNull();
-      archer.frame(pose, { [otherSide(side)]: { grip: 1 } });
-      expect(archer.bow).toBeNull();
-      archer.frame(pose, { [side]: { grip: 1 } });
-      expect(archer.bow).toMatchObject({ bowSide: side, stage: 'empty' });
-    }
-  });
 });
 
 describe('one hand', () => {

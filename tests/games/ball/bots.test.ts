@@ -4,7 +4,7 @@ import { rotate } from 'threepoint/core/math/quat';
 import { distance, length, subtract, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
+import { BallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { stations, zoneRadius } from 'threepoint-games/ball/stations';
@@ -30,8 +30,8 @@ function play({
     return index === 2 ? createHolder(body) : createThrower(body, seed + index);
   });
   let time = 0;
-  const gestures: BallGestures[] = stations.map((arenaFromFloor, player) =>
-    createBallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
+  const gestures: BallGestures[] = stations.map(
+    (arenaFromFloor, player) => new BallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
   );
   const events: BallEvent[] = [];
   const frames: TrackingFrame[][] = [];

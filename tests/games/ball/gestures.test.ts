@@ -6,7 +6,7 @@ import { add, addScaled, distance, scale, up, type Vec3, vec3 } from 'threepoint
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRadius } from 'threepoint-games/ball/flight';
-import { createBallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
+import { BallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
 import { HandVelocity, throwWindow } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
@@ -26,7 +26,7 @@ function throwing(options: { side?: Side; button?: Button; state?: BallState; pl
   const match = told();
   let time = 100;
   const settings = { player, matchAhead: -100, arenaFromFloor, state: options.state ?? match.state };
-  const gestures = createBallGestures(() => settings);
+  const gestures = new BallGestures(() => settings);
   const tracked = (fist: Vec3, hand: Side): TrackedPose => ({
     ...transformPose(floorFromArena, wristAround<'arena'>(hand, fist, vec3(0, 0, -1), vec3(0, 1, 0))),
     tracking: 'tracked',

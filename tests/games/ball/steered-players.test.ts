@@ -1,7 +1,7 @@
 import { transformPoint } from 'threepoint/core/math/pose';
 import { distance, normalise, subtract, vec3 } from 'threepoint/core/math/vec3';
 import type { BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
-import { createBallGestures } from 'threepoint-games/ball/gestures';
+import { BallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
 import type { PlayerBody } from 'threepoint-games/ball/player-postures';
 import { ballRules } from 'threepoint-games/ball/rules';
@@ -42,7 +42,7 @@ function playing(seat: number, steer: (seen: Seen) => BallSteering, others: 'idl
   const seats = [0, 1, 2].map((index) => {
     const bot: BallBot =
       index === seat ? player : index === 2 ? createHolder(bodyAt(2)) : createThrower(bodyAt(index), 3);
-    const gestures = createBallGestures(() => ({
+    const gestures = new BallGestures(() => ({
       player: index,
       state,
       arenaFromFloor: stations[index]!,

@@ -1,3 +1,4 @@
+import { type Group, Vector3 } from 'three';
 import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
 import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BowView } from 'threepoint-games/archery/archery-state';
@@ -17,4 +18,16 @@ export function bowView(
     stage: draw > 0 ? 'drawing' : 'empty',
     arrow: draw > 0 ? { nock: nockPoint, direction: rotate(turn, vec3(0, 0, -1)) } : null,
   };
+}
+
+/** The string as it is drawn, from the upper tip over the nock point to the lower tip, floor frame. */
+export function drawnString(bow: Group): readonly [Vec3, Vec3, Vec3] {
+  bow.updateMatrixWorld();
+  const [upper, lower] = [bow.children[2]!, bow.children[3]!];
+  const tip = vec3(0, -0.5, 0);
+  return [
+    upper.localToWorld(new Vector3().copy(tip)),
+    upper.localToWorld(new Vector3(0, 0.5, 0)),
+    lower.localToWorld(new Vector3().copy(tip)),
+  ];
 }

@@ -2,13 +2,13 @@ import { InstancedMesh, Matrix4, Vector3 } from 'three';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { ballInAir, touchesFloor } from 'threepoint-games/ball/flight';
 import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
-import { createBalls } from 'threepoint-page/ball/view/balls';
+import { Balls } from 'threepoint-page/ball/view/balls';
 import { describe, expect, test } from 'vitest';
 import { velocityTo } from '../../rooms/client/people';
 
 /** The look of each ball that is drawn, and the side of the court it lies on: −1 left, 1 right. */
 function drawn(count: number): { readonly look: number; readonly side: number }[] {
-  const view = createBalls(defaultBallOptions.balls, 'low');
+  const view = new Balls(defaultBallOptions.balls, 'low');
   view.show(ballRules.start(['a', 'b', 'c'], 1, { balls: count }), 0, () => null, null);
   const meshes = view.object.children.filter((child) => child instanceof InstancedMesh).slice(0, 2);
   const matrix = new Matrix4();
@@ -47,7 +47,7 @@ describe('a ball that has not been told to be caught', () => {
     const balls = fresh.balls.map((place, ball) =>
       ball === 0 ? ({ on: 'air', launch, thrower: 0, missed: false } as const) : place,
     );
-    const view = createBalls(20, 'low');
+    const view = new Balls(20, 'low');
     const mesh = view.object.children[0] as InstancedMesh;
     const matrix = new Matrix4();
     let most = 0;

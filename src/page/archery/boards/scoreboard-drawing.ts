@@ -1,6 +1,7 @@
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { fullScore, secondsLeft } from 'threepoint-games/archery/rules';
-import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
+import { widthOf, write } from 'threepoint-ui/vr-panel';
+import { ink, paintCard, paintGround } from '../../scene/boards/lettering';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton } from '../../scene/boards/sheet';
 
@@ -101,24 +102,18 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
   const { score, maximum, seconds, phase } = text;
   paintScoreHeading(context, { score, of: maximum, seconds, running: phase === 'running' });
 
-  context.fillStyle = ink.soft;
-  context.font = `700 54px ${signFont}`;
-  context.fillText('ARROWS', 64, 444);
+  write(context, 'ARROWS', [64, 444], { font: '700 54px', color: ink.soft });
   for (let i = 0; i < text.arrows; i++)
     pip(context, 370 + i * Math.min(66, 330 / text.arrows), 378, 100, i < text.arrowsLeft);
-  context.textAlign = 'right';
-  context.fillStyle = ink.text;
-  context.font = `800 76px ${signFont}`;
-  context.fillText(`${text.arrowsLeft} of ${text.arrows}`, width - 64, 452);
-  context.textAlign = 'left';
+  const left = `${text.arrowsLeft} of ${text.arrows}`;
+  write(context, left, [width - 64, 452], { font: '800 76px', color: ink.text, align: 'right' });
 
   if (!text.inZone) {
     context.fillStyle = ink.warning;
     context.fillRect(0, 516, width, height - 516);
   }
-  context.fillStyle = text.inZone ? ink.text : ink.accentInk;
-  context.font = `700 64px ${signFont}`;
-  context.fillText(`${text.inZone ? '' : '⚠ '}${text.line}`, 64, 598, width - 128);
+  const [line, color] = text.inZone ? [text.line, ink.text] : [`⚠ ${text.line}`, ink.accentInk];
+  write(context, line, [64, 598], { font: '700 64px', color, most: width - 128 });
 }
 
 export const resultSize = { width: 1024, height: 768 } as const;
@@ -139,39 +134,25 @@ export function paintResult(context: CanvasRenderingContext2D, state: ArcherySta
 
   const maximum = fullScore(state);
   const percent = maximum > 0 ? Math.round((100 * state.score) / maximum) : 0;
-  context.textBaseline = 'alphabetic';
-  context.textAlign = 'center';
-  context.fillStyle = ink.soft;
-  context.font = `700 44px ${signFont}`;
-  context.fillText(state.end ? headline[state.end] : '', width / 2, 92);
+  const ending = state.end ? headline[state.end] : '';
+  write(context, ending, [width / 2, 92], { font: '700 44px', color: ink.soft, align: 'center' });
 
-  context.textAlign = 'left';
-  context.fillStyle = ink.text;
-  context.font = `800 210px ${signFont}`;
   const score = String(state.score);
-  const scoreWidth = context.measureText(score).width;
-  context.font = `700 80px ${signFont}`;
   const rest = `/ ${maximum}`;
   const share = `${percent} %`;
-  const restWidth = context.measureText(rest).width;
-  context.font = `800 80px ${signFont}`;
-  const shareWidth = context.measureText(share).width + 64;
-  const whole = scoreWidth + 26 + restWidth + 56 + shareWidth;
-  let x = (width - whole) / 2;
-  context.font = `800 210px ${signFont}`;
-  context.fillText(score, x, 296);
+  const scoreWidth = widthOf(context, score, '800 210px');
+  const restWidth = widthOf(context, rest, '700 80px');
+  const shareWidth = widthOf(context, share, '800 80px') + 64;
+  let x = (width - (scoreWidth + 26 + restWidth + 56 + shareWidth)) / 2;
+  write(context, score, [x, 296], { font: '800 210px', color: ink.text });
   x += scoreWidth + 26;
-  context.fillStyle = ink.soft;
-  context.font = `700 80px ${signFont}`;
-  context.fillText(rest, x, 296);
+  write(context, rest, [x, 296], { font: '700 80px', color: ink.soft });
   x += restWidth + 56;
   context.fillStyle = ink.accent;
   context.beginPath();
   context.roundRect(x, 196, shareWidth, 112, 56);
   context.fill();
-  context.fillStyle = ink.accentInk;
-  context.font = `800 80px ${signFont}`;
-  context.fillText(share, x + 32, 281);
+  write(context, share, [x + 32, 281], { font: '800 80px', color: ink.accentInk });
 
   const count = Math.max(1, state.options.arrows);
   const gap = 16;
@@ -187,20 +168,11 @@ export function paintResult(context: CanvasRenderingContext2D, state: ArcherySta
     context.roundRect(left, 366, card, 176, 20);
     context.fill();
     context.stroke();
-    context.textAlign = 'center';
-    context.fillStyle = ink.soft;
-    context.font = `700 32px ${signFont}`;
-    context.fillText(`Arrow ${i + 1}`, left + card / 2, 418, card - 12);
-    context.fillStyle = scored ? ink.text : ink.soft;
-    context.font = scored ? `800 84px ${signFont}` : `600 40px ${signFont}`;
-    context.fillText(result, left + card / 2, scored ? 510 : 490, card - 16);
+    const number = { font: '700 32px', color: ink.soft, align: 'center', most: card - 12 } as const;
+    write(context, `Arrow ${i + 1}`, [left + card / 2, 418], number);
+    const look = scored ? { font: '800 84px', color: ink.text } : { font: '600 40px', color: ink.soft };
+    write(context, result, [left + card / 2, scored ? 510 : 490], { ...look, align: 'center', most: card - 16 });
   }
 
-  paintButton(
-    context,
-    restartButton,
-    'Restart',
-    { fill: hovered ? ink.accentLift : ink.accent, ink: ink.accentInk, ring: ink.text, hovered },
-    `800 56px ${signFont}`,
-  );
+  paintButton(context, restartButton, 'Restart', { primary: true, hovered, font: '800 56px' });
 }

@@ -104,13 +104,5 @@ export function createArrows(length: number) {
       object.count = count + (nocked ? 1 : 0);
       object.instanceMatrix.needsUpdate = true;
     },
-    /** The pose drawn for the i-th arrow now shown; the nocked one comes last. */
-    poseAt(index: number): { readonly tip: Vector3; readonly direction: Vector3 } {
-      object.getMatrixAt(index, matrix);
-      return {
-        tip: new Vector3().setFromMatrixPosition(matrix),
-        direction: new Vector3(0, 0, -1).transformDirection(matrix),
-      };
-    },
   };
 }

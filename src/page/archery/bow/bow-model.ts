@@ -13,7 +13,7 @@ import {
   Vector3,
 } from 'three';
 import { conjugate, quat, rotate } from 'threepoint/core/math/quat';
-import { add, distance, lerp, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { distance, lerp, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BowView } from 'threepoint-games/archery/archery-state';
 import type { Quality } from '../../scene/renderer';
 import { bendLimb, limbPoints, limbRoot, type MutableLimbPoint, makeLimb, stringBow } from './limb-shape';
@@ -237,7 +237,6 @@ export function createBow(quality: Quality, braceHeight: number) {
   bendLimb(0, sections);
   const { object, riser, limbGeometry, upperString, lowerString, serving } = createBowParts(quality, sections);
   let bend = Number.NaN;
-  const stringPoints = [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)] as const;
   const nock = vec3(0, 0, 0);
   const served = vec3(0, 0, 0);
   const fromBow = quat(0, 0, 0, 1);
@@ -271,21 +270,6 @@ export function createBow(quality: Quality, braceHeight: number) {
       stretch(lowerString, lower, nock);
       // The serving follows the upper half of the bent string.
       stretch(serving, lerp(nock, upper, 0.035 / distance(upper, nock), served), nock);
-      const [top, middle, bottom] = stringPoints;
-      add(position, rotate(orientation, upper, top), top);
-      add(position, rotate(orientation, nock, middle), middle);
-      add(position, rotate(orientation, lower, bottom), bottom);
-    },
-    /** How far the limbs are bent now [rad]; grows with the draw. */
-    get bend(): number {
-      return bend;
-    },
-    /**
-     * The string from the upper tip over the nock point to the lower tip, in the frame of the BowView; the same objects
-     * in every frame.
-     */
-    get stringPoints(): readonly [Vec3, Vec3, Vec3] {
-      return stringPoints;
     },
   };
 }

@@ -65,27 +65,17 @@ const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(leastBe
 const leastBend = -0.5;
 const mostBend = 2.2;
 
-/** A strung bow: how far its limbs bend for each place at which the middle of the string is held. */
-export interface StrungBow {
-  /** The length of the whole string [m]. */
-  readonly stringLength: number;
-  /**
-   * Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the
-   * most bend: the most bend.
-   */
-  bendFor(nock: Vec3): number;
-  /** The tips at a bend: the same objects in every call. */
-  tips(bend: number): Tips;
-}
-
 /** The two ends of the string. */
 interface Tips {
   readonly upper: MutableVec3;
   readonly lower: MutableVec3;
 }
 
-/** Strings a bow so that at rest its string is a straight line `braceHeight` [m] before the grip. */
-export function stringBow(braceHeight: number): StrungBow {
+/**
+ * A strung bow: how far its limbs bend for each place at which the middle of the string is held. Strings a bow so that
+ * at rest its string is a straight line `braceHeight` [m] before the grip.
+ */
+export function stringBow(braceHeight: number) {
   const found: Tips = { upper: vec3(0, 0, 0), lower: vec3(0, 0, 0) };
   const { upper, lower } = found;
   const tips = (bend: number): Tips => {
@@ -101,9 +91,15 @@ export function stringBow(braceHeight: number): StrungBow {
     return distance(upper, held) + distance(lower, held) < stringLength;
   };
   return {
+    /** The length of the whole string [m]. */
     stringLength,
+    /** The tips at a bend: the same objects in every call. */
     tips,
-    bendFor(nock) {
+    /**
+     * Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the
+     * most bend: the most bend.
+     */
+    bendFor(nock: Vec3): number {
       held = nock;
       return bendBefore(isTooFar);
     },

@@ -1,14 +1,7 @@
-import {
-  BoxGeometry,
-  type BufferGeometry,
-  Group,
-  Mesh,
-  MeshBasicMaterial,
-  MeshLambertMaterial,
-  PlaneGeometry,
-} from 'three';
+import { BoxGeometry, type BufferGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
-import { signFont } from '../../scene/boards/lettering';
+import { write } from 'threepoint-ui/vr-panel';
+import { createLabelQuad } from '../../scene/boards/label-quad';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
@@ -22,8 +15,6 @@ const cell = { width: 256, height: 128 };
 export const distanceLabel = (distance: number): string => `${Number(distance.toFixed(1))} m`;
 
 function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[]): void {
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
   labels.forEach((label, row) => {
     const y = row * cell.height;
     context.fillStyle = '#f6f1e2';
@@ -31,9 +22,8 @@ function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[
     context.strokeStyle = '#1d2a33';
     context.lineWidth = 7;
     context.strokeRect(9, y + 9, cell.width - 18, cell.height - 18);
-    context.fillStyle = '#14202a';
-    context.font = `700 74px ${signFont}`;
-    context.fillText(label, cell.width / 2, y + cell.height / 2 + 5, cell.width - 46);
+    const writing = { font: '700 74px', color: '#14202a', align: 'center', baseline: 'middle' } as const;
+    write(context, label, [cell.width / 2, y + cell.height / 2 + 5], { ...writing, most: cell.width - 46 });
   });
 }
 
@@ -64,12 +54,9 @@ function placesOf(distances: readonly number[]): Place[] {
 /** One quad for each sign, each with its part of the texture. */
 function faces(places: readonly Place[], rows: number): BufferGeometry {
   return mergeGeometries(
-    places.map(({ x, z, turn, row }) => {
-      const face = new PlaneGeometry(signWidth, signHeight);
-      const uv = face.getAttribute('uv');
-      for (let i = 0; i < uv.count; i++) uv.setY(i, 1 - (row + 1 - uv.getY(i)) / rows);
-      return face.translate(0, 0, 0.016).rotateY(turn).translate(x, middle, z);
-    }),
+    places.map(({ x, z, turn, row }) =>
+      createLabelQuad(signWidth, signHeight, row, rows).translate(0, 0, 0.016).rotateY(turn).translate(x, middle, z),
+    ),
   );
 }
 

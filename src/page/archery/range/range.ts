@@ -6,7 +6,6 @@ import { createLandscape } from '../../scene/outdoors/landscape';
 import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
 import { createSky } from '../../scene/outdoors/sky';
 import type { Quality } from '../../scene/renderer';
-import type { Surroundings } from '../../scene/surroundings';
 import { createBackstop } from './backstop';
 import { createDistanceSigns } from './distance-signs';
 import { createGround } from './ground';
@@ -14,29 +13,19 @@ import { createTufts } from './tufts';
 import { createZone } from './zone';
 
 /**
- * The place where archery is played, instead of the studio. Its object is in the arena frame, placed in the floor
- * frame.
- */
-export interface Range extends Surroundings {
-  readonly object: Group;
-  setZoneWarning(on: boolean): void;
-  /** Moves what moves by itself; time [s]. */
-  animate(time: number): void;
-}
-
-/**
  * Towards the sun, arena frame: behind the archer's right shoulder, so that the targets are lit and shadows fall ahead.
  */
 const towardsSun = new Vector3(8.5, 11, 7.5);
 
 /**
- * Builds the range: floorFromArena puts its zone and its direction into the room; signs stand at these distances [m].
+ * Builds the place where archery is played, instead of the studio. Its object is in the arena frame; floorFromArena
+ * puts its zone and its direction into the room. Signs stand at these distances [m].
  */
 export function createRange(
   quality: Quality,
   floorFromArena: Transform<'floor', 'arena'>,
   distances: readonly number[],
-): Range {
+) {
   const object = new Group();
   object.name = 'archery range';
   object.position.copy(floorFromArena.position);
@@ -70,6 +59,7 @@ export function createRange(
       floorFromArena,
     ),
     setZoneWarning: zone.setWarning,
+    /** Moves what moves by itself; time [s]. */
     animate: zone.animate,
   };
 }

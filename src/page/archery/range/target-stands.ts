@@ -1,10 +1,9 @@
 import {
   BoxGeometry,
-  BufferGeometry,
+  type BufferGeometry,
   CircleGeometry,
   Color,
   CylinderGeometry,
-  Float32BufferAttribute,
   Group,
   InstancedMesh,
   type Material,
@@ -18,7 +17,9 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
-import { ink, signFont } from '../../scene/boards/lettering';
+import { write } from 'threepoint-ui/vr-panel';
+import { createLabelQuad } from '../../scene/boards/label-quad';
+import { ink } from '../../scene/boards/lettering';
 import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture, type DrawnTexture } from '../../scene/drawn-texture';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
@@ -108,32 +109,10 @@ function standGeometry(target: Target, index: number): BufferGeometry[] {
 
 /** A plate's quad, before its board, with its row of the texture. */
 function plateGeometry(target: Target, row: number, rows: number): BufferGeometry {
-  const plate = plateOf(target);
-  const low = target.radius + gap;
-  const corners = [
-    [-1, 0],
-    [1, 0],
-    [1, 1],
-    [-1, 0],
-    [1, 1],
-    [-1, 1],
-  ] as const;
-  const geometry = new BufferGeometry();
-  geometry.setAttribute(
-    'position',
-    new Float32BufferAttribute(
-      corners.flatMap(([x, y]) => [(x * plate.width) / 2, low + y * plate.height, -0.016]),
-      3,
-    ),
-  );
-  geometry.setAttribute(
-    'uv',
-    new Float32BufferAttribute(
-      corners.flatMap(([x, y]) => [(x + 1) / 2, 1 - (row + 1 - y) / rows]),
-      2,
-    ),
-  );
-  return geometry.applyMatrix4(placeOf(target));
+  const { width, height } = plateOf(target);
+  return createLabelQuad(width, height, row, rows)
+    .translate(0, target.radius + gap + height / 2, -0.016)
+    .applyMatrix4(placeOf(target));
 }
 
 interface Score {
@@ -167,13 +146,11 @@ function paintPlate(context: CanvasRenderingContext2D, row: number, points: numb
   context.strokeStyle = scored === 0 ? ink.text : ink.accentInk;
   context.lineWidth = 6;
   context.strokeRect(9, 9, cell.width - 18, cell.height - 18);
-  context.fillStyle = scored === 0 ? ink.text : ink.accentInk;
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  context.font = `800 108px ${signFont}`;
-  if (scored === 0) context.fillText(String(points), cell.width / 2, cell.height / 2 + 8);
+  const writing = { font: '800 108px', align: 'center', baseline: 'middle' } as const;
+  const middle = cell.height / 2 + 8;
+  if (scored === 0) write(context, String(points), [cell.width / 2, middle], { ...writing, color: ink.text });
   else {
-    context.fillText(String(scored), cell.width * 0.64, cell.height / 2 + 8);
+    write(context, String(scored), [cell.width * 0.64, middle], { ...writing, color: ink.accentInk });
     context.strokeStyle = ink.accentInk;
     context.lineWidth = 17;
     context.lineCap = context.lineJoin = 'round';

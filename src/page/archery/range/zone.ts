@@ -10,7 +10,7 @@ import {
   ShaderMaterial,
 } from 'three';
 import { bothSides } from '../../scene/both-sides';
-import { merged, painted } from '../../scene/painted-geometry';
+import { merged, paintedBox } from '../../scene/painted-geometry';
 import { field } from './field';
 
 const { width, depth } = field.zone;
@@ -22,12 +22,13 @@ function deck(): BufferGeometry {
   const board = width / count;
   const tones = ['#c2a57e', '#b89a72', '#c9ae88', '#b3946b'] as const;
   const boards = Array.from({ length: count }, (_, i) =>
-    painted(
-      new BoxGeometry(board - 0.008, 0.02, depth).translate(-width / 2 + (i + 0.5) * board, -0.006, 0),
-      tones[(i * 3) % tones.length] as string,
+    paintedBox(
+      [board - 0.008, 0.02, depth],
+      [-width / 2 + (i + 0.5) * board, -0.006, 0],
+      tones[(i * 3) % tones.length]!,
     ),
   );
-  const bed = painted(new BoxGeometry(width + 0.1, 0.012, depth + 0.1).translate(0, -0.004, 0), '#4b3d2d');
+  const bed = paintedBox([width + 0.1, 0.012, depth + 0.1], [0, -0.004, 0], '#4b3d2d');
   return merged([bed, ...boards]);
 }
 

@@ -14,14 +14,8 @@ import { ballRadius } from 'threepoint-games/ball/flight';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
 import { createScatter } from '../../scene/outdoors/scatter';
 import { woodColor } from '../../scene/outdoors/wood';
-import { merged, painted } from '../../scene/painted-geometry';
+import { merged, painted, paintedBox } from '../../scene/painted-geometry';
 import { court, seatLooks, trayOf } from './court-plan';
-
-/** Width, height, depth, or where the middle is [m]. */
-type Triple = readonly [number, number, number];
-
-const box = ([w, h, d]: Triple, [x, y, z]: Triple, color: string) =>
-  painted(new BoxGeometry(w, h, d).translate(x, y, z), color);
 
 /** A tray on four legs with a rim in its thrower's colour. */
 function rack(side: 0 | 1, balls: number): BufferGeometry[] {
@@ -30,7 +24,7 @@ function rack(side: 0 | 1, balls: number): BufferGeometry[] {
   const rim = seatLooks[side]?.color ?? '#ffffff';
   const legs = [-1, 1].flatMap((i) =>
     [-1, 1].map((j) =>
-      box(
+      paintedBox(
         [0.045, top - 0.03, 0.045],
         [x + i * (width / 2 - 0.04), (top - 0.03) / 2, z + j * (depth / 2 - 0.04)],
         woodColor(i + 2 * j),
@@ -39,24 +33,22 @@ function rack(side: 0 | 1, balls: number): BufferGeometry[] {
   );
   return [
     ...legs,
-    box([width, 0.03, depth], [x, top - 0.016, z], '#6b4c33'),
-    box([width + 0.03, 0.05, 0.022], [x, top + 0.012, z - depth / 2], rim),
-    box([width + 0.03, 0.05, 0.022], [x, top + 0.012, z + depth / 2], rim),
-    box([0.022, 0.05, depth], [x - width / 2, top + 0.012, z], rim),
-    box([0.022, 0.05, depth], [x + width / 2, top + 0.012, z], rim),
+    paintedBox([width, 0.03, depth], [x, top - 0.016, z], '#6b4c33'),
+    paintedBox([width + 0.03, 0.05, 0.022], [x, top + 0.012, z - depth / 2], rim),
+    paintedBox([width + 0.03, 0.05, 0.022], [x, top + 0.012, z + depth / 2], rim),
+    paintedBox([0.022, 0.05, depth], [x - width / 2, top + 0.012, z], rim),
+    paintedBox([0.022, 0.05, depth], [x + width / 2, top + 0.012, z], rim),
     // A shelf ties the legs together.
-    box([width - 0.06, 0.02, depth - 0.06], [x, 0.26, z], woodColor(3)),
+    paintedBox([width - 0.06, 0.02, depth - 0.06], [x, 0.26, z], woodColor(3)),
   ];
 }
 
 function bench(x: number, z: number, turned: number): BufferGeometry[] {
   const parts = [
-    ...[-0.16, 0, 0.16].map((at, i) => painted(new BoxGeometry(1.7, 0.045, 0.13).translate(0, 0.45, at), woodColor(i))),
-    ...[-0.7, 0.7].map((at) => painted(new BoxGeometry(0.08, 0.43, 0.42).translate(at, 0.215, 0), '#59636b')),
-    ...[0.66, 0.84].map((height, i) =>
-      painted(new BoxGeometry(1.7, 0.11, 0.035).translate(0, height, -0.24), woodColor(i + 1)),
-    ),
-    ...[-0.7, 0.7].map((at) => painted(new BoxGeometry(0.05, 0.5, 0.04).translate(at, 0.65, -0.215), '#59636b')),
+    ...[-0.16, 0, 0.16].map((at, i) => paintedBox([1.7, 0.045, 0.13], [0, 0.45, at], woodColor(i))),
+    ...[-0.7, 0.7].map((at) => paintedBox([0.08, 0.43, 0.42], [at, 0.215, 0], '#59636b')),
+    ...[0.66, 0.84].map((height, i) => paintedBox([1.7, 0.11, 0.035], [0, height, -0.24], woodColor(i + 1))),
+    ...[-0.7, 0.7].map((at) => paintedBox([0.05, 0.5, 0.04], [at, 0.65, -0.215], '#59636b')),
   ];
   return parts.map((part) => part.rotateY(turned).translate(x, 0, z));
 }

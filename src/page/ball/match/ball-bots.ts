@@ -10,7 +10,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
-import { type BallGestureFrame, type BallGestures, createBallGestures } from 'threepoint-games/ball/gestures';
+import { type BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
 import { createHolder } from 'threepoint-games/ball/holder-motion';
 import type { PlayerBody } from 'threepoint-games/ball/player-postures';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
@@ -57,7 +57,7 @@ export interface CourtSight {
 
 /** Creates the gestures of the player on this connection. */
 export function gesturesOf(of: BallConnection): BallGestures {
-  return createBallGestures(() => {
+  return new BallGestures(() => {
     const seen = of.room;
     const seat = seen?.mySeat ?? 0;
     return {

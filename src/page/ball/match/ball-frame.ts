@@ -12,7 +12,7 @@ import type { Side } from 'threepoint/core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallEvent, BallRole, BallState } from 'threepoint-games/ball/ball-state';
+import type { BallEvent, BallPlace, BallRole, BallState } from 'threepoint-games/ball/ball-state';
 import { basketInHands, type Opening } from 'threepoint-games/ball/basket';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import type { BallCue } from 'threepoint-games/ball/gestures';
@@ -41,6 +41,7 @@ export interface PlayerFrame {
   readonly head: Vec3 | null;
   /** The position of a ball in each hand, arena frame; null: the hand is not tracked. */
   readonly palms: Readonly<Record<Side, Vec3 | null>>;
+  /** 1: live; less: a ghost. */
   readonly opacity: number;
 }
 
@@ -66,6 +67,7 @@ export interface BallFrame {
   readonly paused: boolean;
   readonly players: readonly (PlayerFrame | null)[];
   readonly bodies: readonly BodyFrame[];
+  /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
   readonly opening: Opening | null;
   readonly events: readonly BallEvent[];
   /** The page was hidden before this frame, and the events are from that time: their sounds are over. */
@@ -77,50 +79,21 @@ export interface BallFrame {
   readonly aim: Launch | null;
 }
 
-/** What tools may know of a match. */
-export interface BallProbe {
-  readonly name: 'ball';
-  readonly phase: BallState['phase'];
-  readonly end: BallState['end'];
-  readonly score: number;
-  readonly ballsLeft: number;
-  readonly secondsLeft: number;
-  /** Own seat; null: a spectator. */
-  readonly seat: number | null;
-  readonly role: BallRole | null;
-  readonly ready: boolean;
-  readonly rotate: boolean;
-  readonly spectators: number;
-  readonly paused: boolean;
-  readonly held: Readonly<Record<Side, number | null>>;
-  /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
-  readonly aim: number | null;
-  readonly connection: ConnectionStatus['phase'];
-  /** Rounds cut short because the room had forgotten them. */
-  readonly voided: number;
-  /** How often the room has taken this page in: once, and again after each connection that was lost. */
-  readonly welcomes: number;
-  /** How many balls are in each kind of place. */
-  readonly balls: Readonly<Record<'rack' | 'hand' | 'air' | 'floor' | 'basket', number>>;
-  /** The middle of the opening, arena frame [m]. */
-  readonly basket: readonly [number, number, number];
-  readonly people: readonly ({ readonly name: string; readonly bot: boolean; readonly presence: string } | null)[];
-}
-
-/** What tools may know of this frame of a match. */
+/** Returns what tools may know of this frame of a match. */
 export function probeOf(
   { state, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
   connection: BallConnection,
-): BallProbe {
-  const count = (on: string) => state.balls.filter((place) => place.on === on).length;
+) {
+  const count = (on: BallPlace['on']) => state.balls.filter((place) => place.on === on).length;
   const { x, y, z } = opening?.position ?? state.basket.position;
   return {
-    name: 'ball',
+    name: 'ball' as const,
     phase: state.phase,
     end: state.end,
     score: state.score,
     ballsLeft: ballsLeft(state),
     secondsLeft: ballSecondsLeft(state),
+    /** Own seat; null: a spectator. */
     seat: me,
     role,
     ready: me !== null && (state.players[me]?.ready ?? false),
@@ -128,10 +101,14 @@ export function probeOf(
     spectators,
     paused,
     held,
+    /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
     aim: aim && length(aim.velocity),
     connection: connection.status.phase,
+    /** Rounds cut short because the room had forgotten them. */
     voided: connection.room?.voided ?? 0,
+    /** How often the room has taken this page in: once, and again after each connection that was lost. */
     welcomes: connection.room?.welcomes ?? 0,
+    /** How many balls are in each kind of place. */
     balls: {
       rack: count('rack'),
       hand: count('hand'),
@@ -139,10 +116,13 @@ export function probeOf(
       floor: count('floor'),
       basket: count('basket'),
     },
-    basket: [x, y, z],
+    /** The middle of the opening, arena frame [m]. */
+    basket: [x, y, z] as const,
     people: players.map((player) => player && { name: player.name, bot: player.bot, presence: player.presence }),
   };
 }
+
+export type BallProbe = ReturnType<typeof probeOf>;
 
 type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 

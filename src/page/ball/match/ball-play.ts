@@ -18,47 +18,6 @@ import { BallBots, type CourtSight, gesturesOf, play, readyAfter } from './ball-
 import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
 import { joined, SimulatedPlayer } from './simulated-player';
 
-/** A match and its players, without the view. */
-export interface BallPlay {
-  readonly status: ConnectionStatus;
-  readonly room: BallRoomView | null;
-  /** How this page sets up voices with the others; null: not connected yet. */
-  readonly voices: VoiceChannel | null;
-  /**
-   * The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change
-   * yields another object.
-   */
-  readonly floorFromArena: Transform<'floor', 'arena'>;
-  readonly newest: BallFrame | null;
-  /** Receives messages from the room and moves the bots. Call it first in every frame. */
-  begin(time: number): void;
-  /**
-   * Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also
-   * plays the moments between two slow frames, which no device could.
-   */
-  act(time: number, catchUp?: boolean): PlayerInput | null;
-  /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
-  follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
-  /** The solved body of this frame, for the others. */
-  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
-  /**
-   * The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw
-   * nothing.
-   */
-  discontinuity(): void;
-  ready(on: boolean): void;
-  rotate(on: boolean): void;
-  sit(seat: number | null): void;
-  /** Pauses the match's clock, or withdraws the pause. Refused if the room's terms do not allow it. */
-  pause(on: boolean): void;
-  away(on: boolean): void;
-  calibrate(calibration: Calibration): void;
-  /** What the others are to see this player with. */
-  wear(avatar: AvatarRef): void;
-  probe(): BallProbe | null;
-  leave(): void;
-}
-
 export interface BallPlayOptions {
   connect(visitor: Visitor, time: number): BallConnection;
   readonly visitor: Visitor;
@@ -78,7 +37,8 @@ const rematchAfter = 7;
 /** The start of a list that has nothing in it mostly. */
 const none: readonly never[] = [];
 
-class MatchPlay implements BallPlay {
+/** A match and its players, without the view. */
+export class BallPlay {
   newest: BallFrame | null = null;
   private readonly client: RoomClient<BallGame>;
   private readonly sight: CourtSight = { pausedSeconds: 0, opening: null };
@@ -106,6 +66,7 @@ class MatchPlay implements BallPlay {
     return this.client.room;
   }
 
+  /** How this page sets up voices with the others; null: not connected yet. */
   get voices(): VoiceChannel | null {
     return this.connection?.voices ?? null;
   }
@@ -114,10 +75,15 @@ class MatchPlay implements BallPlay {
     return this.client.connection;
   }
 
+  /**
+   * The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change
+   * yields another object.
+   */
   get floorFromArena(): Transform<'floor', 'arena'> {
     return this.client.floorFromArena;
   }
 
+  /** Receives messages from the room and moves the bots. Call it first in every frame. */
   begin(time: number): void {
     if (this.room?.paused && this.begunAt !== null) this.sight.pausedSeconds += time - this.begunAt;
     this.begunAt = time;
@@ -131,12 +97,17 @@ class MatchPlay implements BallPlay {
     this.readyByItself(time);
   }
 
+  /**
+   * Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also
+   * plays the moments between two slow frames, which no device could.
+   */
   act(time: number, catchUp = true): PlayerInput | null {
     if (!this.connection) return null;
     this.gestures ??= gesturesOf(this.connection);
     return this.simulated.act(this.connection, this.gestures, time, catchUp);
   }
 
+  /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null {
     const line = this.connection;
     const before = line?.room;
@@ -181,10 +152,15 @@ class MatchPlay implements BallPlay {
     return this.newest;
   }
 
+  /** Sends the solved body of this frame to the others. */
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
     this.client.sendPose(frame.time, pose, fingers);
   }
 
+  /**
+   * The user's floor frame changes with the next frame: others see a jump without interpolation, and hands throw
+   * nothing.
+   */
   discontinuity(): void {
     this.client.discontinuity();
     this.gestures?.discontinuity();
@@ -202,6 +178,7 @@ class MatchPlay implements BallPlay {
     this.connection?.sit(seat);
   }
 
+  /** Pauses the match's clock, or withdraws the pause. Refused if the room's terms do not allow it. */
   pause(on: boolean): void {
     this.connection?.pause(on);
   }
@@ -216,6 +193,7 @@ class MatchPlay implements BallPlay {
     this.connection?.calibrate(next);
   }
 
+  /** Shows the others this player with another avatar. */
   wear(avatar: AvatarRef): void {
     this.connection?.wear(avatar);
   }
@@ -254,4 +232,4 @@ class MatchPlay implements BallPlay {
   }
 }
 
-export const createBallPlay = (options: BallPlayOptions): BallPlay => new MatchPlay(options);
+export const createBallPlay = (options: BallPlayOptions): BallPlay => new BallPlay(options);

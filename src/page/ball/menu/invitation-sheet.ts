@@ -1,6 +1,6 @@
 import type { RoomLink } from 'threepoint-ui/invitation';
 import { drawQrCode, type QrCode } from 'threepoint-ui/qr-code';
-import { vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+import { vrColors, write, writeLines } from 'threepoint-ui/vr-panel';
 import { bottomButton, fullWidth, type MenuSheet, menuMargin } from '../../activity/activity-menu';
 
 /** The link to a room with its QR code. */
@@ -10,28 +10,23 @@ export interface ShownInvitation extends RoomLink {
 
 /** Code and address fill the width: people read them from a screen that mirrors the headset. */
 function drawInvitation(context: CanvasRenderingContext2D, { room, address, limit, code }: ShownInvitation): void {
+  const { ink, inkSoft } = vrColors;
+  const baseline = 'middle';
   if (typeof code === 'object') drawQrCode(context, code, [menuMargin, 116, fullWidth]);
   else {
-    context.fillStyle = vrColors.inkSoft;
-    context.font = `500 34px ${vrFont}`;
     const text = code === 'loading' ? 'The code is loading.' : 'The code could not be loaded. Use the address.';
-    for (const [index, line] of wrap(context, text, fullWidth).entries())
-      context.fillText(line, menuMargin, 300 + index * 44);
+    writeLines(context, text, [menuMargin, 300, fullWidth], 44, { font: '500 34px', color: inkSoft, baseline });
   }
-  context.fillStyle = vrColors.ink;
-  context.font = `650 52px ${vrFont}`;
-  context.fillText(`Room ${room}`, menuMargin, 732, fullWidth);
-  context.font = `500 34px ${vrFont}`;
-  context.fillStyle = vrColors.ink;
+  write(context, `Room ${room}`, [menuMargin, 732], { font: '650 52px', color: ink, baseline, most: fullWidth });
   // An address has no spaces: it is broken before its query.
   const [place = address, query] = address.split(/(?=\?)/);
-  const lines = query === undefined ? [place] : [place, query];
-  for (const [index, line] of lines.entries()) context.fillText(line, menuMargin, 794 + index * 46, fullWidth);
+  for (const [index, line] of [place, query ?? ''].entries()) {
+    const at = [menuMargin, 794 + index * 46] as const;
+    write(context, line, at, { font: '500 34px', color: ink, baseline, most: fullWidth });
+  }
   if (limit === null) return;
-  context.fillStyle = vrColors.inkSoft;
-  context.font = `400 22px ${vrFont}`;
-  for (const [index, line] of wrap(context, limit, fullWidth).slice(0, 3).entries())
-    context.fillText(line, menuMargin, 888 + index * 28);
+  const small = { font: '400 22px', color: inkSoft, baseline } as const;
+  writeLines(context, limit, [menuMargin, 888, fullWidth], 28, small, 3);
 }
 
 /** Shows other people how to join the room, in the headset. */

@@ -1,4 +1,4 @@
-import { vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { vrColors, write } from 'threepoint-ui/vr-panel';
 import {
   bottomButton,
   buttonGap,
@@ -49,20 +49,17 @@ function playerButtons(player: OtherPlayer, row: number, actions: PlayersSheetAc
 
 /** Name, role and voice of each player above their buttons. */
 function drawPlayers(context: CanvasRenderingContext2D, players: readonly OtherPlayer[]): void {
-  context.textAlign = 'left';
+  const baseline = 'middle';
   for (const [row, { name, role, status }] of players.entries()) {
     const top = playersTop + row * playerHeight;
-    context.fillStyle = vrColors.ink;
-    context.font = `650 40px ${vrFont}`;
-    context.fillText(name, menuMargin + 4, top + 24, fullWidth - 8);
-    context.fillStyle = vrColors.inkSoft;
-    context.font = `500 28px ${vrFont}`;
-    context.fillText([role, status].filter(Boolean).join(' · '), menuMargin + 4, top + 70, fullWidth - 8);
+    const most = fullWidth - 8;
+    write(context, name, [menuMargin + 4, top + 24], { font: '650 40px', color: vrColors.ink, baseline, most });
+    const about = [role, status].filter(Boolean).join(' · ');
+    write(context, about, [menuMargin + 4, top + 70], { font: '500 28px', color: vrColors.inkSoft, baseline, most });
   }
   if (players.length > 0) return;
-  context.fillStyle = vrColors.inkSoft;
-  context.font = `500 34px ${vrFont}`;
-  context.fillText('You are alone here.', menuMargin + 4, playersTop + 24, fullWidth);
+  const alone = { font: '500 34px', color: vrColors.inkSoft, baseline } as const;
+  write(context, 'You are alone here.', [menuMargin + 4, playersTop + 24], alone);
 }
 
 /** Lists the other players in the headset, with buttons to mute and to hide each. */

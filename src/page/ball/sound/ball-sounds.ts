@@ -7,7 +7,6 @@ import type { BallCue } from 'threepoint-games/ball/gestures';
 import { ballSecondsLeft } from 'threepoint-games/ball/state-readings';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
 import {
-  type AudibleStage,
   createSoundStage,
   type Player,
   type Recipe,
@@ -15,19 +14,10 @@ import {
   type SoundStage,
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
+import type { PlayerFrame } from '../match/ball-frame';
 import type { Person } from '../view/board-drawing';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
-
-/** Plays the sounds of the ball game from where they happen, with captions. */
-export interface BallSounds {
-  /** The stage that plays the sounds. It must be unlocked; captions work without it. */
-  readonly stage: AudibleStage;
-  playEvents(played: Played): void;
-  /** Sets the pose of the listener's head, floor frame. */
-  setListener(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void;
-  dispose(): void;
-}
 
 /** One frame of a match for the ears. */
 export interface Played {
@@ -37,7 +27,7 @@ export interface Played {
   readonly me: number | null;
   readonly people: readonly (Person | null)[];
   /** The position of a ball in each of the user's hands, arena frame; null: the hand is not tracked. */
-  readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
+  readonly palms: PlayerFrame['palms'];
 }
 
 const bounceSteps = 4;
@@ -80,11 +70,10 @@ export function placeOf(event: BallEvent, state: BallState): Vec3 | null {
   }
 }
 
-export const createBallSounds = (onCaption: (text: string) => void, createContext?: () => AudioContext): BallSounds =>
-  new CourtSounds(onCaption, createContext);
-
-class CourtSounds implements BallSounds {
+/** Plays the sounds of the ball game from where they happen, with captions. */
+export class BallSounds {
   readonly #onCaption: (text: string) => void;
+  /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: SoundStage;
   #floorFromArena: Transform<'floor', 'arena'> = {
     position: vec3(0, 0, 0),
@@ -115,6 +104,7 @@ class CourtSounds implements BallSounds {
     this.#tick(state, playing);
   }
 
+  /** Sets the pose of the listener's head, floor frame. */
   setListener(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void {
     this.#head = head;
     this.#floorFromArena = floorFromArena;

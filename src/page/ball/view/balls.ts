@@ -6,7 +6,6 @@ import {
   Matrix4,
   MeshLambertMaterial,
   MeshStandardMaterial,
-  type Object3D,
   Quaternion,
   SphereGeometry,
   Vector3,
@@ -34,13 +33,6 @@ import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
 
 /** Returns the position of a ball in a hand, or null if the hand is not tracked. */
 type InHand = (player: number, side: 'left' | 'right') => Vec3 | null;
-
-/** All balls of a match, wherever they are; arena frame. */
-export interface Balls {
-  readonly object: Object3D;
-  /** At a time of the match [s]. */
-  show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void;
-}
 
 /** The looks of the balls of the first rack and of the second. They differ in brightness and in the number of bands. */
 const looks = [
@@ -132,10 +124,8 @@ const gone = new Matrix4().makeScale(0, 0, 0);
 const one = new Vector3(1, 1, 1);
 const upward = new Vector3(0, 1, 0);
 
-/** `most`: a match may have fewer. */
-export const createBalls = (most: number, quality: Quality): Balls => new MatchBalls(most, quality);
-
-class MatchBalls implements Balls {
+/** All balls of a match, wherever they are; arena frame. */
+export class Balls {
   readonly object = new Group();
   /** The balls per rack of the match that is shown. */
   #perRack = 0;
@@ -151,6 +141,7 @@ class MatchBalls implements Balls {
   readonly #rolled = new Quaternion();
   readonly #basketTurn = new Quaternion();
 
+  /** `most`: a match may have fewer. */
   constructor(most: number, quality: Quality) {
     const perRack = ballsPerRack(most);
     const material = createMaterial(quality);
@@ -165,6 +156,7 @@ class MatchBalls implements Balls {
     this.object.add(...this.#meshes, this.#shadows.object);
   }
 
+  /** Shows the balls at a time of the match [s]. */
   show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void {
     this.#perRack = ballsPerRack(state.options.balls);
     let caught = 0;

@@ -1,18 +1,15 @@
 import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
 import { ballsLeft } from 'threepoint-games/ball/state-readings';
 import { rotationForRound } from 'threepoint-games/ball/stations';
-import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
+import { type Writing, widthOf, write } from 'threepoint-ui/vr-panel';
+import { ink, paintCard, paintGround } from '../../scene/boards/lettering';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton, type SheetButton } from '../../scene/boards/sheet';
 import { roleTexts, seatLooks } from '../court/court-plan';
+import type { PlayerFrame } from '../match/ball-frame';
 
 /** A player on a seat, as boards and labels write of them. */
-export interface Person {
-  readonly name: string;
-  readonly bot: boolean;
-  readonly presence: 'here' | 'away' | 'gone';
-  readonly me: boolean;
-}
+export type Person = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me'>;
 
 /** A match as boards show it: the state of this frame and the person on each seat. */
 export interface Standing {
@@ -107,9 +104,7 @@ export function paintBoard(context: CanvasRenderingContext2D, standing: Standing
   });
 
   const left = ballsLeft(state);
-  context.fillStyle = ink.soft;
-  context.font = `700 54px ${signFont}`;
-  context.fillText('BALLS', 64, 430);
+  write(context, 'BALLS', [64, 430], { font: '700 54px', color: ink.soft });
   const total = state.options.balls;
   const step = Math.min(34, 480 / total);
   for (let i = 0; i < total; i++) {
@@ -121,13 +116,8 @@ export function paintBoard(context: CanvasRenderingContext2D, standing: Standing
     context.fill();
     context.stroke();
   }
-  context.textAlign = 'right';
-  context.fillStyle = ink.text;
-  context.font = `800 64px ${signFont}`;
-  context.fillText(String(left), width - 54, 434);
-  context.textAlign = 'left';
-  context.font = `700 60px ${signFont}`;
-  context.fillText(line, 64, 536, width - 128);
+  write(context, String(left), [width - 54, 434], { font: '800 64px', color: ink.text, align: 'right' });
+  write(context, line, [64, 536], { font: '700 60px', color: ink.text, most: width - 128 });
 }
 
 export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';
@@ -169,77 +159,46 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
   const { state, people, me, rotate } = standing;
   const { width, height } = lobbySize;
   paintCard(context, width, height);
-  context.textBaseline = 'alphabetic';
-  context.textAlign = 'center';
   const over = state.phase === 'over';
-  context.fillStyle = ink.soft;
-  context.font = `700 44px ${signFont}`;
-  context.fillText(over ? (state.end === 'time' ? 'Time is up' : 'All balls thrown') : 'Ball game', width / 2, 88);
+  const { balls, seconds } = state.options;
+  const middle = (text: string, y: number, writing: Writing) =>
+    write(context, text, [width / 2, y], { ...writing, align: 'center' });
+  const heading = over ? (state.end === 'time' ? 'Time is up' : 'All balls thrown') : 'Ball game';
+  middle(heading, 88, { font: '700 44px', color: ink.soft });
   if (over) {
-    context.fillStyle = ink.text;
-    context.font = `800 170px ${signFont}`;
     const score = String(state.score);
-    const scoreWidth = context.measureText(score).width;
-    context.font = `700 64px ${signFont}`;
-    const rest = `of ${state.options.balls} caught`;
-    const whole = scoreWidth + 24 + context.measureText(rest).width;
-    context.textAlign = 'left';
-    context.font = `800 170px ${signFont}`;
-    context.fillText(score, (width - whole) / 2, 250);
-    context.fillStyle = ink.soft;
-    context.font = `700 64px ${signFont}`;
-    context.fillText(rest, (width - whole) / 2 + scoreWidth + 24, 250);
+    const rest = `of ${balls} caught`;
+    const scoreWidth = widthOf(context, score, '800 170px');
+    const left = (width - scoreWidth - 24 - widthOf(context, rest, '700 64px')) / 2;
+    write(context, score, [left, 250], { font: '800 170px', color: ink.text });
+    write(context, rest, [left + scoreWidth + 24, 250], { font: '700 64px', color: ink.soft });
   } else {
-    context.fillStyle = ink.text;
-    context.font = `600 46px ${signFont}`;
-    context.fillText('Two players throw, one catches with the basket.', width / 2, 172, width - 128);
-    context.fillStyle = ink.soft;
-    context.font = `600 42px ${signFont}`;
-    context.fillText(
-      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point per catch`,
-      width / 2,
-      240,
-    );
+    const roles = 'Two players throw, one catches with the basket.';
+    middle(roles, 172, { font: '600 46px', color: ink.text, most: width - 128 });
+    const match = `${balls} balls, ${Math.round(seconds)} seconds, a point per catch`;
+    middle(match, 240, { font: '600 42px', color: ink.soft });
   }
   for (const [row, player] of byStation(standing).entries()) {
     paintRow(context, standing, player, rowTop + row * rowHeight);
   }
   const waiting = waitingFor(standing);
-  if (waiting) {
-    context.textAlign = 'center';
-    context.textBaseline = 'middle';
-    context.fillStyle = ink.accent;
-    context.font = `700 38px ${signFont}`;
-    context.fillText(waiting, width / 2, 702, width - 96);
-  }
+  if (waiting) middle(waiting, 702, { font: '700 38px', color: ink.accent, baseline: 'middle', most: width - 96 });
   const buttons = lobbyButtons(standing);
+  const isReady = state.players[me ?? -1]?.ready ?? false;
   for (const button of buttons) {
-    const hover = hovered === button.id;
+    const lit = hovered === button.id;
     if (button.id === 'ready') {
-      const ready = state.players[me ?? -1]?.ready ?? false;
-      const label = ready ? 'Wait for me' : over ? 'Play again' : 'Ready';
-      const look = ready
-        ? { fill: hover ? '#4a6275' : '#34495a', ink: ink.text, ring: ink.text, hovered: hover }
-        : { fill: hover ? ink.accentLift : ink.accent, ink: ink.accentInk, ring: ink.text, hovered: hover };
-      paintButton(context, button, label, look, `800 54px ${signFont}`);
-    } else {
-      const label = button.id === 'rotate' ? `Swap roles: ${rotate ? 'on' : 'off'}` : 'Play here';
-      const look = { fill: hover ? '#4a6275' : '#34495a', ink: ink.text, ring: ink.text, hovered: hover };
-      paintButton(context, button, label, look, `700 ${button.id === 'rotate' ? 42 : 38}px ${signFont}`);
-    }
+      const label = isReady ? 'Wait for me' : over ? 'Play again' : 'Ready';
+      paintButton(context, button, label, { primary: !isReady, hovered: lit, font: '800 54px' });
+    } else if (button.id === 'rotate') {
+      const label = `Swap roles: ${rotate ? 'on' : 'off'}`;
+      paintButton(context, button, label, { hovered: lit, font: '700 42px' });
+    } else paintButton(context, button, 'Play here', { hovered: lit, font: '700 38px' });
   }
   if (me === null) {
-    context.textAlign = 'center';
-    context.textBaseline = 'middle';
-    context.fillStyle = ink.soft;
-    context.font = `600 42px ${signFont}`;
-    context.fillText(
-      people.some((person) => person === null || person.bot)
-        ? 'You are watching. Take a place to play.'
-        : 'You are watching.',
-      width / 2,
-      796,
-    );
+    const isFree = people.some((person) => person === null || person.bot);
+    const text = isFree ? 'You are watching. Take a place to play.' : 'You are watching.';
+    middle(text, 796, { font: '600 42px', color: ink.soft, baseline: 'middle' });
   }
 }
 
@@ -258,28 +217,21 @@ function paintRow(context: CanvasRenderingContext2D, standing: Standing, player:
   context.beginPath();
   context.arc(108, middle, 34, 0, 2 * Math.PI);
   context.fill();
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  context.fillStyle = look?.ink ?? ink.text;
-  context.font = `800 40px ${signFont}`;
-  context.fillText(look?.mark ?? '', 108, middle + 3);
-  context.textAlign = 'left';
-  context.fillStyle = person ? ink.text : ink.soft;
-  context.font = `700 42px ${signFont}`;
+  const baseline = 'middle';
+  const mark = { font: '800 40px', color: look?.ink ?? ink.text, align: 'center', baseline } as const;
+  write(context, look?.mark ?? '', [108, middle + 3], mark);
   const name = person ? (person.me && person.name !== ownName ? `${nameOf(person)} · you` : nameOf(person)) : 'Free';
   const taken = person !== null && (!person.bot || player === me);
-  context.fillText(name, 164, middle - 20, taken ? 520 : 500);
-  context.fillStyle = ink.soft;
-  context.font = `600 32px ${signFont}`;
+  const color = person ? ink.text : ink.soft;
+  write(context, name, [164, middle - 20], { font: '700 42px', color, baseline, most: taken ? 520 : 500 });
   const catches = catchesOf(state, player);
   const role = roleTexts[station] ?? '';
   const scored = state.phase === 'over' && state.players[player]?.role === 'thrower';
-  context.fillText(scored ? `${role}: ${catches} caught` : role, 164, middle + 26, 500);
+  const under = scored ? `${role}: ${catches} caught` : role;
+  write(context, under, [164, middle + 26], { font: '600 32px', color: ink.soft, baseline, most: 500 });
   if (!taken) return;
   const here = person?.presence === 'here';
   const ready = state.players[player]?.ready;
-  context.textAlign = 'right';
-  context.fillStyle = !here ? ink.warning : ready ? ink.good : ink.soft;
-  context.font = `700 38px ${signFont}`;
-  context.fillText(!here ? 'Away' : ready ? '✓ Ready' : 'Not ready', width - 80, middle + 2);
+  const [status, tone] = !here ? ['Away', ink.warning] : ready ? ['✓ Ready', ink.good] : ['Not ready', ink.soft];
+  write(context, status!, [width - 80, middle + 2], { font: '700 38px', color: tone!, align: 'right', baseline });
 }

@@ -1,18 +1,12 @@
 import { Group } from 'three';
-import { createSheet, type Sheet, type SheetSize } from '../../scene/boards/sheet';
+import { createSheet, type SheetSize } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
 import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
 
-/** The sheet in front of the player before and after a match, floor frame of the user. */
-export interface LobbySheet extends Pick<Sheet<LobbyButton>, 'buttonAt' | 'setHovered'> {
-  readonly object: Group;
-  /** eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false. */
-  show(standing: Standing, eyeHeight: number, time: number, inRoom: boolean): void;
-}
-
 const size: SheetSize = { ...lobbySize, metres: 1.3 };
 
-export function createLobbySheet(quality: Quality): LobbySheet {
+/** The sheet in front of the player before and after a match, floor frame of the user. */
+export function createLobbySheet(quality: Quality) {
   const object = new Group();
   object.name = 'lobby';
   object.position.z = -1.9;
@@ -20,10 +14,16 @@ export function createLobbySheet(quality: Quality): LobbySheet {
   object.add(sheet.mesh);
   return {
     object,
-    show(standing, eyeHeight, time, inRoom) {
+    /**
+     * eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false.
+     */
+    show(standing: Standing, eyeHeight: number, time: number, inRoom: boolean): void {
       const { state, people, me, rotate, acting } = standing;
       object.position.y = Math.max(0.75, eyeHeight - 0.16);
-      if (state.phase === 'running' || !inRoom) return sheet.show(null, time);
+      if (state.phase === 'running' || !inRoom) {
+        sheet.show(null, time);
+        return;
+      }
       const { phase, end, score, options, players } = state;
       sheet.show(
         {
@@ -48,3 +48,5 @@ export function createLobbySheet(quality: Quality): LobbySheet {
     setHovered: sheet.setHovered,
   };
 }
+
+export type LobbySheet = ReturnType<typeof createLobbySheet>;

@@ -1,7 +1,8 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { ink, signFont } from '../../scene/boards/lettering';
+import { widthOf, write } from 'threepoint-ui/vr-panel';
+import { ink } from '../../scene/boards/lettering';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
 import { roleTexts, seatLooks } from '../court/court-plan';
@@ -77,9 +78,8 @@ const ringSize = 128;
 const ringScale = 0.86;
 
 /** How wide a label is, and so where its mark is [pixels]. */
-function widthOf(context: CanvasRenderingContext2D, { person, voice }: Pick<Label, 'person' | 'voice'>): number {
-  context.font = `700 54px ${signFont}`;
-  const named = Math.max(context.measureText(nameOf(person)).width, 190) + 132;
+function labelWidth(context: CanvasRenderingContext2D, { person, voice }: Pick<Label, 'person' | 'voice'>): number {
+  const named = Math.max(widthOf(context, nameOf(person), '700 54px'), 190) + 132;
   return Math.min(size.width - 24, named + (voice === 'none' ? 0 : voiceWidth));
 }
 
@@ -92,7 +92,7 @@ function paint(context: CanvasRenderingContext2D, { person, station, voice }: La
   const look = seatLooks[station];
   const name = nameOf(person);
   const under = person.presence === 'here' ? (roleTexts[station] ?? '') : 'Away';
-  const wide = widthOf(context, { person, voice });
+  const wide = labelWidth(context, { person, voice });
   const text = wide - 134 - (voice === 'none' ? 0 : voiceWidth);
   const left = (width - wide) / 2;
   context.fillStyle = 'rgba(16, 24, 33, 0.86)';
@@ -103,18 +103,12 @@ function paint(context: CanvasRenderingContext2D, { person, station, voice }: La
   context.beginPath();
   context.arc(left + 60, height / 2, 36, 0, 2 * Math.PI);
   context.fill();
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  context.fillStyle = look?.ink ?? ink.text;
-  context.font = `800 42px ${signFont}`;
-  context.fillText(look?.mark ?? '', left + 60, height / 2 + 3);
-  context.textAlign = 'left';
-  context.fillStyle = ink.text;
-  context.font = `700 54px ${signFont}`;
-  context.fillText(name, left + 110, height / 2 - 24, text);
-  context.fillStyle = person.presence === 'here' ? ink.soft : ink.warning;
-  context.font = `600 36px ${signFont}`;
-  context.fillText(under, left + 110, height / 2 + 34, text);
+  const baseline = 'middle';
+  const mark = { font: '800 42px', color: look?.ink ?? ink.text, align: 'center', baseline } as const;
+  write(context, look?.mark ?? '', [left + 60, height / 2 + 3], mark);
+  write(context, name, [left + 110, height / 2 - 24], { font: '700 54px', color: ink.text, baseline, most: text });
+  const color = person.presence === 'here' ? ink.soft : ink.warning;
+  write(context, under, [left + 110, height / 2 + 34], { font: '600 36px', color, baseline, most: text });
   if (voice !== 'none') paintMicrophone(context, left + wide - 52, height / 2, voice === 'muted');
   return left + 60;
 }

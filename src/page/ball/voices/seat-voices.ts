@@ -5,7 +5,7 @@ import type { BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BodyFrame } from '../match/ball-frame';
 import type { BlockList } from './block-list';
 import type { VoiceCall } from './voice-call';
-import type { PersonVoice, VoicesProbe } from './voices-state';
+import type { PersonVoice } from './voices-state';
 
 /** A mouth is closed up to the first level (breath, the noise of a room), and open at the second. */
 const mouthClosedAt = 0.35;
@@ -101,7 +101,8 @@ export class SeatVoices {
     return this.#mySeat === null ? 0 : this.mouthOf(this.#mySeat);
   }
 
-  probe(): Pick<VoicesProbe, 'ownLevel' | 'people'> {
+  /** Returns what tools may know of the levels, from 0 to 1. */
+  probe() {
     const room = this.#room();
     return {
       ownLevel: this.#mySeat === null ? 0 : this.levelOf(this.#mySeat),

@@ -22,19 +22,6 @@ export interface PersonVoice {
   readonly hidden: boolean;
 }
 
-/** What tools may know of the voices. */
-export interface VoicesProbe {
-  readonly phase: VoicesState['phase'];
-  readonly muted: boolean;
-  readonly message: string | null;
-  /** All voices at the own ears [dB of full scale]; −120: silence. */
-  readonly loudness: number;
-  /** The loudness of all voices before distance and direction change them [dB of full scale]. */
-  readonly spokenLoudness: number;
-  readonly ownLevel: number;
-  readonly people: readonly (PersonVoice & { readonly seat: number; readonly level: number })[];
-}
-
 /** What everyone reads before they first take part. */
 export const consentText =
   'Voices are sent directly between browsers, so people in the room could learn your network address (IP). Nothing is recorded, and you join muted.';

@@ -7,7 +7,7 @@ import type { BallPlay } from '../match/ball-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
 import { VoiceCall } from './voice-call';
-import type { VoicesProbe, VoicesState } from './voices-state';
+import type { VoicesState } from './voices-state';
 
 export interface VoicesOptions {
   readonly play: Pick<BallPlay, 'room' | 'status' | 'voices'>;
@@ -140,7 +140,11 @@ export class Voices {
     void this.setMuted(!this.#silent);
   }
 
-  probe(): VoicesProbe {
+  /**
+   * Returns what tools may know of the voices. `loudness`: all of them at the own ears [dB of full scale], −120:
+   * silence; `spokenLoudness`: before distance and direction change them.
+   */
+  probe() {
     const { phase, muted, message } = this.state;
     const loudness = this.#call?.loudness() ?? { loudness: -120, spokenLoudness: -120 };
     return { phase, muted, message, ...loudness, ...this.seats.probe() };
@@ -205,3 +209,5 @@ export class Voices {
       .then((renewed) => renewed && this.#call?.configure(this.#configurationOf(renewed)));
   }
 }
+
+export type VoicesProbe = ReturnType<Voices['probe']>;

@@ -1,6 +1,3 @@
-/** What is written in the world is set in the type of the page. */
-export const signFont = 'Inter, "Segoe UI", system-ui, Roboto, sans-serif';
-
 export const ink = {
   text: '#f4f7fb',
   soft: '#b9c6d6',

@@ -1,4 +1,5 @@
-import { ink, signFont } from './lettering';
+import { widthOf, write } from 'threepoint-ui/vr-panel';
+import { ink } from './lettering';
 
 export interface ScoreHeading {
   readonly score: number;
@@ -20,19 +21,11 @@ export function paintScoreHeading(
   context: CanvasRenderingContext2D,
   { score, of, seconds, running }: ScoreHeading,
 ): void {
-  context.textBaseline = 'alphabetic';
-  context.textAlign = 'left';
-  context.fillStyle = ink.soft;
-  context.font = `700 54px ${signFont}`;
-  context.fillText('SCORE', 64, 96);
-  context.fillText('TIME', 664, 96);
-  context.fillStyle = ink.text;
-  context.font = `800 220px ${signFont}`;
-  context.fillText(String(score), 54, 282);
-  const wide = context.measureText(String(score)).width;
-  context.fillStyle = ink.soft;
-  context.font = `700 84px ${signFont}`;
-  context.fillText(`/ ${of}`, 78 + wide, 282);
+  write(context, 'SCORE', [64, 96], { font: '700 54px', color: ink.soft });
+  write(context, 'TIME', [664, 96], { font: '700 54px', color: ink.soft });
+  write(context, String(score), [54, 282], { font: '800 220px', color: ink.text });
+  const wide = widthOf(context, String(score), '800 220px');
+  write(context, `/ ${of}`, [78 + wide, 282], { font: '700 84px', color: ink.soft });
   const late = running && seconds <= lastSeconds;
   if (late) {
     context.fillStyle = ink.warning;
@@ -40,14 +33,11 @@ export function paintScoreHeading(
     context.roundRect(640, 116, 330, 190, 22);
     context.fill();
   }
-  context.fillStyle = late ? ink.accentInk : ink.text;
+  const color = late ? ink.accentInk : ink.text;
   // Three digits must fit into the space of two.
-  const long = seconds >= 100;
-  context.font = `800 ${long ? 132 : 170}px ${signFont}`;
-  context.fillText(`${seconds}`, 660, 270);
-  const clock = context.measureText(`${seconds}`).width;
-  context.font = `700 ${long ? 52 : 64}px ${signFont}`;
-  context.fillText('s', 672 + clock, 270);
+  const [figures, unit] = seconds >= 100 ? ['800 132px', '700 52px'] : ['800 170px', '700 64px'];
+  write(context, `${seconds}`, [660, 270], { font: figures, color });
+  write(context, 's', [672 + widthOf(context, `${seconds}`, figures), 270], { font: unit, color });
 
   context.strokeStyle = ink.line;
   context.lineWidth = 3;

@@ -1,7 +1,9 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
+import { write } from 'threepoint-ui/vr-panel';
 import { createDrawnTexture } from '../drawn-texture';
 import type { Quality } from '../renderer';
+import { ink } from './lettering';
 
 /** A button on a sheet [pixels]. */
 export interface SheetButton<Id extends string> {
@@ -25,20 +27,6 @@ export interface SheetContent<Id extends string> {
   readonly key: string;
   readonly buttons: readonly SheetButton<Id>[];
   paint(context: CanvasRenderingContext2D, hovered: Id | null): void;
-}
-
-/** A sheet in the world with buttons, facing +Z of its own frame. */
-export interface Sheet<Id extends string> {
-  readonly mesh: Mesh;
-  /** Once per frame; null hides it. `time` [s]: on any monotonic clock. */
-  show(content: SheetContent<Id> | null, time: number): void;
-  /**
-   * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been
-   * there for `settlingSeconds`.
-   */
-  buttonAt(origin: Vec3, direction: Vec3): { readonly id: Id; readonly distance: number } | null;
-  /** Lights the button that something points at. */
-  setHovered(id: Id | null): void;
 }
 
 /** The button under a point of the sheet [m, from its middle]. */
@@ -76,7 +64,8 @@ export function createSettling() {
   };
 }
 
-export function createSheet<Id extends string>(size: SheetSize, quality: Quality): Sheet<Id> {
+/** A sheet in the world with buttons, facing +Z of its own frame. */
+export function createSheet<Id extends string>(size: SheetSize, quality: Quality) {
   const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
   const mesh = new Mesh(
     new PlaneGeometry(size.metres, (size.metres * size.height) / size.width),
@@ -105,13 +94,18 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
   const along = new Vector3();
   return {
     mesh,
-    show(content, time) {
+    /** Once per frame; null hides it. `time` [s]: on any monotonic clock. */
+    show(content: SheetContent<Id> | null, time: number): void {
       settling.show(content !== null, time);
       shown = content;
       mesh.visible = content !== null;
       redraw();
     },
-    buttonAt(origin, direction) {
+    /**
+     * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been
+     * there for `settlingSeconds`.
+     */
+    buttonAt(origin: Vec3, direction: Vec3): { readonly id: Id; readonly distance: number } | null {
       if (!shown || !settling.settled) return null;
       mesh.updateWorldMatrix(true, false);
       inverse.copy(mesh.matrixWorld).invert();
@@ -122,11 +116,20 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
       const id = buttonUnder(shown.buttons, size, from.x + along.x * distance, from.y + along.y * distance);
       return id === null ? null : { id, distance };
     },
-    setHovered(id) {
+    /** Lights the button that something points at. */
+    setHovered(id: Id | null): void {
       hovered = id;
       redraw();
     },
   };
+}
+
+/** How a button looks; `primary`: what a reader came for. */
+export interface ButtonLook {
+  readonly primary?: boolean;
+  readonly hovered: boolean;
+  /** Weight and size of its label. */
+  readonly font: string;
 }
 
 /** Paints a pill with a word in it, lit while something points at it. */
@@ -134,21 +137,19 @@ export function paintButton(
   context: CanvasRenderingContext2D,
   { x, y, width, height }: SheetButton<string>,
   label: string,
-  look: { readonly fill: string; readonly ink: string; readonly ring: string; readonly hovered: boolean },
-  font: string,
+  { primary = false, hovered, font }: ButtonLook,
 ): void {
-  context.fillStyle = look.fill;
+  const [fill, lit] = primary ? [ink.accent, ink.accentLift] : ['#34495a', '#4a6275'];
+  context.fillStyle = hovered ? lit : fill;
   context.beginPath();
   context.roundRect(x, y, width, height, height / 2);
   context.fill();
-  if (look.hovered) {
-    context.strokeStyle = look.ring;
+  if (hovered) {
+    context.strokeStyle = ink.text;
     context.lineWidth = 7;
     context.stroke();
   }
-  context.fillStyle = look.ink;
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  context.font = font;
-  context.fillText(label, x + width / 2, y + height / 2 + 4, width - 40);
+  const color = primary ? ink.accentInk : ink.text;
+  const middle = [x + width / 2, y + height / 2 + 4] as const;
+  write(context, label, middle, { font, color, align: 'center', baseline: 'middle', most: width - 40 });
 }

@@ -8,22 +8,6 @@ export type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
 /** All that can be played, by name. */
 export type Recipes = ReadonlyMap<string, Recipe>;
 
-/** Sounds from where they happen, for ears that move; floor frame. */
-export interface SoundStage {
-  /**
-   * Starts the audio, unless it runs; a browser allows it only within a user's gesture. Rejects where there is no
-   * audio.
-   */
-  unlock(): Promise<void>;
-  /** Returns the running audio context without the sounds of the game, for other sounds with the same listener. */
-  open(): Promise<AudioContext>;
-  /** null while the audio rests: it would keep everything and play it at once later. */
-  readonly player: Player | null;
-  setListener(head: Pose<'floor'>): void;
-  setMuted(on: boolean): void;
-  dispose(): void;
-}
-
 /** What the page itself does with a stage. */
 export type AudibleStage = Pick<SoundStage, 'unlock' | 'open' | 'setMuted'>;
 
@@ -124,10 +108,8 @@ function placeListener({ listener, currentTime }: AudioContext, head: Pose<'floo
   listener.upZ.setValueAtTime(upward.z, currentTime);
 }
 
-export function createSoundStage(
-  recipes: Recipes,
-  createContext: () => AudioContext = () => new AudioContext(),
-): SoundStage {
+/** Sounds from where they happen, for ears that move; floor frame. */
+export function createSoundStage(recipes: Recipes, createContext: () => AudioContext = () => new AudioContext()) {
   let player: Player | null = null;
   let muted = false;
   async function awaken(): Promise<Player> {
@@ -145,23 +127,31 @@ export function createSoundStage(
     return player;
   }
   return {
-    get player() {
+    /** null while the audio rests: it would keep everything and play it at once later. */
+    get player(): Player | null {
       return player?.context.state === 'running' ? player : null;
     },
-    async unlock() {
+    /**
+     * Starts the audio, unless it runs; a browser allows it only within a user's gesture. Rejects where there is no
+     * audio.
+     */
+    async unlock(): Promise<void> {
       await (await awaken()).warm();
     },
-    open: async () => (await awaken()).context,
-    setListener(head) {
+    /** Returns the running audio context without the sounds of the game, for other sounds with the same listener. */
+    open: async (): Promise<AudioContext> => (await awaken()).context,
+    setListener(head: Pose<'floor'>): void {
       if (player) placeListener(player.context, head);
     },
-    setMuted(on) {
+    setMuted(on: boolean): void {
       muted = on;
       if (player) player.master.gain.setTargetAtTime(on ? 0 : volume, player.context.currentTime, fadeSeconds);
     },
-    dispose() {
+    dispose(): void {
       void player?.context.close();
       player = null;
     },
   };
 }
+
+export type SoundStage = ReturnType<typeof createSoundStage>;

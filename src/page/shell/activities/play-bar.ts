@@ -1,20 +1,12 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element, pageElement } from 'threepoint-ui/element';
 import type { ActivityPanel, OpenActivity } from '../../activity/activity';
 import { home } from '../activity-registry';
 import type { Activities } from './activities';
 
-export interface PlayBar {
-  /** Updates the bar to the current activity. */
-  show(): void;
-  /** Shows a caption of a sound until the next one; screen readers announce it. */
-  caption(text: string): void;
-}
-
-/** The choice of an activity, and the panel of the current one. */
-export function createPlayBar(
-  region: HTMLElement,
-  activities: Pick<Activities, 'all' | 'name' | 'current' | 'arriving' | 'goTo'>,
-): PlayBar {
+/** The choice of an activity, the panel of the current one, and the banner about the connection to other players. */
+export function createPlayBar(activities: Pick<Activities, 'all' | 'name' | 'current' | 'arriving' | 'goTo'>) {
+  const region = pageElement('play', HTMLElement);
+  const banner = pageElement('banner', HTMLElement);
   const places = [{ name: home, title: 'Mirror' }, ...activities.all].map(({ name, title }) => ({
     name: name as string,
     node: button(title, () => void activities.goTo(name), { 'aria-pressed': 'false' }),
@@ -26,7 +18,8 @@ export function createPlayBar(
   let panel: ActivityPanel | null = null;
 
   return {
-    show() {
+    /** Updates the bar to the current activity. */
+    show(): void {
       const { name: current, arriving } = activities;
       for (const { name, node } of places) {
         node.setAttribute('aria-pressed', String(name === current));
@@ -41,8 +34,18 @@ export function createPlayBar(
       captions.hidden = shown === null;
       panel?.show();
     },
-    caption(text) {
+    /** Shows a caption of a sound until the next one; screen readers announce it. */
+    caption(text: string): void {
       captions.textContent = text;
+    },
+    /** Updates the banner. Writing the same text again would make screen readers announce it again. */
+    showBanner(): void {
+      const text = activities.current?.banner?.() ?? '';
+      if (banner.textContent === text) return;
+      banner.textContent = text;
+      banner.hidden = text === '';
     },
   };
 }
+
+export type PlayBar = ReturnType<typeof createPlayBar>;

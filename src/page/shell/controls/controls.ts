@@ -1,17 +1,18 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { acceptDroppedFiles } from 'threepoint-ui/dropped-files';
 import { pageElement } from 'threepoint-ui/element';
-import { createOverlay } from 'threepoint-ui/overlay';
+import { createOverlay, type FrameReport } from 'threepoint-ui/overlay';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
+import { createPlayBar, type PlayBar } from '../activities/play-bar';
+import { estimatorTexts } from '../estimator-texts';
+import { stageNames } from '../frame-timing';
 import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
-import { frameReport } from './frame-report';
 import { HeadsetControls } from './headset-controls';
 import { Measuring } from './measuring';
 import { MotionExport } from './motion-export';
 import { OpenedFiles } from './opened-files';
 import { createPanelActions } from './panel-actions';
-import { PlayControls } from './play-controls';
 import { isNarrow, WindowLayout } from './window-layout';
 
 /** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
@@ -24,7 +25,7 @@ export class Controls {
   readonly #parts: ControlledParts;
   readonly #measuring: Measuring;
   readonly #files: OpenedFiles;
-  readonly #play: PlayControls;
+  readonly #play: PlayBar;
   readonly #desktop: DesktopControls;
   readonly #inHeadset: HeadsetControls;
   readonly #layout: WindowLayout;
@@ -38,7 +39,7 @@ export class Controls {
     this.#parts = parts;
     this.#measuring = new Measuring(parts);
     this.#files = new OpenedFiles(parts);
-    this.#play = new PlayControls(parts);
+    this.#play = createPlayBar(parts.activities);
     const measuring = this.#measuring;
     const motionExport = new MotionExport(parts);
     const actions = createPanelActions({ ...parts, measuring, motionExport, files: this.#files });
@@ -120,7 +121,7 @@ export class Controls {
   /** What changes by itself: frame times, a replay's progress, a round. */
   #report(): void {
     const { recorder, activities, mocap } = this.#parts;
-    const report = frameReport(this.#parts);
+    const report = this.#frameReport();
     this.#overlay.show(report);
     this.#inHeadset.showReport(report);
     mocap.show();
@@ -128,5 +129,18 @@ export class Controls {
     else if (activities.current) this.#play.show();
     if (activities.current) this.#inHeadset.show();
     this.#play.showBanner();
+  }
+
+  /** What frames cost over the last seconds, and what estimates the body in them. */
+  #frameReport(): FrameReport {
+    const { timing, body, difference } = this.#parts;
+    const summary = timing.summary();
+    return {
+      ...summary,
+      stages: stageNames.map((name) => ({ name, ...summary.stages[name] })),
+      estimator: estimatorTexts[body.estimator].label,
+      provider: body.provider ?? 'no network',
+      fromDevice: difference.report(),
+    };
   }
 }

@@ -16,17 +16,8 @@ export interface PanelOptions extends MeasureRanges {
   readonly palettes: readonly PaletteChoice[];
 }
 
-export interface Panel {
-  readonly open: boolean;
-  /** Opens or closes the panel. The region emits the event `toggle`. */
-  setOpen(open: boolean): void;
-  /** Opens or closes the panel for the user, also on later visits. */
-  toggle(): void;
-  show(state: PanelState): void;
-}
-
 /** The controls of the desktop page, a page behind each tab. */
-export function createPanel(region: HTMLElement, options: PanelOptions, actions: PanelActions): Panel {
+export function createPanel(region: HTMLElement, options: PanelOptions, actions: PanelActions) {
   const pages = [
     createBodyPage(options, actions),
     createAvatarPage(options.palettes, actions),
@@ -53,12 +44,14 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   }
   region.append(element('div', { class: 'panel-bar' }, exit, recentre, opener), content);
   return {
-    get open() {
+    get open(): boolean {
       return !content.hidden;
     },
+    /** Opens or closes the panel. The region emits the event `toggle`. */
     setOpen,
+    /** Opens or closes the panel for the user, also on later visits. */
     toggle,
-    show(state) {
+    show(state: PanelState): void {
       exit.hidden = !state.inSession;
       const label = exitLabel(state.inPassthrough);
       if (exit.textContent !== label) exit.textContent = label;
@@ -66,3 +59,5 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     },
   };
 }
+
+export type Panel = ReturnType<typeof createPanel>;

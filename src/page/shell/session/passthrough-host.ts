@@ -58,7 +58,7 @@ export class PassthroughHost {
       session,
       room: headset.room,
       studio: stage.studio,
-      standMirror: stage.standMirror,
+      standMirror: (x, floor, z, turned) => stage.standMirror(x, floor, z, turned),
       floorSpace: () => headset.tracking?.floorSpace ?? null,
       activity: () => (activities.current && activities.all.find(({ name }) => name === activities.name)) ?? null,
       kept: {

@@ -73,7 +73,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
       refreshRateHz: headset.rateHz,
       input: settings.actor ? 'simulated' : headset.emulator ? 'emulated' : (headset.input ?? 'controllers'),
     }),
-    listenToFrames: timing.listen,
+    listenToFrames: (listener) => timing.listen(listener),
   });
   return { run, runners };
 }

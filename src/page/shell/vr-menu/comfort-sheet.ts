@@ -1,8 +1,7 @@
-import { vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { vrColors, write } from 'threepoint-ui/vr-panel';
 import {
   bottomButton,
-  buttonGap,
-  halfWidth,
+  inColumns,
   type MenuEntry,
   type MenuSheet,
   menuMargin,
@@ -66,24 +65,13 @@ export function comfortSheet(state: ComfortState, actions: ComfortActions): Menu
     heading: 'Comfort',
     content: state,
     buttons: [
-      ...comfortEntries(state, actions).map((entry, index) => ({
-        ...entry,
-        at: [
-          menuMargin + (index % 2) * (halfWidth + buttonGap),
-          top + Math.floor(index / 2) * rowHeight,
-          halfWidth,
-          rowHeight - buttonGap,
-        ] as const,
-        look: 'plain' as const,
-      })),
+      ...inColumns(comfortEntries(state, actions), top, rowHeight),
       bottomButton('close', 'Close', () => actions.close()),
     ],
     draw(context) {
       if (!state.moves) return;
-      context.textAlign = 'right';
-      context.fillStyle = vrColors.inkSoft;
-      context.font = `400 30px ${vrFont}`;
-      context.fillText(`Height: ${height}`, menuWidth - menuMargin - 4, 72);
+      const writing = { font: '400 30px', color: vrColors.inkSoft, align: 'right', baseline: 'middle' } as const;
+      write(context, `Height: ${height}`, [menuWidth - menuMargin - 4, 72], writing);
     },
   };
 }

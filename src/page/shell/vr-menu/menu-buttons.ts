@@ -11,9 +11,8 @@ import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import {
   type ActivityMenu,
   bottomButton,
-  buttonGap,
   fullWidth,
-  halfWidth,
+  inColumns,
   type MenuButton,
   type MenuEntry,
   type MenuSheet,
@@ -132,12 +131,5 @@ export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonl
     ...placeEntries(state, actions),
   ];
   const each = Math.min(112, Math.floor((noticesTop - entriesTop) / Math.ceil(entries.length / 2)));
-  return [
-    ...estimatorButtons(state, actions),
-    ...entries.map((entry, index): MenuButton => {
-      const x = menuMargin + (index % 2) * (halfWidth + buttonGap);
-      const y = entriesTop + Math.floor(index / 2) * each;
-      return { ...entry, at: [x, y, halfWidth, each - buttonGap], look: 'plain' };
-    }),
-  ];
+  return [...estimatorButtons(state, actions), ...inColumns(entries, entriesTop, each)];
 }

@@ -1,5 +1,5 @@
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from 'threepoint-ui/calibration-dialog';
-import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+import { fillRounded, vrColors, write, writeLines } from 'threepoint-ui/vr-panel';
 import { type MenuButton, menuHeight, menuMargin, menuWidth } from '../../activity/activity-menu';
 import { noticesTop, type VrMenuState } from './menu-buttons';
 
@@ -7,14 +7,11 @@ const inner = menuWidth - 2 * menuMargin;
 
 function drawCalibration(context: CanvasRenderingContext2D, step: CalibrationStep): void {
   const over = step.kind === 'done' || step.kind === 'failed';
-  context.textAlign = 'center';
-  context.fillStyle = vrColors.ink;
-  context.font = `500 40px ${vrFont}`;
-  const lines = wrap(context, over ? step.text : calibrationInstruction, inner);
-  for (const [index, line] of lines.entries()) context.fillText(line, menuWidth / 2, 170 + index * 54);
-  context.fillStyle = vrColors.accent;
-  context.font = `650 ${step.kind === 'countdown' ? 180 : 84}px ${vrFont}`;
-  context.fillText(calibrationHeadline(step), menuWidth / 2, 480);
+  const middle = { align: 'center', baseline: 'middle' } as const;
+  const text = over ? step.text : calibrationInstruction;
+  writeLines(context, text, [menuWidth / 2, 170, inner], 54, { font: '500 40px', color: vrColors.ink, ...middle });
+  const font = step.kind === 'countdown' ? '650 180px' : '650 84px';
+  write(context, calibrationHeadline(step), [menuWidth / 2, 480], { font, color: vrColors.accent, ...middle });
   if (step.kind !== 'measuring') return;
   fillRounded(context, [menuMargin, 620, inner, 20], 10, vrColors.lift);
   fillRounded(context, [menuMargin, 620, inner * step.part, 20], 10, vrColors.accent);
@@ -25,19 +22,11 @@ function drawButton(context: CanvasRenderingContext2D, { label, at, look }: Menu
   const plain = hovered && look !== 'off' ? vrColors.liftMore : vrColors.lift;
   fillRounded(context, [x, y, w, h], 22, look === 'chosen' ? vrColors.accent : plain);
   context.globalAlpha = look === 'off' ? 0.45 : 1;
-  context.fillStyle = look === 'chosen' ? vrColors.accentInk : vrColors.ink;
-  context.font = `600 ${w > 300 ? 38 : 30}px ${vrFont}`;
-  context.textAlign = 'center';
-  context.fillText(label, x + w / 2, y + h / 2 + 2, w - 24);
+  const color = look === 'chosen' ? vrColors.accentInk : vrColors.ink;
+  const font = w > 300 ? '600 38px' : '600 30px';
+  const middle = [x + w / 2, y + h / 2 + 2] as const;
+  write(context, label, middle, { font, color, align: 'center', baseline: 'middle', most: w - 24 });
   context.globalAlpha = 1;
-}
-
-function drawNotice(context: CanvasRenderingContext2D, notice: string): void {
-  context.textAlign = 'left';
-  context.fillStyle = vrColors.inkSoft;
-  context.font = `400 22px ${vrFont}`;
-  const lines = wrap(context, notice, inner).slice(0, 3);
-  for (const [index, line] of lines.entries()) context.fillText(line, menuMargin, noticesTop + 8 + index * 28);
 }
 
 /** The whole sheet; hovered: the id of the button that a hand points at, or null. */
@@ -48,15 +37,13 @@ export function drawMenu(
   hovered: string | null,
 ): void {
   fillRounded(context, [2, 2, menuWidth - 4, menuHeight - 4], 40, vrColors.glass, vrColors.line);
-  context.textBaseline = 'middle';
-  context.textAlign = 'left';
-  context.fillStyle = vrColors.inkSoft;
-  context.font = `600 30px ${vrFont}`;
   const { calibration, sheet, notice } = state;
+  const soft = { color: vrColors.inkSoft, baseline: 'middle' } as const;
   const heading = calibration ? 'Calibrate' : (sheet?.heading ?? 'Estimator');
-  context.fillText(heading, menuMargin + 4, 72);
+  write(context, heading, [menuMargin + 4, 72], { font: '600 30px', ...soft });
   if (calibration) drawCalibration(context, calibration);
   else sheet?.draw(context);
   for (const button of buttons) drawButton(context, button, button.id === hovered);
-  if (notice && !calibration && !sheet) drawNotice(context, notice);
+  if (notice && !calibration && !sheet)
+    writeLines(context, notice, [menuMargin, noticesTop + 8, inner], 28, { font: '400 22px', ...soft }, 3);
 }
