@@ -29,7 +29,7 @@ export interface TalkerOptions {
   readonly seldomDrawn?: boolean;
 }
 
-/** Computes four frames a second; runs in the page. Several pages would starve each other, and voices need no frames. */
+/** Computes four frames a second; runs in the page. Several pages would starve each other; voices need no frames. */
 function computeSeldom(): void {
   const waiting = new Map<number, FrameRequestCallback>();
   let last = 0;

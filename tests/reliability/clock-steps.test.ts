@@ -116,7 +116,7 @@ function goesOn(step: number): void {
   test('a ball game with two built-in players goes on, theirs included', () => {
     const host = createBallLoopbackHost({ seed: 5, ball: { seconds: 60 } });
     const play = createBallPlay({
-      connect: host.connect,
+      connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration },
       bots: () => true,
       acting: () => true,

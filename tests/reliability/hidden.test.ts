@@ -13,7 +13,7 @@ const released = { left: allReleased, right: allReleased };
 /** Returns a player in a local room. A player whose headset is off draws no frames. */
 function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, seat: number) {
   const play = createBallPlay({
-    connect: host.connect,
+    connect: (visitor, time) => host.connect(visitor, time),
     visitor: { name, calibration: defaultCalibration, seat },
     bots: () => false,
     acting: () => true,

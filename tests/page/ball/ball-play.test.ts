@@ -28,7 +28,7 @@ function page(options: {
   const { acting = true, bots = true, ball = {}, rateHz = usualHz } = options;
   const host = options.host ?? createBallLoopbackHost({ seed: 3, ball });
   const player: BallPlay = createBallPlay({
-    connect: host.connect,
+    connect: (visitor, time) => host.connect(visitor, time),
     visitor: {
       name: 'Robin',
       calibration: defaultCalibration,

@@ -13,7 +13,7 @@ type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;
 function holder() {
   const host = createBallLoopbackHost();
   const play = createBallPlay({
-    connect: host.connect,
+    connect: (visitor, time) => host.connect(visitor, time),
     visitor: visitor('Cal', { seat: 2 }),
     bots: () => false,
     acting: () => false,

@@ -172,7 +172,7 @@ describe('the ball game without hands', () => {
     const page: Handless = handless((time) => play.act(time, false), { gaze: true });
     const input = new CourtInput({ ...place, pointer: () => page.pointers.steering } as never, () => play);
     const play = createBallPlay({
-      connect: host.connect,
+      connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration, seat: 0 },
       bots: () => true,
       acting: () => input.isSimulated,

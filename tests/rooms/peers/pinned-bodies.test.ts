@@ -4,6 +4,7 @@ import { type Calibration, defaultCalibration } from 'threepoint/core/body/calib
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import { pinning } from 'threepoint/core/estimation/pinning';
 import type { Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity, multiply } from 'threepoint/core/math/quat';
 import { add, addScaled, distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
@@ -94,7 +95,7 @@ function frameOf({ head, nod, bend, aside, rightFoot }: Posture, free: AvatarPos
 
 /** A person in a posture whose body IK solves. */
 function person(posture: Posture) {
-  const [plain, pinned] = [createIk(calibration), createIk(withOffsets(calibration))];
+  const [plain, pinned] = [createIk(calibration), createIk(withOffsets(calibration), { pinning })];
   return {
     calibration,
     pose: null as AvatarPose | null,

@@ -4,6 +4,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import { pinning } from 'threepoint/core/estimation/pinning';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
@@ -157,7 +158,7 @@ function pinnedJoints({ hips, chest, leftFoot, rightFoot }: PinnedSender, free: 
 /** Returns the packet of a person with trackers, whose body IK solves. */
 export async function pinnedPacketOf(pinned: PinnedSender): Promise<SentPacket> {
   const { sender, seen } = pinned;
-  const [plain, estimator] = [createIk(sender.calibration), createIk(withOffsets(sender.calibration))];
+  const [plain, estimator] = [createIk(sender.calibration), createIk(withOffsets(sender.calibration), { pinning })];
   const frames = framesOf(sender).map((frame, i): TrackingFrame => {
     const free = forwardKinematics(skeletonFromCalibration(sender.calibration), poseOf(plain, frame).body!);
     const isSeen = { always: true, lost: i < framesBefore - 5, found: i > framesBefore - 5 }[seen];

@@ -39,7 +39,8 @@ export async function connectionsFor(
 ): Promise<BallPlace> {
   if (room === null) {
     const { pausable: _, ...ball } = terms;
-    return { connect: createBallLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
+    const host = createBallLoopbackHost({ seed, ball });
+    return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
   }
   const [{ RoomAddress }, { tabStorage }] = await Promise.all([
     import('threepoint-rooms/client/room-address'),
