@@ -31,7 +31,8 @@ const roomRules = (folder, rooms, to = `^${folder}/`) =>
     comment: `${folder}/${room} may import ${known.join(', ') || 'no other room'}: anything else would let a change travel upwards.`,
     severity: 'error',
     from: { path: `^${folder}/${room}/` },
-    to: { path: to, pathNot: `^${folder}/(${[room, ...known].join('|')})/` },
+    // A module beside the rooms is for all of them.
+    to: { path: to, pathNot: `^${folder}/((${[room, ...known].join('|')})/|[^/]+$)` },
   }));
 
 const coreRooms = {

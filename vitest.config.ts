@@ -16,7 +16,7 @@ const projects: TestProjectConfiguration[] = [
 export default defineConfig({
   ssr: { resolve: { conditions: ['source', ...defaultServerConditions] } },
   test: {
-    setupFiles: ['tests/property-runs.ts', 'tests/matchers/to-be-same-rotation-as.ts'],
+    setupFiles: ['tests/property-runs.ts', 'tests/restore-globals.ts', 'tests/matchers/to-be-same-rotation-as.ts'],
     // Most files share a process and its loaded modules, which saves a fifth of the time. A test restores what it
     // changes outside itself; stubs are restored automatically.
     unstubGlobals: true,
