@@ -2,8 +2,8 @@ import { ConfigurationError } from 'threepoint-http/configuration-error';
 
 export type Environment = Readonly<Record<string, string | undefined>>;
 
-/** Returns the error of a variable with a wrong value; `must`: what it has to be. */
-export const wrong = (name: string, must: string, found: string): ConfigurationError =>
+/** Returns the ConfigurationError of a variable with a wrong value; `must`: what it has to be. */
+export const wrong = (name: string, must: string, found: string): Error =>
   new ConfigurationError(`The environment variable ${name} must ${must}, not "${found}".`);
 
 /** Returns the parts of a list that is separated by commas. */
