@@ -30,7 +30,8 @@ const playwright = (tests) => async (report) => {
  * The stages: commands (`report`: the file for the runner's results), runner, time limit, and suite: 'day' (npm test),
  * 'full' (npm run test:full), 'training' or 'nightly'. `singleCore`: uses one core, so that another such stage can run
  * at the same time. `waits`: uses all cores but waits for servers and sockets, so that another stage can use one core.
- * `chosen`: the unit tests it runs, by tag.
+ * `after`: a stage that writes the same folders, and ends before this one begins. `chosen`: the unit tests that it
+ * runs, by tag.
  */
 export const stages = {
   // The longest stages come first: two single-core stages run at the same time.
@@ -101,6 +102,7 @@ export const stages = {
   'library-use': {
     suite: 'full',
     singleCore: true,
+    after: 'library',
     commands: () => ['build-packages', 'check-library-use'].map((name) => [process.execPath, `scripts/${name}.mjs`]),
   },
   // The reference of all public packages: every link in a comment leads somewhere.

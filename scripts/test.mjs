@@ -52,12 +52,20 @@ async function runStage(name, { quiet = false } = {}) {
  */
 async function runStages(names) {
   const outcomes = [];
+  const running = new Map();
   const waiting = [...names];
   while (waiting.length > 0) {
     const alone = waiting.findIndex((name) => !stages[name].singleCore);
     const beside = waiting.splice(0, alone === -1 ? waiting.length : alone);
     const lane = async () => {
-      for (let name = beside.shift(); name; name = beside.shift()) outcomes.push(await runStage(name, { quiet: true }));
+      for (let name = beside.shift(); name; name = beside.shift()) {
+        const before = Promise.resolve(running.get(stages[name].after));
+        running.set(
+          name,
+          before.then(() => runStage(name, { quiet: true })),
+        );
+        outcomes.push(await running.get(name));
+      }
     };
     const next = waiting.shift();
     const withNext = next !== undefined && stages[next].waits === true;
