@@ -95,8 +95,8 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
   }
   reportFigures('mutated-avatars', { 'FBX files': files, ...counts, ...costs.figures('FBX') });
   expect(costs.longestMs).toBeLessThan(1000);
-  // Each of some 200 packed arrays leaves tables of up to 130 kB, twice, until the collector runs; a file of 64 kB leaves
-  // 57 MB with Node 20 and 69 MB with Node 24.
+  // Each of some 200 packed arrays leaves tables of up to 130 kB, twice, until the collector runs; a file of 64 kB
+  // leaves 57 MB with Node 20 and 69 MB with Node 24.
   expect(costs.largestMultiple).toBeLessThan(1500);
   expect(counts['FBX refused']).toBeGreaterThan(files / 10);
   expect(counts['FBX read']).toBeGreaterThan(files / 10);
