@@ -3,6 +3,7 @@ import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joint
 import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { button, element } from 'threepoint-ui/element';
+import { labelled } from 'threepoint-ui/fields';
 import { createRunningLine } from 'threepoint-ui/running-line';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
@@ -78,7 +79,7 @@ function choice<Value extends string>(
     ...options.map(([value, text]) => element('option', { value }, text)),
   );
   select.addEventListener('change', () => onChoose(select.value as Value));
-  return { select, node: element('label', {}, element('span', {}, label), select) };
+  return { select, node: labelled(label, select) };
 }
 
 function createErrorTable(labels: Labels) {

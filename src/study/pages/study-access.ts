@@ -1,10 +1,10 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ServerPresence } from 'threepoint-http/server-presence';
 import { button, element } from 'threepoint-ui/element';
+import { chooser } from 'threepoint-ui/fields';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
 import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
-import { chooser } from './fields';
 import { forgetToken, keptToken, signInForm } from './sign-in';
 
 /** The studies of this server, for a page whose user has entered the experimenter's token. */

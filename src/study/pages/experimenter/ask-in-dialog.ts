@@ -1,5 +1,5 @@
 import { button, element } from 'threepoint-ui/element';
-import { labelled } from '../fields';
+import { labelled } from 'threepoint-ui/fields';
 
 /** The content of a dialog and the button that confirms it. */
 interface Question {

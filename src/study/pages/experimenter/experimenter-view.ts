@@ -1,10 +1,10 @@
 import { button, element } from 'threepoint-ui/element';
+import { fileField } from 'threepoint-ui/fields';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { storePreviewPlan } from 'threepoint-ui/preview-plan';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { remarksOn } from '../../model/plan/plan-remarks';
 import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';
-import { fileField } from '../fields';
 import { tableNode } from '../table';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 

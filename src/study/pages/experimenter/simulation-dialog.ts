@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
+import { labelled } from 'threepoint-ui/fields';
 import type { StudyPlan } from '../../model/plan/plan';
-import { labelled } from '../fields';
 import { askInDialog } from './ask-in-dialog';
 import type { Simulation } from './store-simulation';
 

@@ -2,7 +2,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { studyTitle } from '../../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
 import { button, element, pageElement } from 'threepoint-ui/element';
-import { chooser, fileField } from '../fields';
+import { chooser, fileField } from 'threepoint-ui/fields';
 import { StudyAccess } from '../study-access';
 import { openStudyFile } from '../study-file';
 import { paperCheck } from './paper-check';

@@ -1,12 +1,12 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
+import { type Choice, chooser } from 'threepoint-ui/fields';
 import type { StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { cohortViews } from '../../model/results/exported-results';
 import type { Exclusion } from '../../model/results/measures';
 import { studyTables } from '../../model/tables/study-tables';
 import { tidyCsv } from '../../model/tables/tidy-csv';
-import { type Choice, chooser } from '../fields';
 import { frameTimeParts } from './frame-time-results';
 import { overallResults } from './overall-results';
 import { bar } from './result-cells';

@@ -1,5 +1,6 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element, pageElement } from 'threepoint-ui/element';
+import { type Choice, chooser, fileField } from 'threepoint-ui/fields';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
@@ -146,15 +147,17 @@ class PreviewPage {
 
   #controls(): readonly Node[] {
     const walk = this.#walk;
-    const file = element('input', { type: 'file', accept: '.json,application/json', 'aria-label': 'Study file' });
-    file.addEventListener('change', () => {
-      const [chosen] = file.files ?? [];
-      if (chosen) void this.#read(chosen);
-    });
-    const fromServer = choice('Shipped study', ['', ...shipped], '', (name) => {
-      if (name) void this.#read(`${pageFolder()}/studies/${name}`);
-    });
-    const source = [element('label', {}, element('span', {}, 'Study file, or drop one here'), file), fromServer];
+    const source = [
+      fileField(
+        'Study file, or drop one here',
+        'Study file',
+        '.json,application/json',
+        (file) => void this.#read(file),
+      ),
+      chooser('Shipped study', [{ id: '', label: 'Choose …' }, ...shipped.map(choiceOf)], '', (name) => {
+        if (name) void this.#read(`${pageFolder()}/studies/${name}`);
+      }),
+    ];
     if (!walk || !this.#plan) return source;
     const plan = this.#plan;
     const at = (place: 'desk' | 'headset', label: string) =>
@@ -165,9 +168,11 @@ class PreviewPage {
     const languages = languagesOf(plan);
     return [
       ...source,
-      choice('Participant', participantsOf(plan), this.#participant, (participant) => this.#begin(participant)),
+      chooser('Participant', participantsOf(plan).map(choiceOf), this.#participant, (participant) =>
+        this.#begin(participant),
+      ),
       ...(languages.length > 1
-        ? [choice('Language', languages, walk.language, (language) => walk.read(language))]
+        ? [chooser('Language', languages.map(choiceOf), walk.language, (language) => walk.read(language))]
         : []),
       element(
         'div',
@@ -214,13 +219,7 @@ class PreviewPage {
   }
 }
 
-function choice(name: string, values: readonly string[], chosen: string, choose: (value: string) => void): HTMLElement {
-  const options = values.map((value) =>
-    element('option', { value, selected: value === chosen }, value === '' ? 'Choose …' : value),
-  );
-  const select = element('select', { 'aria-label': name }, ...options);
-  select.addEventListener('change', () => choose(select.value));
-  return element('label', {}, element('span', {}, name), select);
-}
+/** Returns the entry of a list for a value that is its own label. */
+const choiceOf = (value: string): Choice => ({ id: value, label: value });
 
 void new PreviewPage().start();

@@ -2,6 +2,7 @@ import 'threepoint-ui/styles/document.css';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element, pageElement } from 'threepoint-ui/element';
+import { labelled } from 'threepoint-ui/fields';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
@@ -18,7 +19,7 @@ const paragraph = (text: string, attributes = {}) => element('p', attributes, te
 /** Returns a field for one line with its label. */
 function field(label: string, attributes: Readonly<Record<string, string | number>>) {
   const input = element('input', { type: 'text', autocomplete: 'off', spellcheck: 'false', ...attributes });
-  return { input, node: element('label', {}, element('span', {}, label), input) };
+  return { input, node: labelled(label, input) };
 }
 
 /** Deletes the data of the participant in this browser; resolves with a sentence about the result. */

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from './element';
 
 /** An entry of a list. */
 export interface Choice {
