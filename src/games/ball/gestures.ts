@@ -19,6 +19,7 @@ import {
 } from 'threepoint/core/math/pose';
 import { type Side, sides } from 'threepoint/core/math/side';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
 import type { HapticPulse } from '../haptic-pulse';
@@ -131,7 +132,7 @@ export class BallGestures {
   private slipped: BallCue[] = [];
   private lastTime = Number.NaN;
   private readonly head = vec3(0, 0, 0);
-  private readonly pose: { -readonly [Key in keyof PoseAction]: PoseAction[Key] };
+  private readonly pose: Mutable<PoseAction>;
   // The frame that is being processed.
   private now: BallGestureSettings;
   private time = 0;

@@ -1,5 +1,6 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import { conjugate, multiply, type Quat, toRotationVector } from 'threepoint/core/math/quat';
+import { median } from 'threepoint/core/math/statistics';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 
 /** The second time scale [s]; the first is one frame. */
@@ -56,7 +57,7 @@ export class NoiseRecorder {
   figures(): NoiseFigures | null {
     const times = this.#times;
     if (times.length < 3) return null;
-    const interval = medianOf(times.slice(1).map((time, index) => time - times[index]!));
+    const interval = median(times.slice(1).map((time, index) => time - times[index]!));
     if (!(interval > 0)) return null;
     const moved = (from: number, to: number) => subtract(this.#positions[to]!, this.#positions[from]!);
     const turned = (from: number, to: number) => rotationFrom(this.#orientations[from]!, this.#orientations[to]!);
@@ -104,7 +105,7 @@ export class NoiseRecorder {
     }
     const squares = [...windows.values()].filter(({ count }) => count >= fewestInWindow);
     if (squares.length < fewestWindows) return null;
-    return Math.sqrt(medianOf(squares.map(({ sum, count }) => sum / (3 * count))) / 6);
+    return Math.sqrt(median(squares.map(({ sum, count }) => sum / (3 * count))) / 6);
   }
 }
 
@@ -128,12 +129,6 @@ function residualVariance(times: readonly number[], values: readonly Vec3[]): nu
     });
   }
   return squares / (3 * count);
-}
-
-function medianOf(values: readonly number[]): number {
-  const sorted = [...values].sort((a, b) => a - b);
-  const half = Math.floor(sorted.length / 2);
-  return sorted.length % 2 === 1 ? sorted[half]! : (sorted[half - 1]! + sorted[half]!) / 2;
 }
 
 const scaled = ({ frame, slow, sway }: NoiseLevels, factor: number): NoiseLevels => ({

@@ -1,3 +1,5 @@
+import { recordOf } from 'threepoint/core/records';
+
 /** The stages of a frame, in the order in which they run. */
 export const stageNames = ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render'] as const;
 export type StageName = (typeof stageNames)[number];
@@ -55,13 +57,12 @@ export interface FrameSummary {
 /** The object is the same in every frame: copy what must stay. */
 export type FrameListener = (spentMs: Readonly<Record<StageName | 'frame', number>>, late: boolean) => void;
 
-const noTimes = (): Record<StageName, number> =>
-  Object.fromEntries(stageNames.map((name) => [name, 0])) as Record<StageName, number>;
+const noTimes = (): Record<StageName, number> => recordOf(stageNames, () => 0);
 
 /** Measures the stages of a frame. A frame only writes numbers into rings; `summary` sorts them. */
 export class FrameTiming {
   readonly #now: () => number;
-  readonly #rings = Object.fromEntries(stageNames.map((name) => [name, makeRing()])) as Record<StageName, Ring>;
+  readonly #rings = recordOf(stageNames, makeRing);
   readonly #spent = noTimes();
   readonly #reported = { ...noTimes(), frame: 0 };
   readonly #total = makeRing();

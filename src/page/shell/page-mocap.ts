@@ -4,7 +4,8 @@ import type { Avatar } from 'threepoint/avatar/avatar';
 import { palettes } from 'threepoint/avatar/palettes';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { recordOf } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
@@ -29,10 +30,7 @@ export interface PageMocapOptions {
   onCovered(): void;
 }
 
-const labels = Object.fromEntries(estimatorNames.map((name) => [name, estimatorTexts[name].label])) as Record<
-  EstimatorName,
-  string
->;
+const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
 
 /** Motion capture on this page; the code for it comes with the first file. */
 export class PageMocap {

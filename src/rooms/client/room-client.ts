@@ -11,6 +11,7 @@ import {
 } from 'threepoint/core/math/pose';
 import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import type { SeatInfo } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from './connection';
@@ -33,8 +34,7 @@ export interface RemotePerson {
   readonly opacity: number;
 }
 
-type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
-type PersonBuffer = Writable<RemotePerson> & { readonly placement: MutableTransform<'floor', 'floor'> };
+type PersonBuffer = Mutable<RemotePerson> & { readonly placement: MutableTransform<'floor', 'floor'> };
 
 const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
 const noSeats: readonly never[] = [];

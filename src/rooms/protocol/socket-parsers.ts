@@ -1,3 +1,5 @@
+import { isObject } from 'threepoint/core/json';
+
 /**
  * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are sent as
  * their bytes alone; all other packets are text: the digit of the packet's type and JSON. Anything else throws, and
@@ -37,7 +39,6 @@ const reservedEvents: ReadonlySet<unknown> = new Set([
   ...['error', 'newListener', 'removeListener'],
 ]);
 
-const isObject = (value: unknown): boolean => typeof value === 'object' && value !== null && !Array.isArray(value);
 const isEvent = (value: unknown): boolean =>
   Array.isArray(value) && typeof value[0] === 'string' && !reservedEvents.has(value[0]);
 

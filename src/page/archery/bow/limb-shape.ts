@@ -1,6 +1,7 @@
 import { bisect } from 'threepoint/core/math/bisection';
 import { smoothstep } from 'threepoint/core/math/damper';
 import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 
 /**
  * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that
@@ -15,7 +16,7 @@ export interface LimbPoint {
 }
 
 /** A point of a limb that its owner overwrites as the limb bends. */
-export type MutableLimbPoint = { -readonly [Key in keyof LimbPoint]: LimbPoint[Key] };
+export type MutableLimbPoint = Mutable<LimbPoint>;
 
 /** The height at which the limbs leave the riser, above and below the grip: y [m]. */
 export const limbRoot = 0.23;

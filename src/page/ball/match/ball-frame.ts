@@ -10,6 +10,7 @@ import {
 } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallEvent, BallPlace, BallRole, BallState } from 'threepoint-games/ball/ball-state';
@@ -123,8 +124,6 @@ export function probeOf(
 }
 
 export type BallProbe = ReturnType<typeof probeOf>;
-
-type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 
 /** What is shown of one seat, and the memory for it. */
 interface SeatView {

@@ -5,6 +5,7 @@ import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Side } from 'threepoint/core/math/side';
+import type { Mutable } from 'threepoint/core/records';
 import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { unjudgedSavings } from 'threepoint/xr/frame-rate';
@@ -52,7 +53,7 @@ export class PageFrame implements FrameParts<XRFrame> {
   readonly #options: PageFrameOptions;
   readonly #replayed: ReplayedBody;
   readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
-  readonly #drawn: { -readonly [Key in keyof AvatarPose]?: AvatarPose[Key] } = { fingers: this.#fingers };
+  readonly #drawn: Partial<Mutable<AvatarPose>> = { fingers: this.#fingers };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
   /** The newest tracked frame as the body has it. */
   #embodied: TrackingFrame | null = null;

@@ -1,6 +1,7 @@
 import type { TrackedFeet } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { farthestTracker, isPlausibleOffset, trackerNames } from '../body/tracker-offsets';
+import type { Mutable } from '../records';
 import { type TrackerMeasuring, trackerMeasuring } from '../tracking/measure-trackers';
 import type { BodyTrackers } from '../tracking/tracking-frame';
 import type { CompletedFrame } from './complete-hands';
@@ -12,7 +13,7 @@ import type { TorsoBones, TorsoPose } from './trunk/fit-torso';
 export class Pins {
   readonly #joints = makeTrackedJointsState();
   readonly #trunk = makePinTrunkState();
-  readonly #feet: { -readonly [Side in keyof TrackedFeet]: TrackedFeet[Side] } = { left: null, right: null };
+  readonly #feet: Mutable<TrackedFeet> = { left: null, right: null };
   #offsets: Calibration['trackerOffsets'];
 
   constructor(calibration: Calibration) {

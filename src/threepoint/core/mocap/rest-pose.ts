@@ -1,5 +1,6 @@
 import { sideSign } from '../body/skeleton';
 import { type Side, sides } from '../math/side';
+import { mean } from '../math/statistics';
 import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
 import { eyesFromHeadJoint, shortestBone } from './mocap-rules.json';
 import type { MappedSkeleton, TruthJoint } from './skeleton-map';
@@ -36,7 +37,6 @@ export function headHeightAtRest(rest: RestPose): number | null {
   });
   if (!rest.has('leftFoot') || legs.length === 0) return null;
   const hips = sides.flatMap((side) => rest.get(`${side}UpperLeg`)?.y ?? []);
-  const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
   return (1 + soleOfLeg) * mean(legs) + rest.get('head')!.y - mean(hips);
 }
 

@@ -5,7 +5,9 @@ import { clamp } from '../math/damper';
 import { type Pose, transformTracked } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
 import { type Side, sides } from '../math/side';
+import { mean } from '../math/statistics';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
+import type { Mutable } from '../records';
 import { type CalibrationFault, calibrationFaults } from './calibration-faults';
 import { headingFromFloor } from './heading';
 import type { TrackerMeasuring, TrackerSample } from './measure-trackers';
@@ -187,7 +189,6 @@ function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): Meas
     const arms = wrists.map(({ side, position }) => reachOf(side, position, headHeight, eyeHeight));
     return arms.every((arm) => arm !== null) ? arms : null;
   };
-  const mean = (lengths: readonly number[]): number => lengths.reduce((sum, arm) => sum + arm, 0) / lengths.length;
   let eyeHeight = headHeight;
   let arms = reaches(eyeHeight);
   if (arms && Math.min(...arms) > SEATED_ARM * headHeight) {
@@ -252,7 +253,7 @@ function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): 
 
 /** Returns each hand's tilt to its straight arm; a hand that turned, or whose wrist was bent, is left out. */
 function tiltsOf(wrists: readonly MeasuredWrist[], headHeight: number, eyeHeight: number): { handTilts?: HandTilts } {
-  const handTilts: { -readonly [Hand in keyof HandTilts]: HandTilts[Hand] } = {};
+  const handTilts: Mutable<HandTilts> = {};
   for (const { side, position, seen } of wrists) {
     const arm = armTo(side, position, headHeight, eyeHeight);
     if (!arm) continue;

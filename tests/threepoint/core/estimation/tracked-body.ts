@@ -3,15 +3,9 @@ import { type TrackerOffset, type TrackerOffsets, trackerNames } from 'threepoin
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { pinning } from 'threepoint/core/estimation/pinning';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import {
-  invertTransform,
-  type MutablePose,
-  makeTransform,
-  type Pose,
-  type TrackedPose,
-  transformPose,
-} from 'threepoint/core/math/pose';
+import { invertTransform, type MutablePose, makeTransform, type Pose, transformPose } from 'threepoint/core/math/pose';
 import { vec3 } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import type { BodyTrackers } from 'threepoint/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 
@@ -38,7 +32,7 @@ export type TrueJoints = { readonly [Name in keyof typeof wornOffsets]?: Pose<'f
 
 /** Returns the poses that trackers worn with `wornOffsets` report for these joints. */
 export function trackersOn(joints: TrueJoints): BodyTrackers {
-  const trackers: { -readonly [Name in keyof BodyTrackers]: TrackedPose } = {};
+  const trackers: Mutable<BodyTrackers> = {};
   for (const name of trackerNames) {
     const joint = joints[name];
     if (!joint) continue;
