@@ -4,9 +4,8 @@
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import ts from 'typescript';
-import { root } from './run-command.mjs';
+import { mainOf, root } from './run-command.mjs';
 
 /** The first words of comments that are sentence fragments. */
 const fragment = /^(Of|As|So|Those|Whose|Whom|Where|The same)\b/;
@@ -155,8 +154,8 @@ export function languageProblems(paths = []) {
   );
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) {
+await mainOf(import.meta.url, () => {
   const problems = languageProblems(process.argv.slice(2));
   for (const { file, line, what } of problems) console.log(`${file}:${line} ${what}`);
   console.log(`${problems.length} problems`);
-}
+});
