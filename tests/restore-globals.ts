@@ -1,6 +1,6 @@
 import { afterAll, vi } from 'vitest';
 
-// Files share a process, and the next file has a `vi` of its own, which knows no stub of this one.
+// Stubs are restored before each test, but the next file of the process loads before its first test.
 afterAll(() => {
   vi.unstubAllGlobals();
   vi.unstubAllEnvs();

@@ -1,6 +1,6 @@
 import { recorderText } from 'threepoint-page/shell/panel/recording-page';
 import { createRunningLine } from 'threepoint-ui/running-line';
-import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { beforeEach, expect, test, vi } from 'vitest';
 
 /** The part of an element that a line of text needs; it counts how often its text was set. */
 class Element {
@@ -24,7 +24,6 @@ class Element {
 }
 
 beforeEach(() => vi.stubGlobal('document', { createElement: () => new Element() }));
-afterEach(() => vi.unstubAllGlobals());
 
 test('a recording is announced when it begins and ends, not with every look at its seconds', () => {
   const line = createRunningLine();

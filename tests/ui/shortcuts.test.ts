@@ -1,5 +1,5 @@
 import { listenToShortcuts } from 'threepoint-ui/shortcuts';
-import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { beforeEach, expect, test, vi } from 'vitest';
 
 let page = new EventTarget();
 let openDialog: object | null = null;
@@ -10,7 +10,6 @@ beforeEach(() => {
   vi.stubGlobal('document', { querySelector: (selector: string) => (selector === 'dialog[open]' ? openDialog : null) });
   vi.stubGlobal('HTMLElement', class {});
 });
-afterEach(() => vi.unstubAllGlobals());
 
 const press = (key: string) =>
   page.dispatchEvent(

@@ -1,8 +1,6 @@
 import type { WebGLRenderer } from 'three';
 import { enterSession } from 'threepoint-page/check/check-session';
-import { afterEach, expect, test, vi } from 'vitest';
-
-afterEach(() => vi.unstubAllGlobals());
+import { expect, test, vi } from 'vitest';
 
 class Session extends EventTarget {
   readonly inputSources = [];

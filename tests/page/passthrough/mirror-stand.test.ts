@@ -2,7 +2,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity, rotate } from 'threepoint/core/math/quat';
 import { up, vec3 } from 'threepoint/core/math/vec3';
 import { MirrorStand, meetsMirror } from 'threepoint-page/passthrough/mirror-stand';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { fakeHeadset, type Seen } from '../../threepoint/xr/fake-headset';
 
 type Place = Pose<'floor'>;
@@ -102,8 +102,6 @@ function room({ floorHeight = 0.02, hitTest = true, anchors = true, handle = und
 
 const fire = (session: XRSession, type: string, inputSource: object, frame: XRFrame) =>
   session.dispatchEvent(Object.assign(new Event(type), { inputSource, frame }));
-
-afterEach(() => vi.unstubAllGlobals());
 
 describe('the mirror in the room of its user', () => {
   test('stands on the real floor that a hit test finds, faces the user, and is anchored and kept', async () => {

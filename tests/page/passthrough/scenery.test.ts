@@ -17,8 +17,9 @@ function widthInRoom(place: Object3D): number {
   return Math.max(-bounds.min.x, bounds.max.x);
 }
 
+drawNowhere();
+
 test('trees, nets, ground and sky of the games stay outside the room of their user', () => {
-  drawNowhere();
   // The signs beside the range, and the pennants beside the court, are the widest that come into the room.
   expect(widthInRoom(createRange('high', origin, [5, 10]).object)).toBeLessThan(5);
   expect(widthInRoom(createCourt('high', 20).object)).toBeLessThan(5);

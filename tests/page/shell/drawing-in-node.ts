@@ -1,4 +1,4 @@
-import { afterAll, vi } from 'vitest';
+import { afterAll } from 'vitest';
 
 /** A 2D context that takes every call and draws nothing. */
 function deafContext(): unknown {
@@ -11,12 +11,10 @@ function deafContext(): unknown {
 
 /**
  * Node has no canvas: what is drawn on one here is drawn nowhere, so that views can be built whose pictures are not the
- * matter. Until the file's tests are over: stubs of vitest are taken back before each test, and views are built for
- * several.
+ * matter. Until the file's tests are over: stubs of vitest are restored before each test, and views are built for
+ * several. Called at the top of a file, not in a test, whose hooks would come too late.
  */
 export function drawNowhere(): void {
-  // Stubs of the file before are taken back before the next test: a document among them would take ours away.
-  vi.unstubAllGlobals();
   const page = { createElement: () => ({ width: 0, height: 0, getContext: deafContext }) };
   Object.defineProperty(globalThis, 'document', { configurable: true, value: page });
   afterAll(() => void Reflect.deleteProperty(globalThis, 'document'));

@@ -25,12 +25,11 @@ import {
 } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
-import { afterAll, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, studioMenu } from './menu-parts';
 
 drawNowhere();
-afterAll(() => vi.unstubAllGlobals());
 
 /** The back of the left hand towards the eyes, its fingers to the right, as one reads a watch. */
 const turnedToFace = fromAxes(

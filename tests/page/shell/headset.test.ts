@@ -1,5 +1,5 @@
 import { Headset, type HeadsetOptions } from 'threepoint-page/shell/headset';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 
 /** Emulated devices that were installed in place of the browser's own. */
 let installed = 0;
@@ -20,8 +20,6 @@ vi.mock('iwer', () => ({
     }
   },
 }));
-
-afterEach(() => vi.unstubAllGlobals());
 
 /** A session that its wearer, or the device, may end at any time. */
 class Session extends EventTarget {

@@ -16,11 +16,9 @@ import { createActor } from 'threepoint-page/emulator/actor';
 import { Pointers } from 'threepoint-page/shell/frame/pointers';
 import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { controller, fakeHeadset, type Input } from '../../threepoint/xr/fake-headset';
-
-afterEach(() => vi.unstubAllGlobals());
 
 const eyes = vec3(0, defaultCalibration.eyeHeight, 0);
 

@@ -6,9 +6,7 @@ import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
 import type { Headset } from 'threepoint-page/shell/headset';
 import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session/session-changes';
 import { Recorder } from 'threepoint-page/studio/recorder';
-import { afterEach, expect, test, vi } from 'vitest';
-
-afterEach(() => vi.unstubAllGlobals());
+import { expect, test, vi } from 'vitest';
 
 const noNetworks = () => Promise.reject(new Error('inverse kinematics needs no network'));
 

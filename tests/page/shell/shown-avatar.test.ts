@@ -10,7 +10,7 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { KnownBones } from 'threepoint-page/shell/known-bones';
 import { createPreferenceStore } from 'threepoint-page/shell/preferences';
 import { ShownAvatar } from 'threepoint-page/shell/shown-avatar';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { builtRig, rigJoints } from '../../threepoint/avatar/built-rig';
 import { smallOldVrm, smallVrm } from '../../threepoint/avatar/small-vrms';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
@@ -96,8 +96,6 @@ function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.r
 }
 
 describe('of files that are asked for one after the other', () => {
-  afterEach(() => vi.unstubAllGlobals());
-
   test('one that another has taken the place of asks for no bones', async () => {
     const letGo = checkFilesHere('first.glb');
     const { avatar } = wardrobe();
@@ -142,12 +140,9 @@ test('a body from a file that comes to the graphics device only in part leaves n
   expect(await avatar.open(new File([await bytes()], 'woman.vrm'))).toBe(false);
   expect(told).toEqual([expect.stringContaining('the graphics device is full')]);
   expect(held).toBe(0);
-  vi.unstubAllGlobals();
 });
 
 describe('a file that is worn with a wrong bone', () => {
-  afterEach(() => vi.unstubAllGlobals());
-
   const rig = builtRig({ nameOf: (bone) => `the ${bone}` });
   const right = { leftHand: 'the leftHand', rightHand: 'the rightHand' };
   const wrong = { leftHand: 'the leftIndexProximal', rightHand: 'the rightIndexProximal' };

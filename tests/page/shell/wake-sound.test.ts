@@ -1,5 +1,5 @@
 import { wakeSound } from 'threepoint-page/shell/activities/wake-sound';
-import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { beforeEach, describe, expect, test, vi } from 'vitest';
 
 let page = new EventTarget();
 let pageDocument = Object.assign(new EventTarget(), { visibilityState: 'visible' });
@@ -12,7 +12,6 @@ beforeEach(() => {
   vi.stubGlobal('document', pageDocument);
   vi.stubGlobal('navigator', { userActivation });
 });
-afterEach(() => vi.unstubAllGlobals());
 
 /** `counts`: whether the browser takes the first of them for a touch of the page. */
 const press = (types: readonly string[], counts = true) => {

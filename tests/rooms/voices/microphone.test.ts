@@ -48,7 +48,6 @@ beforeEach(() => {
 afterEach(() => {
   for (const microphone of open.splice(0)) microphone.close();
   vi.useRealTimers();
-  vi.unstubAllGlobals();
 });
 
 async function opened() {

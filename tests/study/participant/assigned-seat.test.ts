@@ -30,7 +30,6 @@ async function invited() {
   onTestFinished(() => server.close());
   const origin = `http://127.0.0.1:${server.port}`;
   vi.stubGlobal('location', { href: `${origin}/?play=ball` });
-  onTestFinished(() => void vi.unstubAllGlobals());
 
   const experimenter = createExperimenterClient(experimenterToken, origin);
   await experimenter.addStudy(paperPlan(), false);

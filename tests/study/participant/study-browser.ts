@@ -15,7 +15,7 @@ import type { StudyAddressBar, StudyDisplay, StudyPage } from 'threepoint-study/
 import { StudyVisit } from 'threepoint-study/participant/study-visit';
 import type { StudyHost } from 'threepoint-study/participant/trial/study-host';
 import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
-import { expect, onTestFinished, vi } from 'vitest';
+import { expect, vi } from 'vitest';
 import type { StudyServer } from './study-server';
 
 /** A clock that stands until the test lets time pass, and what is to be done by it. */
@@ -247,7 +247,6 @@ export type Tab = Awaited<ReturnType<ReturnType<typeof browser>['open']>>;
 export function browser(server: StudyServer) {
   vi.stubGlobal('indexedDB', new IDBFactory());
   const locks = new Map<string, object>();
-  onTestFinished(() => void vi.unstubAllGlobals());
 
   /** Loads the page with this address; without a word, that of the link of P01. */
   async function open(link: Partial<{ [Part in keyof Invited]: string | null }> & { readonly study?: string } = {}) {

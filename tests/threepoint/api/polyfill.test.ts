@@ -68,7 +68,6 @@ beforeEach(() => {
 
 afterEach(() => {
   uninstall();
-  vi.unstubAllGlobals();
 });
 
 async function begin(): Promise<Session> {

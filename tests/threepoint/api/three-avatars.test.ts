@@ -4,13 +4,9 @@ import { closedHand, type Fingers, flatHand } from 'threepoint/core/body/hand-sh
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { distance } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { changed, mannequin } from '../avatar/glb';
 import { poseOf } from '../core/estimation/drawn';
-
-afterEach(() => {
-  vi.unstubAllGlobals();
-});
 
 describe('an avatar', () => {
   beforeEach(() => {

@@ -1,14 +1,10 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { distance, up } from 'threepoint/core/math/vec3';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { movingPerson } from '../core/estimation/moving-person';
 import { controller } from '../xr/fake-headset';
 import { begin } from './three-session';
-
-afterEach(() => {
-  vi.unstubAllGlobals();
-});
 
 describe('a body in a session of three.js', () => {
   test('recentres: the head stands at the origin and looks ahead, and the renderer draws in the same space', async () => {

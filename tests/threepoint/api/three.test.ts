@@ -9,7 +9,7 @@ import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { toXRBody } from 'threepoint/core/motion/xr-body';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { BodyTrackers, TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { mannequin } from '../avatar/glb';
 import { controller } from '../xr/fake-headset';
 import { begin, left, right } from './three-session';
@@ -29,10 +29,6 @@ const standing: TrackingFrame = {
   leftHand: null,
   rightHand: null,
 };
-
-afterEach(() => {
-  vi.unstubAllGlobals();
-});
 
 describe('a body in a session of three.js', () => {
   test('appears with the session, hands on the controllers, and goes with it', async () => {

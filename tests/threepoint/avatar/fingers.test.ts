@@ -14,13 +14,11 @@ import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { printFigures } from '../../print-figures';
 import { fakeHeadset } from '../xr/fake-headset';
 import { jointAt, type RecordedHand, recordedHands, trackedHand } from '../xr/recorded-hands';
 import { changed, mannequin } from './glb';
-
-afterEach(() => vi.unstubAllGlobals());
 
 const sides = ['left', 'right'] as const;
 

@@ -3,11 +3,9 @@ import type { Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle } from 'threepoint/core/math/quat';
 import { normalise, vec3 } from 'threepoint/core/math/vec3';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { controller, fakeHeadset, type Input } from './fake-headset';
 import { recordedHands, trackedHand } from './recorded-hands';
-
-afterEach(() => vi.unstubAllGlobals());
 
 const wrist: Pose<'floor'> = {
   position: vec3(-0.2, 1.1, -0.4),

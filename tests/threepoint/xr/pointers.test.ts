@@ -4,7 +4,7 @@ import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { bareHand, controller, fakeHeadset, type Input } from './fake-headset';
 
 const at = (x: number, y: number, z: number, orientation = identity): Pose<'floor'> => ({
@@ -39,8 +39,6 @@ function setGap(hand: Input, gap: number): void {
   const thumb = hand.hand!.get('thumb-tip')!.at!;
   tip.at = transformPose<'floor', 'floor'>({ position: vec3(0, gap, 0), orientation: identity }, thumb);
 }
-
-afterEach(() => vi.unstubAllGlobals());
 
 describe('a pointer', () => {
   test('is the ray of a controller, presses once, and is held until the trigger opens', () => {

@@ -1,5 +1,5 @@
 import { describeXrSupport, requestVrSession } from 'threepoint/xr/session';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 
 /** A browser with this much of WebXR. */
@@ -8,8 +8,6 @@ function browser({ secure = true, xr }: { secure?: boolean; xr?: Partial<XRSyste
   vi.stubGlobal('navigator', { xr });
 }
 const failing = (name: string) => (): Promise<never> => Promise.reject(new DOMException('the browser says no', name));
-
-afterEach(() => vi.unstubAllGlobals());
 
 describe('why there is no VR', () => {
   test.each([

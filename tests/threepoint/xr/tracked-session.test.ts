@@ -3,7 +3,7 @@ import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
 import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
-import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { bareHand, controller, fakeHeadset } from './fake-headset';
 
@@ -25,8 +25,6 @@ function tracked() {
     },
   };
 }
-
-afterEach(() => vi.unstubAllGlobals());
 
 describe('poses', () => {
   test('of a head that is not seen, or not a number: no frame, and the next one is whole', () => {
