@@ -36,7 +36,7 @@ export async function withServed<T>(
   }
 }
 
-/** Returns what came of the work of a page of the bench, which takes so long at most [ms]. */
+/** Returns the result of a bench page's work, which takes at most `longestMs`. Throws the error of the page. */
 export async function outcomeOf<Result>(page: Page, longestMs: number): Promise<Result> {
   await page.waitForFunction(() => window.benchOutcome, null, { timeout: longestMs });
   const outcome = await page.evaluate(() => window.benchOutcome);

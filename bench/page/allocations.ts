@@ -8,7 +8,7 @@ import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
 import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { Court } from './court';
-import { tellOutcome } from './outcome';
+import { reportOutcome } from './outcome';
 import { createSenders } from './senders';
 import { openStudio } from './stage';
 import { trackedHandsDevice } from './tracked-hands';
@@ -139,4 +139,4 @@ async function start(): Promise<void> {
     });
 }
 
-void tellOutcome(start);
+void reportOutcome(start);

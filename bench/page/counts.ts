@@ -8,14 +8,14 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { unjudgedSavings } from 'threepoint/xr/frame-rate';
 import { requestVrSession } from 'threepoint/xr/session';
-import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
 import { type Emulator, installEmulator } from 'threepoint-page/emulator/emulator';
 import { type Shot, Stage } from 'threepoint-page/shell/stage';
 import type { DrawnCounts, World, WorldCounts } from '../counts';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
-import { tellOutcome } from './outcome';
+import { reportOutcome } from './outcome';
 import { createSenders } from './senders';
 import { TextureMemory } from './texture-memory';
 import { withoutDevice } from './without-device';
@@ -123,7 +123,7 @@ const larger = (a: DrawnCounts, b: DrawnCounts): DrawnCounts => ({
 async function countArchery(counted: CountedStage): Promise<WorldCounts> {
   const { stage } = counted;
   const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
-  const play = createArcheryPlay(
+  const play = new ArcheryPlay(
     defaultCalibration,
     () => settings,
     () => 7,
@@ -192,4 +192,4 @@ async function countWorlds(): Promise<Record<World, WorldCounts>> {
   };
 }
 
-void tellOutcome(countWorlds);
+void reportOutcome(countWorlds);

@@ -10,13 +10,13 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { parseContract, tensorsOf } from 'threepoint/onnx/model-contract';
 import { createSession } from 'threepoint/onnx/session';
 import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
-import { createFrameTiming, type FrameTiming, stageNames } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming, stageNames } from 'threepoint-page/shell/frame-timing';
 import { measureArchery } from './archery';
 import { measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
 import { measureSixteen } from './crowd';
 import { nextFrame } from './frame-times';
-import { tellOutcome } from './outcome';
+import { reportOutcome } from './outcome';
 import { loadNetwork, openPicture, openStage } from './stage';
 
 /** Blocks of one method alternate in a seeded order, so that other work of the machine meets all of them. */
@@ -249,7 +249,7 @@ class FrameBench {
 
 async function measureFrames() {
   const opening = { learned: await openingCost('learned'), paper: await openingCost('paper') };
-  const timing = createFrameTiming(() => performance.now());
+  const timing = new FrameTiming(() => performance.now());
   const rounds = Number(new URLSearchParams(location.search).get('rounds') ?? usualRounds);
   const bodies = await openBodies(timing);
   const bench = new FrameBench(await openPicture(), bodies, timing);
@@ -275,4 +275,4 @@ const measuredParts = {
 export type PagePart = keyof typeof measuredParts;
 export type PageResult<Part extends PagePart> = Awaited<ReturnType<(typeof measuredParts)[Part]>>;
 
-void tellOutcome(measuredParts[new URLSearchParams(location.search).get('part') as PagePart]);
+void reportOutcome(measuredParts[new URLSearchParams(location.search).get('part') as PagePart]);

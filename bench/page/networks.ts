@@ -7,7 +7,7 @@ import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-reg
 import { quantile } from 'threepoint/core/math/statistics';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { NetworkCost, NetworkWay } from '../networks';
-import { tellOutcome } from './outcome';
+import { reportOutcome } from './outcome';
 
 /** Frames that are measured, after those in which the engine compiles. */
 const measured = 600;
@@ -81,4 +81,4 @@ async function graphicsDevice(): Promise<string> {
   return [vendor, architecture, description].filter(Boolean).join(' ') || 'unnamed';
 }
 
-void tellOutcome(() => measure(new URLSearchParams(location.search).get('way') as NetworkWay));
+void reportOutcome(() => measure(new URLSearchParams(location.search).get('way') as NetworkWay));

@@ -2,15 +2,15 @@ import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 
 declare global {
   interface Window {
-    /** What came of the work of a page of the bench; absent: it goes on. */
+    /** The outcome of a bench page's work; absent: the work goes on. */
     benchOutcome?: { readonly result: unknown } | { readonly error: string };
   }
 }
 
-/** Does the work of this page; what comes of it is for the bench to read. */
-export async function tellOutcome(work: () => Promise<unknown>): Promise<void> {
+/** Does the work of this page, and leaves its result or its error for the bench. */
+export async function reportOutcome(work: () => Promise<unknown>): Promise<void> {
   try {
-    // Workers of the build are refused without.
+    // The browser refuses the build's workers otherwise.
     allowOwnScripts();
     window.benchOutcome = { result: await work() };
   } catch (error) {

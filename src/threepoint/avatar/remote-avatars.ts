@@ -125,7 +125,7 @@ export class RemoteAvatars {
     this.object.name = 'other people';
   }
 
-  /** Draws these people and nobody else, at a time [s] on the clock of the frames. */
+  /** Draws these people and no others, at a time [s] on the clock of the frames. */
   show(people: readonly SeenPerson[], time: number): void {
     this.#now = time;
     const plain = this.#options.plain();
@@ -146,7 +146,7 @@ export class RemoteAvatars {
     }
   }
 
-  /** Returns a person's drawn joints, floor frame of this room [m]; null: nobody with this number is drawn. */
+  /** Returns a person's drawn joints, floor frame of this room [m]; null: no person with this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null {
     const body = this.#bodyOf(id);
     if (!body) return null;
@@ -154,7 +154,7 @@ export class RemoteAvatars {
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
-  /** Returns the avatar that a person is drawn as; null: nobody with this number is drawn. */
+  /** Returns the avatar that a person is drawn as; null: no person with this number is drawn. */
   drawnAs(id: number): AvatarRef | null {
     return this.#bodyOf(id)?.of ?? null;
   }
