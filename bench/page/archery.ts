@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
-import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
 import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
 import type { BenchStage } from './stage';
@@ -24,7 +24,7 @@ export async function measureArchery(stage: BenchStage): Promise<Record<Estimato
   const { renderer, studio, avatar, mirror, camera, estimators } = stage;
   const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
   const rounds = estimatorNames.map((name) => {
-    const play = createArcheryPlay(
+    const play = new ArcheryPlay(
       defaultCalibration,
       () => settings,
       () => 7,

@@ -10,7 +10,7 @@ import { fromAxisAngle } from 'threepoint/core/math/quat';
 import { up, vec3 } from 'threepoint/core/math/vec3';
 import type { Mutable } from 'threepoint/core/records';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { createBallView } from 'threepoint-page/ball/ball-view';
+import { BallView } from 'threepoint-page/ball/ball-view';
 import type { Quality } from 'threepoint-page/scene/renderer';
 import type { Studio } from 'threepoint-page/studio/studio';
 import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
@@ -38,18 +38,18 @@ function arenaFromCirclePlace(place: number, places: number): Transform<'arena',
 /** A ball court that stands still, one's own floor at the first of so many places, and the others on theirs. */
 export class Court {
   readonly #studio: Studio;
-  readonly #view: ReturnType<typeof createBallView>;
+  readonly #view: BallView;
   readonly #others: RemoteAvatars;
   readonly #skeleton: Skeleton = skeletonFromCalibration(defaultCalibration);
   readonly #seen: readonly Mutable<SeenPerson>[];
   readonly #people: SeenPerson[] = [];
-  readonly #shown: Mutable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
+  readonly #shown: Mutable<Parameters<BallView['show']>[0]>;
   #players = new RemotePlayers();
 
   constructor(studio: Studio, mannequin: ArrayBuffer, places: number, quality: Quality = 'low') {
     this.#studio = studio;
     const floorFromArena = invertTransform(arenaFromCirclePlace(0, places));
-    this.#view = createBallView({ quality, balls: 20, onCaption: () => undefined });
+    this.#view = new BallView({ quality, balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
     this.#others = new RemoteAvatars({
       load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),

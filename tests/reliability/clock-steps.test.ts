@@ -8,10 +8,10 @@ import { actorFrame, actorLoopSeconds } from 'threepoint/core/tracking/actor-mot
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { createArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
-import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { ArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
-import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import type { PlayedStep } from 'threepoint-study/model/plan/schedule';
 import { PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
@@ -52,7 +52,7 @@ function page(part: Part) {
       fail: (error) => void faults.push(error),
     },
     body,
-    createFrameTiming(() => stamp),
+    new FrameTiming(() => stamp),
   );
   return {
     faults,
@@ -74,7 +74,7 @@ describe.each(shorterLeaps)(name, { tags: ['full'] }, goesOn);
 
 function goesOn(step: number): void {
   test('a round of archery goes on at once, both times', () => {
-    const play = createArcheryPlay(
+    const play = new ArcheryPlay(
       defaultCalibration,
       () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
       () => 7,
@@ -115,7 +115,7 @@ function goesOn(step: number): void {
 
   test('a ball game with two built-in players goes on, theirs included', () => {
     const host = createBallLoopbackHost({ seed: 5, ball: { seconds: 60 } });
-    const play = createBallPlay({
+    const play = new BallPlay({
       connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration },
       bots: () => true,

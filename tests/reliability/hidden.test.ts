@@ -3,7 +3,7 @@ import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased } from 'threepoint/core/input/button-presses';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';
@@ -12,7 +12,7 @@ const released = { left: allReleased, right: allReleased };
 
 /** Returns a player in a local room. A player whose headset is off draws no frames. */
 function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, seat: number) {
-  const play = createBallPlay({
+  const play = new BallPlay({
     connect: (visitor, time) => host.connect(visitor, time),
     visitor: { name, calibration: defaultCalibration, seat },
     bots: () => false,

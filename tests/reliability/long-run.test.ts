@@ -1,6 +1,6 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { expect, test } from 'vitest';
 import { collectGarbage } from '../collect-garbage';
 import { isNightly } from '../nightly';
@@ -17,7 +17,7 @@ test('what plays and estimates keeps nothing of the rounds that are over', { tag
   const minutes = isNightly ? 20 : 4;
   let seed = 1;
   const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
-  const play = createArcheryPlay(
+  const play = new ArcheryPlay(
     defaultCalibration,
     () => settings,
     () => seed,

@@ -15,7 +15,7 @@ import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
-import { type ArcheryPlay, type ArcheryProbe, createArcheryPlay, probeOf, roundOf } from './archery-play';
+import { ArcheryPlay, type ArcheryProbe, probeOf, roundOf } from './archery-play';
 import { type ArcheryView, createArcheryView } from './archery-view';
 import { lineOf } from './boards/scoreboard-drawing';
 import { eventHaptics } from './sound/archery-haptics';
@@ -47,7 +47,7 @@ export class ArcheryActivity implements OpenActivity {
   constructor(context: ActivityContext) {
     const { quality, stage, body, settings, layout, onCaption } = context;
     this.#context = context;
-    this.play = createArcheryPlay(
+    this.play = new ArcheryPlay(
       body.calibration,
       () => settings,
       () => layout.seed,

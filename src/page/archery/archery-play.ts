@@ -194,6 +194,3 @@ export class ArcheryPlay {
     this.#signalled = true;
   }
 }
-
-export const createArcheryPlay = (...options: ConstructorParameters<typeof ArcheryPlay>): ArcheryPlay =>
-  new ArcheryPlay(...options);

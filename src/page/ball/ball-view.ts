@@ -170,5 +170,3 @@ export class BallView {
     );
   }
 }
-
-export const createBallView = (options: BallViewOptions): BallView => new BallView(options);

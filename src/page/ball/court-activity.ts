@@ -18,7 +18,7 @@ import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../activ
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu } from '../activity/activity-menu';
 import type { CameraScene } from '../scene/desktop-view';
-import { type BallView, createBallView } from './ball-view';
+import { BallView } from './ball-view';
 import { seatLooks } from './court/court-plan';
 import { createCourtAvatars } from './court-avatars';
 import { CourtCamera } from './court-camera';
@@ -26,7 +26,7 @@ import { graspAtCourt } from './court-grasp';
 import { CourtInput } from './court-input';
 import { assignedSeat, type BallPlace, connectionsFor } from './match/ball-connections';
 import type { BallFrame, BallProbe } from './match/ball-frame';
-import { type BallPlay, createBallPlay } from './match/ball-play';
+import { BallPlay } from './match/ball-play';
 import { createMatchClock } from './match/displayed-clock';
 import { playersOf } from './match/player-probe';
 import { BallMenu } from './menu/ball-menu';
@@ -82,7 +82,7 @@ export class CourtActivity implements OpenActivity {
     this.#context = context;
     this.#input = new CourtInput(context, () => this.play ?? null);
     this.#unnamed = place === null && settings.name === '';
-    this.play = createBallPlay({
+    this.play = new BallPlay({
       connect: room.connect,
       visitor: {
         name: place?.participant || settings.name || settings.guestName,
@@ -95,7 +95,7 @@ export class CourtActivity implements OpenActivity {
       steering: () => this.#input.steering(),
       seed: layout.seed,
     });
-    this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
+    this.#view = new BallView({ quality, balls: defaultBallOptions.balls, onCaption });
     this.sound = this.#view.sound;
     this.voices = new Voices({
       play: this.play,

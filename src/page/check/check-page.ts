@@ -7,7 +7,7 @@ import { allowOwnScripts } from 'threepoint-ui/own-scripts';
 import { installEmulator } from '../emulator/emulator';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { fetchBuiltInAvatar } from '../shell/avatar-loader';
-import { createFrameTiming } from '../shell/frame-timing';
+import { FrameTiming } from '../shell/frame-timing';
 import { createNetworkLoader } from '../shell/network-loading';
 import type { CheckStep } from './check-steps';
 import { readCheckSwitches } from './check-switches';
@@ -56,7 +56,7 @@ async function prepareHeadset(
 
 /** Creates the body of the user, which the avatar shows, and loads its networks. */
 async function createBody(worlds: CheckWorlds, onProblem: (sentence: string) => void) {
-  const timing = createFrameTiming(() => performance.now());
+  const timing = new FrameTiming(() => performance.now());
   const body = new BodySolver({
     estimator: 'ik',
     networks: createNetworkLoader({

@@ -13,9 +13,9 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
 import { stations } from 'threepoint-games/ball/stations';
-import { type ArcheryPlay, createArcheryPlay } from '../archery/archery-play';
+import { ArcheryPlay } from '../archery/archery-play';
 import { type ArcheryView, createArcheryView } from '../archery/archery-view';
-import { type BallScene, type BallView, createBallView } from '../ball/ball-view';
+import { type BallScene, BallView } from '../ball/ball-view';
 import type { Quality } from '../scene/renderer';
 import type { Surroundings } from '../scene/surroundings';
 import { createStudio, type Studio } from '../studio/studio';
@@ -58,7 +58,7 @@ export class CheckWorlds {
       distance: -mirrorAhead.z,
       ...(quality === 'low' && { resolution: 400, samples: 0 }),
     });
-    this.#archeryPlay = createArcheryPlay(
+    this.#archeryPlay = new ArcheryPlay(
       defaultCalibration,
       () => archerySettings,
       () => 7,
@@ -69,7 +69,7 @@ export class CheckWorlds {
       distances: this.#archeryPlay.targets.map(({ distance }) => distance),
       onCaption: silent,
     });
-    this.#ball = createBallView({ quality, balls: defaultBallOptions.balls, onCaption: silent });
+    this.#ball = new BallView({ quality, balls: defaultBallOptions.balls, onCaption: silent });
     const floorFromArena = invertTransform(stations[0]!);
     this.#court = this.#ball.placed(floorFromArena);
     this.#ballScene = {

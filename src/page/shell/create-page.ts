@@ -22,7 +22,7 @@ import { PageFrame } from './frame/page-frame';
 import { Pointers } from './frame/pointers';
 import { pressSheetsByMouse } from './frame/sheet-pointing';
 import { TrackingSource } from './frame/tracking-source';
-import { createFrameTiming } from './frame-timing';
+import { FrameTiming } from './frame-timing';
 import { Headset } from './headset';
 import { KnownBones } from './known-bones';
 import { createPageBody } from './page-body';
@@ -46,7 +46,7 @@ export interface PageOptions extends PageContext {
 /** Creates the stage with the user's body, avatar and headset. */
 function createBase(options: PageOptions) {
   const { switches, settings, store, changes, loading } = options;
-  const timing = createFrameTiming(() => performance.now());
+  const timing = new FrameTiming(() => performance.now());
   // Downloads start before anything is built.
   const builtInAvatar = fetchBuiltInAvatar(settings.builtInBody, (part) => loading.report('the avatar', part));
   const pageBody = createPageBody({ ...options, timing });

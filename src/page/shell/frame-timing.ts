@@ -160,6 +160,3 @@ export class FrameTiming {
     return (lateAfterIntervals * 1000) / this.#rateHz;
   }
 }
-
-/** `now`: milliseconds on a monotonic clock. */
-export const createFrameTiming = (now: () => number): FrameTiming => new FrameTiming(now);

@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { allReleased } from 'threepoint/core/input/button-presses';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import { createArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
+import { ArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
 import { expect, test } from 'vitest';
 import { type Posed, posed } from '../../games/archery/bowman';
 
@@ -13,7 +13,7 @@ const frameMs = 1000 / 72;
  * gives them.
  */
 function range(settings: { readonly seconds?: number } = {}) {
-  const play = createArcheryPlay(
+  const play = new ArcheryPlay(
     defaultCalibration,
     () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, ...settings }),
     () => 7,

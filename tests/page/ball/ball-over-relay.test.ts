@@ -8,7 +8,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
-import { type BallPlay, createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { afterAll, expect, test } from 'vitest';
@@ -35,7 +35,7 @@ interface Person {
 function comeIn(port: number, name: string, options: { spectate?: boolean; bots?: boolean } = {}): Person {
   const url = `http://127.0.0.1:${port}`;
   const room = 'over-relay';
-  const play = createBallPlay({
+  const play = new BallPlay({
     connect: (visitor) =>
       createSocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
     visitor: { name, calibration: defaultCalibration, ...(options.spectate && { spectate: true }) },

@@ -6,7 +6,7 @@ import { distance } from 'threepoint/core/math/vec3';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { BallEvent, BallOptions } from 'threepoint-games/ball/ball-state';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import { type BallPlay, createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { describe, expect, it } from 'vitest';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 
@@ -27,7 +27,7 @@ function page(options: {
 }) {
   const { acting = true, bots = true, ball = {}, rateHz = usualHz } = options;
   const host = options.host ?? createBallLoopbackHost({ seed: 3, ball });
-  const player: BallPlay = createBallPlay({
+  const player: BallPlay = new BallPlay({
     connect: (visitor, time) => host.connect(visitor, time),
     visitor: {
       name: 'Robin',

@@ -4,7 +4,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
 import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import { createBallRunner } from 'threepoint-page/ball/ball-runner';
-import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
 import type { PlayedStep } from 'threepoint-study/model/plan/schedule';
 import { type FinishedTrial, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
@@ -81,7 +81,7 @@ async function group({ stopped = false } = {}) {
   let time = 10;
   const pages = await Promise.all(
     people.map(async (participant, seat) => {
-      const play = createBallPlay({
+      const play = new BallPlay({
         connect: room.connect,
         visitor: { name: participant, calibration: defaultCalibration, seat },
         bots: () => false,

@@ -2,14 +2,14 @@ import { Group } from 'three';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3, zero } from 'threepoint/core/math/vec3';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { type BallScene, createBallView } from 'threepoint-page/ball/ball-view';
+import { type BallScene, BallView } from 'threepoint-page/ball/ball-view';
 import { expect, test } from 'vitest';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();
 
 test('a catch is told for a moment, and not once more at the same second of the next match', () => {
-  const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
+  const view = new BallView({ quality: 'low', balls: 20, onCaption: () => undefined });
   const court = view.placed({ position: zero, orientation: identity }).object;
   const state = { ...ballRules.start(['a', 'b', 'c'], 1), phase: 'running' as const, startedAt: 0 };
   const scene = (time: number, pageTime: number): BallScene => ({

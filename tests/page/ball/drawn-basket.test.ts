@@ -3,7 +3,7 @@ import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { add, distance, vec3 } from 'threepoint/core/math/vec3';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { expect, test } from 'vitest';
 import { holding, opening, shownAt, visitor } from '../../rooms/client/people';
 
@@ -12,7 +12,7 @@ type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;
 /** The holder's own page; how far the basket that it draws is from that of the rules [m]. */
 function holder() {
   const host = createBallLoopbackHost();
-  const play = createBallPlay({
+  const play = new BallPlay({
     connect: (visitor, time) => host.connect(visitor, time),
     visitor: visitor('Cal', { seat: 2 }),
     bots: () => false,

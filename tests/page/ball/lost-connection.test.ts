@@ -6,7 +6,7 @@ import { type BallConnectionUpdate, ballClientPolicy } from 'threepoint-games/ba
 import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
 import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import { holdSeconds } from 'threepoint-games/ball/gestures';
-import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import { RoomSession } from 'threepoint-rooms/client/room-session';
 import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
@@ -80,7 +80,7 @@ function court() {
   const told = createTestRoom();
   let wire = new LossyWire(told);
   const open = (line: LossyWire) =>
-    createBallPlay({
+    new BallPlay({
       connect: () => line,
       visitor: visitor('Ann'),
       bots: () => false,

@@ -13,7 +13,7 @@ import { type CameraScene, studioScene } from 'threepoint-page/scene/desktop-vie
 import { Activities } from 'threepoint-page/shell/activities/activities';
 import { activities as registered } from 'threepoint-page/shell/activity-registry';
 import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
-import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session/session-changes';
 import { createRunners } from 'threepoint-page/shell/study/join-study';
 import { menuButtons, type VrMenuActions } from 'threepoint-page/shell/vr-menu/menu-buttons';
@@ -252,7 +252,7 @@ describe('a player who takes the headset off', () => {
     const changes = new SessionChanges({
       headset: { pictureRateHz: 72, visibility: 'none' },
       recorder: new Recorder(),
-      timing: createFrameTiming(() => 0),
+      timing: new FrameTiming(() => 0),
       view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
       body: { startSession: nothing, endSession: nothing, discontinuity: () => activities.current?.discontinuity?.() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },

@@ -2,7 +2,7 @@ import { Body } from 'threepoint/api/body';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createFrameLoop, type FrameParts } from 'threepoint-page/shell/frame/frame-loop';
-import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
 
 /** A frame whose head is as high [m] as its time [s] is long. */
@@ -38,7 +38,7 @@ function running(change: Partial<FrameParts<undefined>> = {}) {
     seen.jumps += 1;
   };
   const body = new Body({ estimator: 'ik', events: { discontinuity } });
-  const timing = createFrameTiming(() => 0);
+  const timing = new FrameTiming(() => 0);
   return { seen, loop: createFrameLoop(parts, body, timing) };
 }
 

@@ -1,4 +1,4 @@
-import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
 
 /** A clock that a test turns by hand [ms]. */
@@ -15,7 +15,7 @@ function handClock() {
 describe('where the time of a frame goes', () => {
   test('each stage gets the time since the mark before it, the frame gets the sum', () => {
     const clock = handClock();
-    const timing = createFrameTiming(clock.now);
+    const timing = new FrameTiming(clock.now);
     for (let frame = 0; frame < 10; frame++) {
       timing.begin(frame * 16);
       clock.pass(1);
@@ -38,7 +38,7 @@ describe('where the time of a frame goes', () => {
 
   test('what a frame leaves for later counts with the next one, the pause before it with none', () => {
     const clock = handClock();
-    const timing = createFrameTiming(clock.now);
+    const timing = new FrameTiming(clock.now);
     for (let frame = 0; frame < 10; frame++) {
       timing.begin(frame * 16);
       clock.pass(2);
@@ -56,7 +56,7 @@ describe('where the time of a frame goes', () => {
 
   test('one slow frame in ten shows in p95, not in p50', () => {
     const clock = handClock();
-    const timing = createFrameTiming(clock.now);
+    const timing = new FrameTiming(clock.now);
     for (let frame = 0; frame < 100; frame++) {
       timing.begin(frame);
       clock.pass(frame % 10 === 0 ? 30 : 5);
@@ -66,7 +66,7 @@ describe('where the time of a frame goes', () => {
   });
 
   test('a frame is missed when it comes later than one and a half intervals of the device', () => {
-    const timing = createFrameTiming(() => 0);
+    const timing = new FrameTiming(() => 0);
     timing.setRate(72);
     for (const timestamp of [0, 14, 28, 56, 70, 112]) {
       timing.begin(timestamp);
@@ -76,7 +76,7 @@ describe('where the time of a frame goes', () => {
   });
 
   test('a pause is no missed frame', () => {
-    const timing = createFrameTiming(() => 0);
+    const timing = new FrameTiming(() => 0);
     timing.begin(0);
     timing.end();
     timing.reset();

@@ -9,9 +9,9 @@ import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
-import { type ArcheryFrame, createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { type ArcheryFrame, ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { CourtInput } from 'threepoint-page/ball/court-input';
-import { createBallPlay } from 'threepoint-page/ball/match/ball-play';
+import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createActor } from 'threepoint-page/emulator/actor';
 import { Pointers } from 'threepoint-page/shell/frame/pointers';
 import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
@@ -64,7 +64,7 @@ type Handless = ReturnType<typeof handless>;
 
 /** Archery in such a session. */
 function range(settings = { gaze: false }) {
-  const play = createArcheryPlay(
+  const play = new ArcheryPlay(
     defaultCalibration,
     () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
     () => 7,
@@ -169,7 +169,7 @@ describe('the ball game without hands', () => {
     const place = { place: null, settings: { actor: false }, headset: { worn: true, emulator: null } };
     const page: Handless = handless((time) => play.act(time, false), { gaze: true });
     const input = new CourtInput({ ...place, pointer: () => page.pointers.steering } as never, () => play);
-    const play = createBallPlay({
+    const play: BallPlay = new BallPlay({
       connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration, seat: 0 },
       bots: () => true,

@@ -2,7 +2,7 @@ import { BodySolver } from 'threepoint/api/body-solver';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { OpenActivity } from 'threepoint-page/activity/activity';
-import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import type { Headset } from 'threepoint-page/shell/headset';
 import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session/session-changes';
 import { Recorder } from 'threepoint-page/studio/recorder';
@@ -24,7 +24,7 @@ function player(recorder = new Recorder()) {
   const changes = new SessionChanges({
     headset,
     recorder,
-    timing: createFrameTiming(() => 0),
+    timing: new FrameTiming(() => 0),
     view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
     body,
     activities: {

@@ -10,7 +10,7 @@ import { createActor } from 'threepoint-page/emulator/actor';
 import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
 import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/frame/page-frame';
 import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
-import { createFrameTiming } from 'threepoint-page/shell/frame-timing';
+import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { cases } from '../../nightly';
@@ -91,11 +91,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     mocap: { frame: () => undefined, aside: 0 },
     passthrough: { update: () => undefined },
   };
-  const loop = createFrameLoop(
-    new PageFrame(parts as unknown as PageFrameOptions),
-    body,
-    createFrameTiming(() => 0),
-  );
+  const loop = createFrameLoop(new PageFrame(parts as unknown as PageFrameOptions), body, new FrameTiming(() => 0));
   return {
     /** Draws a frame, and lets a network that answers later answer. */
     async show(frame: TrackingFrame) {

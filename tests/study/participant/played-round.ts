@@ -1,5 +1,5 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryRunner } from 'threepoint-page/archery/archery-runner';
 import { type FinishedTrial, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { activityServices } from '../../page/activity-services';
@@ -21,7 +21,7 @@ const never = () => false;
 
 /** The built-in archer, and what a study makes them play. */
 export function studiedArcher(seed: number) {
-  const play = createArcheryPlay(
+  const play = new ArcheryPlay(
     defaultCalibration,
     () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),
     () => seed,

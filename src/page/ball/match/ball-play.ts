@@ -231,5 +231,3 @@ export class BallPlay {
     }
   }
 }
-
-export const createBallPlay = (options: BallPlayOptions): BallPlay => new BallPlay(options);
