@@ -119,58 +119,66 @@ function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number):
   return rest;
 }
 
+/** Returns why height and arm span of joints at rest [m] are no person's; null: they are, or there are no legs. */
+function bodyComplaint(rest: RestPose): string | null {
+  const eyeHeight = eyeHeightAtRest(rest);
+  return eyeHeight === null ? null : calibrationComplaint({ eyeHeight, armSpan: armSpanAtRest(rest) });
+}
+
 /** Whether joints at rest [m] have the size of a person. */
 function isPersonSized(rest: RestPose): boolean {
   const [least, most] = armLength as [number, number];
   const arm = armAtRest(rest, 'left');
-  const eyeHeight = eyeHeightAtRest(rest);
-  if (!(least < arm && arm < most)) return false;
-  return eyeHeight === null || calibrationComplaint({ eyeHeight, armSpan: armSpanAtRest(rest) }) === null;
+  return least < arm && arm < most && bodyComplaint(rest) === null;
 }
 
-/**
- * Returns metres per unit: the map's, else the first known unit in which the body has a person's size, else the scale
- * that gives it an average height, or average arms if it has no legs. `note`: what was assumed; null: metres,
- * centimetres or the map's.
- */
-export function unitOf(
-  file: FileMotion,
-  skeleton: MappedSkeleton,
-): { readonly metres: number; readonly note: string | null } {
-  if (skeleton.scale) return { metres: skeleton.scale, note: null };
-  const known = units.find((metres) => isPersonSized(restInMetres(file, skeleton, metres)));
-  if (known !== undefined) {
-    const name = unitNames[known];
-    return { metres: known, note: name === undefined ? null : `its unit was taken to be that of ${name}` };
-  }
+/** The unit of a file, and what was assumed of it; null: metres, centimetres or the map's. */
+interface FileUnit {
+  readonly metres: number;
+  readonly note: string | null;
+}
+
+/** Returns the scale that gives a body an average height, or average arms if it has no legs. */
+function averageUnit(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
   const rest = restInMetres(file, skeleton, 1);
   const head = headHeightAtRest(rest);
+  const { eyeHeight } = defaultCalibration;
   const arm = personArmLength(defaultCalibration);
-  const metres =
-    head === null ? arm / armAtRest(rest, 'left') : (defaultCalibration.eyeHeight - eyesFromHeadJoint[1]!) / head;
+  const [metres, size] =
+    head === null
+      ? [arm / armAtRest(rest, 'left'), `arms of ${arm.toFixed(2)} m`]
+      : [(eyeHeight - eyesFromHeadJoint[1]!) / head, `a height of ${statureFromEyeHeight(eyeHeight).toFixed(2)} m`];
   if (!(metres > 0 && metres < Infinity)) throw new Error('its bones have no length');
-  const scaled = restInMetres(file, skeleton, metres);
-  const complaint =
-    head === null
-      ? null
-      : calibrationComplaint({ eyeHeight: eyeHeightAtRest(scaled)!, armSpan: armSpanAtRest(scaled) });
-  const size =
-    head === null
-      ? `arms of ${arm.toFixed(2)} m`
-      : `a height of ${statureFromEyeHeight(defaultCalibration.eyeHeight).toFixed(2)} m`;
+  const complaint = bodyComplaint(restInMetres(file, skeleton, metres));
   if (complaint)
     throw new Error(`its unit is unknown, and its body is no person’s when it is scaled to ${size}: ${complaint}`);
   return { metres, note: `its unit is unknown: its body was scaled to ${size}` };
 }
 
 /**
- * Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is no
- * person's.
+ * Returns the map's unit, else the first known one in which the body has a person's size, else the one that gives it an
+ * average size. Throws a sentence where the body is no person's then.
  */
-export function* toOurJoints(file: FileMotion, rateHz: number, skeleton: MappedSkeleton): Generator<number, OurMotion> {
+export function unitOf(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
+  if (skeleton.scale) return { metres: skeleton.scale, note: null };
+  const metres = units.find((unit) => isPersonSized(restInMetres(file, skeleton, unit)));
+  if (metres === undefined) return averageUnit(file, skeleton);
+  const name = unitNames[metres];
+  return { metres, note: name === undefined ? null : `its unit was taken to be that of ${name}` };
+}
+
+/**
+ * Brings a file's joints into ours; `unit`: its unit [m]. Yields the share [0, 1] that is done. Throws a sentence where
+ * its skeleton is no person's.
+ */
+export function* toOurJoints(
+  file: FileMotion,
+  rateHz: number,
+  skeleton: MappedSkeleton,
+  unit: number,
+): Generator<number, OurMotion> {
   const { columns, between, floor, motionFloor } = skeleton;
   const restFromFloor = conjugate(floor);
-  const unit = unitOf(file, skeleton).metres;
   const rest = restInMetres(file, skeleton, unit);
   checkRest(rest, skeleton);
   const wrists: Partial<Record<TrackedJoint, Quat>> = {

@@ -163,9 +163,9 @@ export function* readOurMotion(
       throw new Error(
         `it has ${Number(rate.toPrecision(3))} frames a second; motion of ${lowestRateHz} to ${highestRateHz} is read`,
       );
-    const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton), 0.75, 1);
-    const unit = unitOf(file, skeleton).note;
-    return { motion, notes: [...file.notes, ...notes, ...(unit === null ? [] : [unit])], doubts: doubtsOf(motion) };
+    const unit = unitOf(file, skeleton);
+    const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton, unit.metres), 0.75, 1);
+    return { motion, notes: [...file.notes, ...notes, ...(unit.note ? [unit.note] : [])], doubts: doubtsOf(motion) };
   } catch (error) {
     throw faultIn(source.name, error);
   }
