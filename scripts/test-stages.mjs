@@ -27,11 +27,16 @@ const playwright = (tests) => async (report) => {
 };
 
 /**
- * The stages: commands (`report`: the file for the runner's results), runner, time limit, and suite: 'day' (npm test),
- * 'full' (npm run test:full), 'training' or 'nightly'. `singleCore`: uses one core, so that another such stage can run
- * at the same time. `waits`: uses all cores but waits for servers and sockets, so that another stage can use one core.
- * `after`: a stage that writes the same folders, and ends before this one begins. `chosen`: the unit tests that it
- * runs, by tag.
+ * The time [s] after which a stage of each suite is stopped. It ends a stage that hangs, hence it is at least twice as
+ * long as the longest stage takes on two cores that others use too.
+ */
+export const limitsSeconds = { day: 600, full: 1200, training: 1200, nightly: 5400 };
+
+/**
+ * The stages: commands (`report`: the file for the runner's results), runner, and suite: 'day' (npm test), 'full' (npm
+ * run test:full), 'training' or 'nightly'. `singleCore`: uses one core, so that another such stage can run at the same
+ * time. `waits`: uses all cores but waits for servers and sockets, so that another stage can use one core. `after`: a
+ * stage that writes the same folders, and ends before this one begins. `chosen`: the unit tests that it runs, by tag.
  */
 export const stages = {
   // The longest stages come first: two single-core stages run at the same time.
@@ -120,25 +125,23 @@ export const stages = {
     commands: (report) => vitest(report, '--tags-filter=full', '--experimental.preParse'),
   },
   'e2e-full': { suite: 'full', runner: 'playwright', commands: playwright('full') },
-  'e2e-realtime': { suite: 'full', runner: 'playwright', limitSeconds: 1200, commands: playwright('realtime') },
+  'e2e-realtime': { suite: 'full', runner: 'playwright', commands: playwright('realtime') },
   training: {
     suite: 'training',
     runner: 'pytest',
-    limitSeconds: 1200,
     commands: (report) => pytest({ extras: ['train'], marker: 'training', report }),
   },
   // Every unit test again, with more cases of each property and longer runs.
   'unit-nightly': {
     suite: 'nightly',
     runner: 'vitest',
-    limitSeconds: 5400,
     commands: (report) => {
       process.env.PROPERTY_RUNS ??= '5000';
       process.env.STUDY_KILLS ??= '1000';
       return vitest(report, '--testTimeout=600000');
     },
   },
-  'e2e-nightly': { suite: 'nightly', runner: 'playwright', limitSeconds: 5400, commands: playwright('nightly') },
+  'e2e-nightly': { suite: 'nightly', runner: 'playwright', commands: playwright('nightly') },
 };
 
 /** Returns the names of the stages of a suite, in order. */

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 import { countLine, readResults } from './test-results.mjs';
-import { stages, stagesOf } from './test-stages.mjs';
+import { limitsSeconds, stages, stagesOf } from './test-stages.mjs';
 
 const reports = join(root, 'artifacts/test-reports');
 
@@ -19,7 +19,8 @@ const heading = (name) => `\n── ${name} ${'─'.repeat(Math.max(3, 70 - name
 
 /** Runs one stage. `quiet`: its output is buffered and printed at its end, for stages that run at the same time. */
 async function runStage(name, { quiet = false } = {}) {
-  const { commands, runner, chosen, limitSeconds = 600 } = stages[name];
+  const { commands, runner, chosen, suite } = stages[name];
+  const limitSeconds = limitsSeconds[suite];
   const report = join(reports, `${name}.${runner === 'pytest' ? 'xml' : 'json'}`);
   const problems = [];
   const start = performance.now();
@@ -39,7 +40,7 @@ async function runStage(name, { quiet = false } = {}) {
   }
   if (quiet) console.log(kept.join('\n').trimEnd());
   const results = (runner && readResults(runner, report, chosen)) ?? { passed: 0, failed: 0, skipped: 0, failures: [] };
-  if (results.failed === 0 && runner && results.passed === 0) problems.push('no test ran');
+  if (problems.length === 0 && runner && results.passed + results.failed === 0) problems.push('no test ran');
   // A stage that failed without a failed test (types, lint, a crash) counts as one, so that the last line includes it.
   if (results.failed === 0 && problems.length > 0) results.failed = 1;
   if (results.failed > 0 && problems.length === 0) problems.push(`${results.failed} failed`);
