@@ -1,5 +1,5 @@
 import type { Answer } from 'threepoint-http/answer';
-import { StoreRefusal } from '../storage/database';
+import { StoreRefusal } from '../storage/study-database';
 import type { StudyStore } from '../storage/store';
 import type { StudyRequest, StudyRoute } from './route';
 import { refusalOf, type StudyRoutes } from './routes';

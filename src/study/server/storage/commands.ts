@@ -1,5 +1,5 @@
 import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
-import { StoreRefusal, type StudyDatabase } from './database';
+import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlaces } from './places';
 
 export const mostCommandsPerParticipant = 10_000;

@@ -1,6 +1,6 @@
 import type { Receipt } from '../../model/progress/study-api';
 import type { StudyCommands } from './commands';
-import { StoreRefusal, type StudyDatabase } from './database';
+import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyMotion } from './motion';
 import type { StudyPlaces } from './places';
 import type { PlanPlaces } from './plan-places';

@@ -5,7 +5,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { weaknessOf } from 'threepoint-http/secret-bits';
 import type { Software } from 'threepoint-http/software';
-import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './database';
+import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './study-database';
 import { DatabaseProblem } from './schema';
 import { openStudyStore, type StudyStore } from './store';
 

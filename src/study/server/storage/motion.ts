@@ -1,5 +1,5 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
-import { StoreRefusal, type StudyDatabase } from './database';
+import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlaces } from './places';
 
 /** A recording of tracking frames in the format of recording.ts. */

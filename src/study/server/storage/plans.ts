@@ -2,7 +2,7 @@ import { ValidationError } from 'threepoint/core/validation/validation';
 import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import { StoreRefusal, type StudyDatabase } from './database';
+import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { PlanPlaces } from './plan-places';
 
 interface StudyRow {

@@ -1,5 +1,5 @@
 import { recordVersion, type StudyRecord } from '../../model/records/study-record';
-import { StoreRefusal, type StudyDatabase } from './database';
+import { StoreRefusal, type StudyDatabase } from './study-database';
 import { notConsented, type StudyPlaces } from './places';
 import type { StudyPlans } from './plans';
 

@@ -1,5 +1,5 @@
 import type { Software } from 'threepoint-http/software';
-import type { StudyDatabase } from './database';
+import type { StudyDatabase } from './study-database';
 
 /** Software and the time since which it served the studies, in seconds since 1970. */
 export type ServedSoftware = Software & { readonly since: number };

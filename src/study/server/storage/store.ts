@@ -2,7 +2,7 @@ import { scheduleFor } from '../../model/plan/schedule';
 import { currentStep, remainingSeconds, resumed, sinceReport } from '../../model/progress/progress';
 import type { ParticipantState, PlanVersion } from '../../model/progress/study-api';
 import { StudyCommands } from './commands';
-import { type DatabaseOptions, StudyDatabase } from './database';
+import { type DatabaseOptions, StudyDatabase } from './study-database';
 import { StudyDeletion } from './deletion';
 import { StudyMotion } from './motion';
 import { type PlaceRow, StudyPlaces } from './places';
