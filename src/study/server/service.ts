@@ -42,7 +42,7 @@ const unavailable = (message: string): HttpError =>
   new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
 
 const sentences = {
-  full: 'too many requests to the studies: nothing of this was stored. Send it again in a few seconds',
+  full: 'too many requests to the studies: nothing was stored. Send it again in a few seconds',
   late: 'the database did not answer in time, and it is unknown whether this was stored. Send it again',
   ended: 'the studies were interrupted, and it is unknown whether this was stored. Send it again',
 } as const;

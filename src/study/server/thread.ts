@@ -68,7 +68,7 @@ function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
   let isHeld = false;
   return setInterval(() => {
     const wasHeld = isHeld;
-    isHeld = !store.forgetDeleted();
+    isHeld = !store.purgeDeleted();
     if (isHeld && !wasHeld) {
       log(
         'study: deleted data stays in studies.db-wal while another program reads it or the disk is full: end that program, or make room',

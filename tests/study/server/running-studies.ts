@@ -77,7 +77,7 @@ export interface ServedOptions {
   /** The database; a new one where none is named. */
   readonly file?: string;
   readonly experimenterToken?: string | null;
-  readonly mostBytes?: number;
+  readonly maxBytes?: number;
   /** The disk under the store: resolves when what was written is on it. */
   readonly flush?: () => Promise<void>;
   /** How long nothing may move on a connection [ms]. */
@@ -88,11 +88,11 @@ export interface ServedOptions {
 export async function servedStudies({
   file = join(directoryWith(), 'studies.db'),
   experimenterToken = experimenter,
-  mostBytes = 2 ** 30,
+  maxBytes = 2 ** 30,
   flush,
   silenceMs = 30_000,
 }: ServedOptions = {}) {
-  const opened = openStudyStore(file, { mostBytes });
+  const opened = openStudyStore(file, { maxBytes });
   const commits = flush && new GroupCommit(flush);
   const store = commits ? { ...opened, flushed: () => commits.flushed() } : opened;
   const faults: string[] = [];

@@ -22,8 +22,8 @@ function consented(participant: string): StudyRecord[] {
   return one.records;
 }
 
-function opened(file: string, mostBytes?: number) {
-  const store = openStudyStore(file, mostBytes === undefined ? {} : { mostBytes });
+function opened(file: string, maxBytes?: number) {
+  const store = openStudyStore(file, maxBytes === undefined ? {} : { maxBytes });
   let open = true;
   onTestFinished(() => {
     if (open) store.close();
@@ -52,7 +52,7 @@ describe('storage that is full', () => {
     const fill = () => {
       for (; stored < 2000; stored++) full.records.store('paper', 'P01', [remark(stored)], now);
     };
-    expect(fill).toThrow('the disk of the server is full: nothing of this was stored');
+    expect(fill).toThrow('the disk of the server is full: nothing was stored');
     expect(full.records.all('paper', 'P01')).toHaveLength(stored);
     full.close();
     const roomy = opened(file);
@@ -158,10 +158,10 @@ describe('deletion by the code', () => {
     onTestFinished(() => reader.close());
     reader.exec('BEGIN; SELECT count(*) FROM records');
     store.deletion.withdraw('paper', withdrawalCode as string, now);
-    expect(store.forgetDeleted()).toBe(false);
+    expect(store.purgeDeleted()).toBe(false);
     expect(tracesOf(directory, [conspicuous])).not.toEqual([]);
     reader.exec('COMMIT');
-    expect(store.forgetDeleted()).toBe(true);
+    expect(store.purgeDeleted()).toBe(true);
     expect(tracesOf(directory, [conspicuous])).toEqual([]);
   });
 });

@@ -223,7 +223,7 @@ describe('what is wrong', () => {
   });
 
   test('a full disk is said as 507; what was there stays, and deleting makes room again', async () => {
-    const { ask, claim, store } = await servedPaperStudy({}, { mostBytes: 400 * 1024 });
+    const { ask, claim, store } = await servedPaperStudy({}, { maxBytes: 400 * 1024 });
     const tokens = [await claim('P01'), await claim('P02')];
     const own1 = completed('P01');
     expect((await ask('POST', own('P01', '/records'), { token: tokens[0]!, json: { records: own1 } })).status).toBe(
@@ -236,7 +236,7 @@ describe('what is wrong', () => {
       stored += 1;
       last = await remark();
     }
-    expect(last.json.error).toBe('the disk of the server is full: nothing of this was stored');
+    expect(last.json.error).toBe('the disk of the server is full: nothing was stored');
     const second = () =>
       ask('POST', own('P02', '/records'), { token: tokens[1]!, json: { records: completed('P02') } });
     const refused = [last.status, (await second()).status];

@@ -2,7 +2,7 @@ import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Software } from 'threepoint-http/software';
 import { shortageOf } from 'threepoint-http/thread-calls';
-import { StoreRefusal } from '../storage/study-database';
+import { StoreRefusal } from '../storage/store-refusal';
 
 /** The parameters of an export, whose process reads the content from the database. */
 export interface ExportOrder {

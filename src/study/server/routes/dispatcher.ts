@@ -1,6 +1,6 @@
 import type { Answer } from 'threepoint-http/answer';
-import { StoreRefusal } from '../storage/study-database';
 import type { StudyStore } from '../storage/store';
+import { StoreRefusal } from '../storage/store-refusal';
 import type { StudyRequest, StudyRoute } from './route';
 import { refusalOf, type StudyRoutes } from './routes';
 

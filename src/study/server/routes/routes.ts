@@ -1,7 +1,7 @@
 import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
 import { type Answer, HttpError } from 'threepoint-http/answer';
 import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
-import { StoreRefusal } from '../storage/study-database';
+import { StoreRefusal } from '../storage/store-refusal';
 import { type Concerned, createStudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';
 import type { StudyParts, StudyRequest, StudyRoute } from './route';

@@ -1,6 +1,7 @@
 import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
-import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlaces } from './places';
+import { StoreRefusal } from './store-refusal';
+import type { StudyDatabase } from './study-database';
 
 export const mostCommandsPerParticipant = 10_000;
 

@@ -1,12 +1,13 @@
 import type { Receipt } from '../../model/progress/study-api';
 import type { StudyCommands } from './commands';
-import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyMotion } from './motion';
 import type { StudyPlaces } from './places';
 import type { PlanPlaces } from './plan-places';
 import type { StudyPlans } from './plans';
 import type { StudyRecords } from './records';
 import { newCode } from './schema';
+import { StoreRefusal } from './store-refusal';
+import type { StudyDatabase } from './study-database';
 
 interface ReceiptRow extends Omit<Receipt, 'motionFiles'> {
   readonly motion_files: number;
@@ -60,7 +61,7 @@ export class StudyDeletion {
         ...[study, participant, reason, recordCount, motionFiles, at],
       );
     });
-    database.forgetDeleted();
+    database.purgeDeleted();
     return receiptOf(receipt);
   }
 
@@ -79,7 +80,7 @@ export class StudyDeletion {
       }
       plans.remove(study);
     });
-    database.forgetDeleted();
+    database.purgeDeleted();
   }
 
   /** Deletes everything of the participant with this code; returns null if there is none. */

@@ -5,9 +5,11 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { weaknessOf } from 'threepoint-http/secret-bits';
 import type { Software } from 'threepoint-http/software';
-import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './study-database';
+import { FolderInUse, FolderLock } from './folder-lock';
 import { DatabaseProblem } from './schema';
+import { sqliteCodeOf } from './sqlite-errors';
 import { openStudyStore, type StudyStore } from './store';
+import { StoreRefusal } from './store-refusal';
 
 /** The open folder of the studies, which no other server uses. */
 export interface StudyFolder {
@@ -57,7 +59,7 @@ function prepare(directory: string, log: (line: string) => void): void {
 function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
-  if (error instanceof FolderTaken) {
+  if (error instanceof FolderInUse) {
     return `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`;
   }
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;

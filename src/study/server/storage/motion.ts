@@ -1,6 +1,7 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
-import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlaces } from './places';
+import { StoreRefusal } from './store-refusal';
+import type { StudyDatabase } from './study-database';
 
 /** A recording of tracking frames in the format of recording.ts. */
 export interface MotionFile {

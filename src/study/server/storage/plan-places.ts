@@ -1,8 +1,8 @@
 import { togetherWith } from '../../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../../model/plan/plan';
 import type { StudyInfo } from '../../model/progress/study-api';
-import type { StudyDatabase } from './study-database';
 import { newCode } from './schema';
+import type { StudyDatabase } from './study-database';
 
 /** A place whose participant has begun, and the version of the plan that the participant follows. */
 export interface BegunPlace {

@@ -2,8 +2,9 @@ import { ValidationError } from 'threepoint/core/validation/validation';
 import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { PlanPlaces } from './plan-places';
+import { StoreRefusal } from './store-refusal';
+import type { StudyDatabase } from './study-database';
 
 interface StudyRow {
   readonly id: string;

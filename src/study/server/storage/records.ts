@@ -1,7 +1,8 @@
 import { recordVersion, type StudyRecord } from '../../model/records/study-record';
-import { StoreRefusal, type StudyDatabase } from './study-database';
 import { notConsented, type StudyPlaces } from './places';
 import type { StudyPlans } from './plans';
+import { StoreRefusal } from './store-refusal';
+import type { StudyDatabase } from './study-database';
 
 export const mostRecordsPerParticipant = 10_000;
 

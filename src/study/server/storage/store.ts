@@ -2,7 +2,6 @@ import { scheduleFor } from '../../model/plan/schedule';
 import { currentStep, remainingSeconds, resumed, sinceReport } from '../../model/progress/progress';
 import type { ParticipantState, PlanVersion } from '../../model/progress/study-api';
 import { StudyCommands } from './commands';
-import { type DatabaseOptions, StudyDatabase } from './study-database';
 import { StudyDeletion } from './deletion';
 import { StudyMotion } from './motion';
 import { type PlaceRow, StudyPlaces } from './places';
@@ -10,6 +9,7 @@ import { PlanPlaces } from './plan-places';
 import { StudyPlans } from './plans';
 import { StudyRecords } from './records';
 import { StudySoftware } from './software';
+import { type DatabaseOptions, StudyDatabase } from './study-database';
 
 /**
  * The store of studies and records. Results are stored when a call returns and survive the end of the process. They
@@ -44,14 +44,14 @@ function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number,
 }
 
 /** The size beyond which writes are refused as "full" [bytes], to leave room for the rest of the machine. */
-const mostStoredBytes = 16 * 2 ** 30;
+const maxStoredBytes = 16 * 2 ** 30;
 
 /** Opens the database in this file, creates it if it is missing, and migrates it; `readOnly` opens an existing one. */
 export function openStudyStore(
   file: string,
-  { mostBytes = mostStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},
+  { maxBytes = maxStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},
 ) {
-  const database = new StudyDatabase(file, { mostBytes, readOnly });
+  const database = new StudyDatabase(file, { maxBytes, readOnly });
   const planPlaces = new PlanPlaces(database);
   const plans = new StudyPlans(database, planPlaces);
   const places = new StudyPlaces(database, plans);
@@ -75,7 +75,7 @@ export function openStudyStore(
     /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
     flushed: () => database.flushed(),
     /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
-    forgetDeleted: () => !database.holdsDeleted || database.forgetDeleted(),
+    purgeDeleted: () => !database.mustPurge || database.purgeDeleted(),
     close: () => database.close(),
   };
 }

@@ -83,8 +83,7 @@ describe('the folder of the studies', () => {
       expect((await add('before')).status).toBe(201);
       renameSync(directory, `${directory}-moved`);
       const deleted = [await add('gone-1'), await add('gone-2')];
-      const sentence =
-        'the folder of the studies was deleted or replaced while the server ran, and nothing is stored. Put it back, or restart the server';
+      const sentence = 'the folder of the studies was deleted or replaced. Put it back, or restart the server';
       expect(deleted).toEqual([1, 2].map(() => ({ status: 507, error: sentence })));
       expect(lines).toEqual([`study: ${sentence} (${directory}/studies.db was deleted)`]);
       mkdirSync(directory);
