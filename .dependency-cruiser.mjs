@@ -223,9 +223,9 @@ export default {
     },
     {
       name: 'sqlite-stores',
-      comment: 'The database stands behind StudyStore, so that another one is one file.',
+      comment: 'The database stands behind StudyStore: another one replaces files of this folder alone.',
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/study/server/storage/(database|schema)\\.ts$' },
+      from: { path: '^(src|server)/', pathNot: '^src/study/server/storage/' },
       to: { path: packagePath('@photostructure/sqlite') },
     },
     {

@@ -75,7 +75,7 @@ describe('the import rules', () => {
     ['and so do its types', 'three-draws', 'src/threepoint/onnx/a.ts', 'three', 'type { Vector3 } from'],
     ['and its VRM loader', 'three-draws', 'src/rooms/client/a.ts', '@pixiv/three-vrm'],
     ['the runtime has one room', 'onnxruntime-infers', 'src/page/main.ts', 'onnxruntime-web/wasm'],
-    ['the database has one file', 'sqlite-stores', 'server/a.ts', '@photostructure/sqlite'],
+    ['the database has one folder', 'sqlite-stores', 'server/a.ts', '@photostructure/sqlite'],
     [
       'the page reaches the server over the network',
       'browser-code-knows-no-server',
