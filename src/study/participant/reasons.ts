@@ -1,6 +1,6 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { PhrasedError, type Phrases } from '../model/phrases/phrases';
-import { refusals } from '../model/progress/advance';
+import { refusals } from '../model/progress/apply-event';
 
 /** Returns an error in the participant's language. Technical errors stay in English. */
 export const reasonFor = (error: unknown, phrases: Phrases): string =>

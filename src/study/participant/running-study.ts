@@ -1,6 +1,6 @@
 import { otherSide } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { ProgressEvent } from '../model/progress/advance';
+import type { ProgressEvent } from '../model/progress/apply-event';
 import { Answering } from './answering';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';

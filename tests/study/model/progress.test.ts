@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { ProgressEvent } from 'threepoint-study/model/progress/advance';
+import type { ProgressEvent } from 'threepoint-study/model/progress/apply-event';
 import {
   begin,
   clockText,

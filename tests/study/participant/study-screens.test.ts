@@ -1,6 +1,6 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import type { ProgressEvent } from 'threepoint-study/model/progress/advance';
+import type { ProgressEvent } from 'threepoint-study/model/progress/apply-event';
 import type { ScreenActions, StudySituation } from 'threepoint-study/participant/questions/study-situation';
 import { screenOf, uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
 import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';

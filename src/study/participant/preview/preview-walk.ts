@@ -3,7 +3,7 @@ import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
 import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/schedule';
-import { advance, type ProgressEvent } from '../../model/progress/advance';
+import { advance, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
 import type { StudyForm } from '../forms/study-form';

@@ -1,5 +1,5 @@
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import type { ProgressEvent } from '../../model/progress/advance';
+import type { ProgressEvent } from '../../model/progress/apply-event';
 import type { Answer } from '../../model/questionnaires/question-kind';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
 import type { ParticipantSession } from '../session/participant-session';

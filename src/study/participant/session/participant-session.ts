@@ -2,7 +2,7 @@ import { type ParticipantClient, ServerRefusal, ServerUnreachable, type StudyPla
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { languagesOf } from '../../model/plan/plan';
 import { type Schedule, scheduleFor } from '../../model/plan/schedule';
-import { advance, type ProgressEvent } from '../../model/progress/advance';
+import { advance, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../model/progress/progress';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 import { preferredHandOf } from '../../model/records/participant-profile';
