@@ -3,7 +3,7 @@ import type { Words } from '../model/phrases/words';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';
 import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
-import { advance, type ProgressEvent } from '../model/progress/apply-event';
+import { applyEvent, type ProgressEvent } from '../model/progress/apply-event';
 import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
 import type { Demographics } from '../model/records/demographics';
 import type { StudyRecord } from '../model/records/study-record';
@@ -206,7 +206,7 @@ class SimulatedSession {
   }
 
   #tell(event: ProgressEvent): void {
-    const next = advance(this.#schedule, this.#progress, event, this.#now);
+    const next = applyEvent(this.#schedule, this.#progress, event, this.#now);
     if (next.refusal) throw new Error(`${this.#schedule.participant}, ${this.#progress.step}: ${next.refusal}`);
     this.#progress = next.progress;
     this.#records.push(...next.records);

@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { parsePlan, readPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import type { Schedule, StudyStep } from 'threepoint-study/model/plan/schedule';
-import { advance, type ProgressEvent } from 'threepoint-study/model/progress/apply-event';
+import { applyEvent, type ProgressEvent } from 'threepoint-study/model/progress/apply-event';
 import { begin, currentStep, type Progress } from 'threepoint-study/model/progress/progress';
 import type { Answer, AnswerForm } from 'threepoint-study/model/questionnaires/question-kind';
 import { questionKind } from 'threepoint-study/model/questionnaires/question-kinds';
@@ -92,7 +92,7 @@ export function session(schedule: Schedule, simulated = false) {
     },
     /** The refusal; null: taken. */
     tell(event: ProgressEvent): string | null {
-      const next = advance(schedule, progress, event, now);
+      const next = applyEvent(schedule, progress, event, now);
       progress = next.progress;
       records.push(...next.records);
       return next.refusal;

@@ -9,7 +9,7 @@ import { checkedDemographics } from '../records/demographics';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from '../records/study-record';
 import { checkedOutcome, type TrialOutcome } from '../records/trial-log';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
-import type { MeantBlock } from './study-api';
+import type { TargetBlock } from './study-api';
 
 /** An event from participant, experimenter, game or clock. */
 export type ProgressEvent =
@@ -33,7 +33,7 @@ export type ProgressEvent =
   | { readonly type: 'go-on' }
   | { readonly type: 'resume' }
   /** Voids the present block if it is the intended one; repeat: it starts again, otherwise the next one follows. */
-  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: MeantBlock }
+  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: TargetBlock }
   | { readonly type: 'remark'; readonly text: string }
   /**
    * Reports that the page was reloaded, here or on another device. A running trial is void and repeated; everything
@@ -42,7 +42,7 @@ export type ProgressEvent =
   | { readonly type: 'reload' };
 
 /** The result of an event. */
-export interface Advance {
+export interface EventResult {
   readonly progress: Progress;
   /** The records to store and send, in this order. */
   readonly records: readonly StudyRecord[];
@@ -53,7 +53,7 @@ export interface Advance {
 type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type: Type }>;
 
 /** The events that are accepted during a pause. */
-const takenInPause: readonly ProgressEvent['type'][] = [
+const acceptedInPause: readonly ProgressEvent['type'][] = [
   'resume',
   'remark',
   'void-block',
@@ -70,33 +70,33 @@ export const refusals = {
   asked: 'the participant is asked whether to stop',
 } as const;
 
-/** The events that wait until a participant who may be unwell has decided. */
-const notWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
+/** The events that are refused until a participant who may be unwell has decided whether to stop. */
+const refusedWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
 
 /**
  * Applies an event to a session at `now` [s since 1970]. An event that does not fit the step changes nothing and is
  * refused with a reason.
  */
-export function advance(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): Advance {
-  const at = new Moment(schedule, progress, now);
-  if (progress.paused && !takenInPause.includes(event.type)) return at.refused(refusals.paused);
-  if (progress.unwell && notWhileAsked.includes(event.type)) {
-    return at.refused(refusals.asked);
+export function applyEvent(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): EventResult {
+  const session = new SessionAtEvent(schedule, progress, now);
+  if (progress.paused && !acceptedInPause.includes(event.type)) return session.refuse(refusals.paused);
+  if (progress.unwell && refusedWhileAsked.includes(event.type)) {
+    return session.refuse(refusals.asked);
   }
   try {
     const next =
-      (handlers[event.type] as Handler)(at, event) ??
-      at.refused(`"${event.type}" does not fit the step "${at.step.id}"`);
+      (handlers[event.type] as Handler)(session, event) ??
+      session.refuse(`"${event.type}" does not fit the step "${session.step.id}"`);
     if (next.progress === progress) return next;
     return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
-    return at.refused(error.message);
+    return session.refuse(error.message);
   }
 }
 
-/** A session at the time of an event, and its possible continuations. */
-class Moment {
+/** A session at the time of an event; its methods return the possible results of the event. */
+class SessionAtEvent {
   readonly schedule: Schedule;
   readonly progress: Progress;
   /** The time in seconds since 1970. */
@@ -113,8 +113,8 @@ class Moment {
     this.place = placeOf(schedule, progress);
   }
 
-  /** The fields that every record of this moment has. */
-  get envelope() {
+  /** The fields that every record of this event has. */
+  get recordFields() {
     const { study, participant } = this.schedule;
     return { version: recordVersion, study, participant, simulated: this.progress.simulated, at: this.now } as const;
   }
@@ -125,57 +125,67 @@ class Moment {
     return `${this.step.id}${suffix}:${kind}`;
   }
 
-  refused(refusal: string): Advance {
+  refuse(refusal: string): EventResult {
     return { progress: this.progress, records: [], refusal };
   }
 
-  taken(progress: Progress, records: readonly StudyRecord[] = []): Advance {
+  accept(progress: Progress, records: readonly StudyRecord[] = []): EventResult {
     return { progress, records, refusal: null };
   }
 
   /** Returns the session with a record of what happened; nothing is recorded before consent, not even a pause. */
-  withEvent(next: Progress, body: StudyEvent): Advance {
-    if (next.motion === null) return this.taken(next);
+  withEvent(next: Progress, body: StudyEvent): EventResult {
+    if (next.motion === null) return this.accept(next);
     const counted = { ...next, events: next.events + 1 };
-    return this.taken(counted, [{ ...this.envelope, kind: 'event', id: `event-${counted.events}`, body }]);
+    return this.accept(counted, [{ ...this.recordFields, kind: 'event', id: `event-${counted.events}`, body }]);
   }
 
   /** Returns the session at the next step. */
-  moveOn(from: Progress, records: readonly StudyRecord[] = []): Advance {
-    return this.enter(from, this.schedule.steps[this.schedule.steps.indexOf(this.step) + 1] as StudyStep, records);
+  moveOn(from: Progress, records: readonly StudyRecord[] = []): EventResult {
+    return this.enterStep(from, this.schedule.steps[this.schedule.steps.indexOf(this.step) + 1] as StudyStep, records);
   }
 
-  enter(from: Progress, step: StudyStep, records: readonly StudyRecord[]): Advance {
-    const entered = this.entered(from, step);
-    if (step.kind !== 'end') return this.taken(entered, records);
+  enterStep(from: Progress, step: StudyStep, records: readonly StudyRecord[]): EventResult {
+    const entered = this.atStep(from, step);
+    if (step.kind !== 'end') return this.accept(entered, records);
     const finished = this.withEvent(entered, { type: 'finished' });
-    return this.taken(finished.progress, [...records, ...finished.records]);
+    return this.accept(finished.progress, [...records, ...finished.records]);
   }
 
-  /** The clocks of rests and questionnaires start at once; games and calibration wait for a start. */
-  entered(from: Progress, step: StudyStep): Progress {
+  /**
+   * Returns the session at the start of a step. Clocks of rests and questionnaires start at once, games and calibration
+   * wait for a start.
+   */
+  atStep(from: Progress, step: StudyStep): Progress {
     const running = step.kind === 'rest' || step.kind === 'questionnaire';
     const since = running && !from.paused ? this.now : null;
     return { ...from, step: step.id, running, since, elapsed: 0, draft: {}, attempt: 1 };
   }
 }
 
-function consent(at: Moment, { version, motion, language }: EventOf<'consent'>): Advance | null {
-  if (at.step.kind !== 'consent') return null;
+function consent(session: SessionAtEvent, { version, motion, language }: EventOf<'consent'>): EventResult | null {
+  if (session.step.kind !== 'consent') return null;
   const chosen = language === undefined ? {} : { language };
-  const body = checkedConsent({ version, given: true, motion, at: at.now, ...chosen }, at.schedule.consentVersion);
-  return at.moveOn({ ...at.progress, motion, ...chosen }, [{ ...at.envelope, kind: 'consent', id: 'consent', body }]);
+  const body = checkedConsent(
+    { version, given: true, motion, at: session.now, ...chosen },
+    session.schedule.consentVersion,
+  );
+  return session.moveOn({ ...session.progress, motion, ...chosen }, [
+    { ...session.recordFields, kind: 'consent', id: 'consent', body },
+  ]);
 }
 
-function demographics(at: Moment, event: EventOf<'demographics'>): Advance | null {
-  if (at.step.kind !== 'demographics') return null;
+function demographics(session: SessionAtEvent, event: EventOf<'demographics'>): EventResult | null {
+  if (session.step.kind !== 'demographics') return null;
   const body = checkedDemographics(event.demographics);
-  return at.moveOn(at.progress, [{ ...at.envelope, kind: 'demographics', id: 'demographics', body }]);
+  return session.moveOn(session.progress, [
+    { ...session.recordFields, kind: 'demographics', id: 'demographics', body },
+  ]);
 }
 
-function calibrated(at: Moment, { calibration }: EventOf<'calibrated'>): Advance | null {
-  const { place } = at;
-  if (at.step.kind !== 'calibration' || !place) return null;
+function calibrated(session: SessionAtEvent, { calibration }: EventOf<'calibrated'>): EventResult | null {
+  const { place } = session;
+  if (session.step.kind !== 'calibration' || !place) return null;
   const { eyeHeight, armSpan, gazePitch, handTilts } = calibration;
   const body = {
     place,
@@ -184,42 +194,44 @@ function calibrated(at: Moment, { calibration }: EventOf<'calibrated'>): Advance
     ...(gazePitch !== undefined && { gazePitch }),
     ...(handTilts !== undefined && { handTilts }),
   };
-  return at.moveOn(at.progress, [{ ...at.envelope, kind: 'calibration', id: at.recordId('calibration'), body }]);
+  return session.moveOn(session.progress, [
+    { ...session.recordFields, kind: 'calibration', id: session.recordId('calibration'), body },
+  ]);
 }
 
-function start(at: Moment): Advance | null {
-  if (!isPlayed(at.step) || at.progress.running) return null;
-  return at.taken({ ...at.progress, running: true, since: at.now, elapsed: 0 });
+function start(session: SessionAtEvent): EventResult | null {
+  if (!isPlayed(session.step) || session.progress.running) return null;
+  return session.accept({ ...session.progress, running: true, since: session.now, elapsed: 0 });
 }
 
-function trialFinished(at: Moment, { outcome }: EventOf<'trial-finished'>): Advance | null {
-  const { step, place, progress } = at;
+function trialFinished(session: SessionAtEvent, { outcome }: EventOf<'trial-finished'>): EventResult | null {
+  const { step, place, progress } = session;
   if (!isPlayed(step) || !progress.running || !place) return null;
   const body = {
     place,
     condition: step.kind === 'trial' ? step.condition : null,
     estimator: step.embodiment.estimator,
     repetition: step.kind === 'trial' ? step.repetition : 1,
-    group: at.schedule.groups[step.task]?.number ?? 1,
+    group: session.schedule.groups[step.task]?.number ?? 1,
     outcome: checkedOutcome(outcome),
   };
-  return at.moveOn(progress, [{ ...at.envelope, kind: 'trial', id: at.recordId('trial'), body }]);
+  return session.moveOn(progress, [{ ...session.recordFields, kind: 'trial', id: session.recordId('trial'), body }]);
 }
 
-function answer(at: Moment, { question, value }: EventOf<'answer'>): Advance | null {
-  const { step, progress } = at;
+function answer(session: SessionAtEvent, { question, value }: EventOf<'answer'>): EventResult | null {
+  const { step, progress } = session;
   if (step.kind !== 'questionnaire') return null;
   const { [question]: _, ...others } = progress.draft;
   const draft = checkedDraft(step.questionnaire, value === null ? others : { ...progress.draft, [question]: value });
-  return at.taken({ ...progress, draft: { ...draft } });
+  return session.accept({ ...progress, draft: { ...draft } });
 }
 
-function submit(at: Moment): Advance | null {
-  const { step, place, progress } = at;
+function submit(session: SessionAtEvent): EventResult | null {
+  const { step, place, progress } = session;
   if (step.kind !== 'questionnaire' || !place) return null;
   const answers = checkedAnswers(step.questionnaire, progress.draft);
-  const seconds = elapsedSeconds(progress, at.now);
-  const { embodiment } = trialOf(at.schedule, step) as PlayedStep;
+  const seconds = elapsedSeconds(progress, session.now);
+  const { embodiment } = trialOf(session.schedule, step) as PlayedStep;
   const body = {
     place,
     condition: step.condition,
@@ -230,97 +242,103 @@ function submit(at: Moment): Advance | null {
     seconds,
     overtime: seconds > step.seconds,
   };
-  const handedIn = [{ ...at.envelope, kind: 'answers', id: at.recordId('answers'), body } as const];
-  const unwell = reachedRule(at.schedule.askToStop, step.questionnaire, body.answers);
-  if (!unwell) return at.moveOn(progress, handedIn);
+  const handedIn = [{ ...session.recordFields, kind: 'answers', id: session.recordId('answers'), body } as const];
+  const unwell = reachedRule(session.schedule.askToStop, step.questionnaire, body.answers);
+  if (!unwell) return session.moveOn(progress, handedIn);
   const { questionnaire, measure, value } = unwell;
-  const recorded = at.withEvent(
+  const recorded = session.withEvent(
     { ...progress, unwell: true },
     { type: 'unwell', place, questionnaire, measure, value },
   );
-  return at.moveOn(recorded.progress, [...handedIn, ...recorded.records]);
+  return session.moveOn(recorded.progress, [...handedIn, ...recorded.records]);
 }
 
-function tick(at: Moment): Advance {
-  const { step, progress } = at;
-  const over = step.kind === 'rest' && !progress.paused && elapsedSeconds(progress, at.now) >= step.seconds;
-  return over ? at.moveOn(progress) : at.taken(runningOn(progress, at.now));
+function tick(session: SessionAtEvent): EventResult {
+  const { step, progress } = session;
+  const over = step.kind === 'rest' && !progress.paused && elapsedSeconds(progress, session.now) >= step.seconds;
+  return over ? session.moveOn(progress) : session.accept(runningOn(progress, session.now));
 }
 
-function pause(at: Moment): Advance | null {
-  const { step, progress } = at;
+function pause(session: SessionAtEvent): EventResult | null {
+  const { step, progress } = session;
   if (step.kind === 'end') return null;
-  const stopped = { ...progress, paused: true, since: null, elapsed: elapsedSeconds(progress, at.now) };
-  return at.withEvent(stopped, { type: 'pause' });
+  const stopped = { ...progress, paused: true, since: null, elapsed: elapsedSeconds(progress, session.now) };
+  return session.withEvent(stopped, { type: 'pause' });
 }
 
-function stop(at: Moment, { by, reason }: EventOf<'stop'>): Advance | null {
-  const { step, place, progress, schedule } = at;
+function stop(session: SessionAtEvent, { by, reason }: EventOf<'stop'>): EventResult | null {
+  const { step, place, progress, schedule } = session;
   if (step.kind === 'end') return null;
-  if (progress.motion === null) return at.refused('nothing is recorded before consent');
+  if (progress.motion === null) return session.refuse('nothing is recorded before consent');
   const { unwell: _, ...decided } = progress;
   const stated = reason === undefined ? {} : { reason: checked(text(500), reason) };
-  const recorded = at.withEvent(
+  const recorded = session.withEvent(
     { ...decided, stopped: true, paused: false },
     { type: 'stop', by, ...stated, place, step: step.id },
   );
-  return at.taken(at.entered(recorded.progress, schedule.steps.at(-1) as StudyStep), recorded.records);
+  return session.accept(session.atStep(recorded.progress, schedule.steps.at(-1) as StudyStep), recorded.records);
 }
 
 /**
- * Questions after the question whether to stop were not shown yet, so their clock starts now. A rest has run in the
- * meantime.
+ * Continues after the participant decided not to stop. The clock of a questionnaire starts now, because it was not
+ * shown before. The clock of a rest has run in the meantime.
  */
-function goOn(at: Moment): Advance | null {
-  const { unwell, ...decided } = at.progress;
+function goOn(session: SessionAtEvent): EventResult | null {
+  const { unwell, ...decided } = session.progress;
   if (!unwell) return null;
-  const begins = at.step.kind === 'questionnaire' ? at.entered(decided, at.step) : decided;
-  return at.withEvent(begins, { type: 'go-on' });
+  const begins = session.step.kind === 'questionnaire' ? session.atStep(decided, session.step) : decided;
+  return session.withEvent(begins, { type: 'go-on' });
 }
 
-function resume(at: Moment): Advance | null {
-  const { progress } = at;
+function resume(session: SessionAtEvent): EventResult | null {
+  const { progress } = session;
   if (!progress.paused) return null;
-  return at.withEvent({ ...progress, paused: false, since: progress.running ? at.now : null }, { type: 'resume' });
+  return session.withEvent(
+    { ...progress, paused: false, since: progress.running ? session.now : null },
+    { type: 'resume' },
+  );
 }
 
-function voidBlock(at: Moment, event: EventOf<'void-block'>): Advance | null {
-  if (!at.place) return null;
+function voidBlock(session: SessionAtEvent, event: EventOf<'void-block'>): EventResult | null {
+  if (!session.place) return null;
   const { repeat, of } = event;
-  const { task, block, run } = at.place;
+  const { task, block, run } = session.place;
   if (of && (of.task !== task || of.block !== block)) {
-    return at.refused(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
+    return session.refuse(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
   }
-  const { steps } = at.schedule;
-  const { runs } = at.progress;
+  const { steps } = session.schedule;
+  const { runs } = session.progress;
   const reason = checked(text(500), event.reason);
   const ofBlock = (step: StudyStep) => 'task' in step && step.task === task && step.block === block;
   const target = (repeat ? steps.find(ofBlock) : steps[steps.findLastIndex(ofBlock) + 1]) as StudyStep;
   const next = {
-    ...at.progress,
+    ...session.progress,
     runs: repeat ? { ...runs, [`${task}/${block}`]: run + 1 } : runs,
     paused: false,
   };
-  const voided = at.withEvent(next, { type: 'void-block', task, block, run, reason, repeat });
-  return at.enter(voided.progress, target, voided.records);
+  const voided = session.withEvent(next, { type: 'void-block', task, block, run, reason, repeat });
+  return session.enterStep(voided.progress, target, voided.records);
 }
 
-function remark(at: Moment, event: EventOf<'remark'>): Advance {
-  if (at.progress.motion === null) return at.refused('nothing is recorded before consent');
-  return at.withEvent(at.progress, { type: 'remark', text: checked(text(2000), event.text) });
+function remark(session: SessionAtEvent, event: EventOf<'remark'>): EventResult {
+  if (session.progress.motion === null) return session.refuse('nothing is recorded before consent');
+  return session.withEvent(session.progress, { type: 'remark', text: checked(text(2000), event.text) });
 }
 
-function reload(at: Moment): Advance {
-  const { step, place, progress } = at;
+function reload(session: SessionAtEvent): EventResult {
+  const { step, place, progress } = session;
   if (!isPlayed(step) || !progress.running || !place) {
-    return at.withEvent(runningOn(progress, at.now), { type: 'reload' });
+    return session.withEvent(runningOn(progress, session.now), { type: 'reload' });
   }
   const again = { ...progress, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
-  return at.withEvent(again, { type: 'interrupted', place, step: step.id });
+  return session.withEvent(again, { type: 'interrupted', place, step: step.id });
 }
 
 /** Returns null if the event does not fit the step. Throws a ValidationError for invalid content. */
-type Handler<Event extends ProgressEvent = ProgressEvent> = (at: Moment, event: Event) => Advance | null;
+type Handler<Event extends ProgressEvent = ProgressEvent> = (
+  session: SessionAtEvent,
+  event: Event,
+) => EventResult | null;
 
 const handlers: { readonly [Type in ProgressEvent['type']]: Handler<EventOf<Type>> } = {
   ...{ consent, demographics, calibrated, start, 'trial-finished': trialFinished, answer, submit, tick },

@@ -8,7 +8,7 @@ import type { Progress } from './progress';
 const blockSchema = v.strictObject({ task: identifier, block: integerBetween(1, 1000) });
 
 /** A block of a task, from 1. */
-export type MeantBlock = v.InferOutput<typeof blockSchema>;
+export type TargetBlock = v.InferOutput<typeof blockSchema>;
 
 export const commandSchema = v.variant('type', [
   v.strictObject({ type: v.literal('start') }),

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
 import { scheduleFor } from '../../model/plan/schedule';
-import type { MeantBlock } from '../../model/progress/study-api';
+import type { TargetBlock } from '../../model/progress/study-api';
 import { askForSentence } from './ask-in-dialog';
 import { type OpenStudy, planOf } from './experimenter-view';
 
@@ -11,7 +11,7 @@ export interface VoidedBlock {
   /** The participants whose block it is, several if they play it together. */
   readonly participants: readonly string[];
   /** null: the participant is in no block. */
-  readonly of: MeantBlock | null;
+  readonly of: TargetBlock | null;
 }
 
 /** Returns the place of a participant in the schedule of the plan that they follow. */
@@ -23,7 +23,7 @@ function placeOf(study: OpenStudy, participant: string) {
 }
 
 /** Returns whether a participant is in this block now. */
-export function isIn(study: OpenStudy, participant: string, { task, block }: MeantBlock): boolean {
+export function isIn(study: OpenStudy, participant: string, { task, block }: TargetBlock): boolean {
   const now = placeOf(study, participant).block;
   return now?.task === task && now.block === block;
 }

@@ -3,7 +3,7 @@ import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
 import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/schedule';
-import { advance, type ProgressEvent } from '../../model/progress/apply-event';
+import { applyEvent, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
 import { Answering } from '../answering';
 import type { StudyForm } from '../forms/study-form';
@@ -75,7 +75,7 @@ class PreviewSession implements ShownSession {
   }
 
   apply(event: ProgressEvent): string | null {
-    const { progress, refusal } = advance(this.#schedule, this.#progress, event, 0);
+    const { progress, refusal } = applyEvent(this.#schedule, this.#progress, event, 0);
     if (refusal !== null) return refusal;
     this.#drafts.set(this.#progress.step, event.type === 'answer' ? progress.draft : this.#progress.draft);
     this.#progress = { ...progress, draft: this.#drafts.get(progress.step) ?? {} };

@@ -2,7 +2,7 @@ import { type ParticipantClient, ServerRefusal, ServerUnreachable, type StudyPla
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { languagesOf } from '../../model/plan/plan';
 import { type Schedule, scheduleFor } from '../../model/plan/schedule';
-import { advance, type ProgressEvent } from '../../model/progress/apply-event';
+import { applyEvent, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../model/progress/progress';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 import { preferredHandOf } from '../../model/records/participant-profile';
@@ -185,7 +185,7 @@ export class ParticipantSession {
   #take(event: ProgressEvent, command?: number): string | null {
     const session = this.#session;
     const before = command === undefined ? session.progress : { ...session.progress, commandsSeen: command };
-    const { progress, records, refusal } = advance(this.schedule, before, event, this.#now());
+    const { progress, records, refusal } = applyEvent(this.schedule, before, event, this.#now());
     if (progress === session.progress && records.length === 0) return refusal;
     const told = records.find((record) => record.kind === 'demographics')?.body;
     const next = {
