@@ -103,18 +103,16 @@ const pole = vec3(0, 0, 0);
 const bend = vec3(0, 0, 0);
 const line = vec3(0, 0, 0);
 const nod = quat(0, 0, 0, 1);
-const axisX = vec3(0, 0, 0);
+const hinge = vec3(0, 0, 0);
 const axisY = vec3(0, 0, 0);
 const axisZ = vec3(0, 0, 0);
 const kneeCircle = makeElbowCircle();
 const fallbacks: readonly [Vec3, Vec3] = [levelForward, up];
 
-/** The rotation that takes a leg hanging down, toes to −Z, along `direction` with its knee towards `towards`. */
-function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
+/** The rotation that takes a leg hanging down, toes to −Z, along `direction` with its hinge along `hinge`, unit. */
+function aimDown(direction: Vec3, hinge: Vec3, target: MutableQuat): Quat {
   normalise(scale(direction, -1, axisY), up, axisY);
-  scale(towards, -1, axisZ);
-  normalise(cross(axisY, axisZ, axisX), right, axisX);
-  return fromAxes(axisX, axisY, cross(axisX, axisY, axisZ), target);
+  return fromAxes(hinge, axisY, cross(hinge, axisY, axisZ), target);
 }
 
 /**
@@ -232,7 +230,9 @@ export class LegPosture {
     normalise(add(toes, levelForward, pole), levelForward, pole);
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
     elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbacks, bend), knee);
-    aimDown(subtract(knee, hip, line), pole, leg.thigh);
-    aimDown(subtract(ankle, knee, line), pole, leg.shank);
+    // Both bones lie in the plane across the hinge, which is defined even where a thigh points to its knee's pole.
+    cross(circle.axis, bend, hinge);
+    aimDown(subtract(knee, hip, line), hinge, leg.thigh);
+    aimDown(subtract(ankle, knee, line), hinge, leg.shank);
   }
 }
