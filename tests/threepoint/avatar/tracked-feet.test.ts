@@ -87,6 +87,23 @@ describe('a tracked foot', () => {
     expect(highest, 'the knee above the hip [m]').toBeGreaterThan(0.05);
   });
 
+  test('that moves out of its leg’s reach and back moves the drawn ankle no further than itself, four times', () => {
+    const posture = new LegPosture(proportions, eyeHeight);
+    let before: { readonly tracked: Vec3; readonly ankle: Vec3 } | null = null;
+    for (let frame = 0; frame <= 6 * rateHz; frame++) {
+      const time = frame / rateHz;
+      const tracked = vec3(-0.1, 0.15, -0.7 + 0.7 * Math.cos(time));
+      const left = { position: tracked, orientation: trackerAtJoint.orientation };
+      posture.update(standing(time), frame ? 1 / rateHz : 0, { left, right: null });
+      const ankle = { ...posture.legs.left.ankle };
+      expectWhole(posture);
+      if (before) {
+        expect(distance(ankle, before.ankle)).toBeLessThan(4 * distance(tracked, before.tracked) + 2e-3);
+      }
+      before = { tracked, ankle };
+    }
+  });
+
   test('that no leg reaches is ignored', () => {
     const [posture, free] = [new LegPosture(proportions, eyeHeight), new LegPosture(proportions, eyeHeight)];
     const far = { position: vec3(-0.1, 0.1, -1.5), orientation: trackerAtJoint.orientation };

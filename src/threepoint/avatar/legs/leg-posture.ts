@@ -3,7 +3,7 @@ import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
 import { Gait } from '../../core/estimation/gait/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
-import { followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
+import { followPin, handOverSeconds, makePin, type Pin, trustBeyond } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
 import { makePose } from '../../core/math/pose';
 import {
@@ -78,8 +78,6 @@ const longestWay = 0.5;
  */
 const fastestTurn = 14;
 const furthestTurn = Math.PI / 2;
-/** A tracked ankle that is this far [m] beyond the reach of its leg is wrong, and counts as lost. */
-const strayAnkle = 0.15;
 /** The shortest frame [s] that is assumed: jittering time stamps report shorter ones. */
 const shortestFrame = 1 / 60;
 
@@ -209,8 +207,8 @@ export class LegPosture {
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);
     copyQuat(foot, estimated.orientation);
-    const near = tracked && distance(tracked.position, hip) <= upper + lower + strayAnkle ? tracked : null;
-    const weight = followPin(pin, estimated, near, pinStep);
+    const trust = tracked ? trustBeyond(distance(tracked.position, hip) - upper - lower) : 0;
+    const weight = followPin(pin, estimated, tracked, trust, pinStep);
     if (weight === 0) return 0;
     lerp(ankle, pin.target.position, weight, ankle);
     slerp(foot, pin.target.orientation, weight, foot);
