@@ -1,6 +1,6 @@
 // npm run avatars:try -- DIR [--out OUT]: opens each avatar of a folder as the page does and writes OUT/NAME.png with
-// twelve postures (tools/avatars/try/postures.ts) and the first-person view. OUT/all.png shows all avatars waving.
-// Prints the reason for each rejected file. OUT defaults to DIR/sheets.
+// fifteen postures (tools/avatars/try/postures.ts) from three sides and the first-person view. OUT/all.png shows all
+// avatars waving. Prints the reason for each rejected file. OUT defaults to DIR/sheets.
 import { mkdirSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import { ensureChromium } from './chromium.mjs';

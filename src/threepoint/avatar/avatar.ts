@@ -27,6 +27,7 @@ import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { tieLooseParts } from './rig/loose-parts';
 import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
+import { spreadLimbs } from './rig/spread-weights';
 import { Springs } from './rig/springs';
 
 /**
@@ -92,6 +93,7 @@ interface MadeParts {
   readonly object: Group;
   readonly rig: Rig;
   readonly arms: ArmHelperJoints;
+  readonly legs: Legs;
   readonly meshes: readonly AvatarMesh[];
 }
 
@@ -105,12 +107,13 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   const rig = new Rig(vrm);
   yield* tieLooseParts(vrm, rig);
   const arms = new ArmHelperJoints(rig);
-  yield* arms.shareSkin(vrm.scene);
+  const legs = new Legs(rig);
+  yield* spreadLimbs(vrm.scene, [...arms.limbs(), ...legs.limbs()]);
   // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
   yield* setUpFirstPerson(vrm);
   const meshes = yield* readMeshes(vrm, rig);
   yield;
-  return new VrmAvatar({ vrm, object, rig, arms, meshes });
+  return new VrmAvatar({ vrm, object, rig, arms, legs, meshes });
 }
 
 /**
@@ -154,13 +157,13 @@ class VrmAvatar implements Avatar {
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
 
-  constructor({ vrm, object, rig, arms, meshes }: MadeParts) {
+  constructor({ vrm, object, rig, arms, legs, meshes }: MadeParts) {
     this.vrm = vrm;
     this.object = object;
     this.rig = rig;
     this.arms = arms;
     this.trunk = new OwnTrunk(this.rig);
-    this.legs = new Legs(this.rig);
+    this.legs = legs;
     this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);

@@ -1,5 +1,5 @@
 import { SkinnedMesh, Vector3 } from 'three';
-import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
+import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { type AvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
@@ -10,6 +10,7 @@ import { down, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { printFigures } from '../../print-figures';
 import { mannequin } from './glb';
+import { type Crossing, cut, placeOf, radiiOf } from './skin-cuts';
 
 const along = vec3(-1, 0, 0);
 const radians = (degrees: number) => (degrees * Math.PI) / 180;
@@ -37,43 +38,6 @@ function poseOf({ swing, upperRoll = 0, elbow = 0, roll = 0 }: ArmTurn): AvatarP
   turn('leftLowerArm', multiply(fromAxisAngle(down, radians(elbow)), half));
   turn('leftHand', half);
   return { head: { ...makePose<'floor'>(), tracking: 'tracked' }, leftHand: null, rightHand: null, body };
-}
-
-/** Crossings of a cut through the skin at rest with its triangles' edges: which vertices, and how far between them. */
-interface Crossing {
-  readonly mesh: SkinnedMesh;
-  readonly a: number;
-  readonly b: number;
-  readonly t: number;
-}
-
-const at = (mesh: SkinnedMesh, vertex: number, target = new Vector3()): Vector3 =>
-  mesh.getVertexPosition(vertex, target).applyMatrix4(mesh.matrixWorld);
-
-/** The skin's lines of constant height above a plane at rest: `height` of a place [m]; null: it is no part of it. */
-function cut(avatar: Avatar, height: (place: Vector3) => number | null): Crossing[] {
-  const found: Crossing[] = [];
-  avatar.object.traverse((node) => {
-    if (!(node instanceof SkinnedMesh)) return;
-    const { index } = node.geometry;
-    const heights = Array.from({ length: node.geometry.attributes.position!.count }, (_, v) => height(at(node, v)));
-    for (let corner = 0; corner < index!.count; corner++) {
-      const next = corner % 3 === 2 ? corner - 2 : corner + 1;
-      const [a, b] = [index!.getX(corner), index!.getX(next)];
-      const [from, to] = [heights[a], heights[b]];
-      if (from == null || to == null || from < 0 === to < 0) continue;
-      found.push({ mesh: node, a, b, t: from / (from - to) });
-    }
-  });
-  return found;
-}
-
-/** Least and mean distance of a cut's line from its middle, as drawn now [m]. */
-function radiiOf(crossings: readonly Crossing[]): { readonly least: number; readonly mean: number } {
-  const points = crossings.map(({ mesh, a, b, t }) => at(mesh, a).lerp(at(mesh, b), t));
-  const middle = points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length);
-  const radii = points.map((point) => point.distanceTo(middle));
-  return { least: Math.min(...radii), mean: radii.reduce((sum, radius) => sum + radius, 0) / radii.length };
 }
 
 async function wearer(file: ArrayBuffer) {
@@ -186,7 +150,7 @@ describe('our mannequin’s arm', () => {
       const { index, drawRange } = node.geometry;
       for (let corner = 0; corner < Math.min(drawRange.count, index!.count); corner++) {
         const [a, b] = [index!.getX(corner), index!.getX(corner % 3 === 2 ? corner - 2 : corner + 1)];
-        longest = Math.max(longest, at(node, a).distanceTo(at(node, b)));
+        longest = Math.max(longest, placeOf(node, a).distanceTo(placeOf(node, b)));
       }
     });
     expect(longest, 'longest edge of a triangle [m]').toBeLessThan(0.06);

@@ -6,7 +6,7 @@ import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { pinning } from 'threepoint/core/estimation/pinning';
 import { type Pose, transformPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
+import { fromAxisAngle, multiply, rotate } from 'threepoint/core/math/quat';
 import { distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { describe, expect, test } from 'vitest';
@@ -65,6 +65,42 @@ describe('a tracked foot', () => {
       expect(Number.isFinite(knee.x)).toBe(true);
       if (lost && frame > 1.31 * rateHz) expect(distance(ankle, free.legs.left.ankle)).toBeLessThan(1e-9);
       expectWhole(posture);
+    }
+  });
+
+  test('raised until the thigh is above the horizontal does not turn the thigh about itself', () => {
+    const posture = new LegPosture(proportions, eyeHeight);
+    let before: Vec3 | null = null;
+    let highest = 0;
+    for (let frame = 0; frame <= rateHz; frame++) {
+      const raised = frame / rateHz;
+      const left = { position: vec3(-0.1, 0.1 + 0.6 * raised, -0.34), orientation: trackerAtJoint.orientation };
+      posture.update(standing(raised), frame ? 1 / rateHz : 0, { left, right: null });
+      const { hip, knee, thigh, shank } = posture.legs.left;
+      const hinge = rotate(thigh, right);
+      expect(hinge.x).toBeGreaterThan(0.9);
+      expect(distance(hinge, rotate(shank, right))).toBeLessThan(1e-6);
+      if (before) expect(distance(hinge, before)).toBeLessThan(0.05);
+      before = hinge;
+      highest = Math.max(highest, knee.y - hip.y);
+    }
+    expect(highest, 'the knee above the hip [m]').toBeGreaterThan(0.05);
+  });
+
+  test('that moves out of its leg’s reach and back moves the drawn ankle no further than itself, four times', () => {
+    const posture = new LegPosture(proportions, eyeHeight);
+    let before: { readonly tracked: Vec3; readonly ankle: Vec3 } | null = null;
+    for (let frame = 0; frame <= 6 * rateHz; frame++) {
+      const time = frame / rateHz;
+      const tracked = vec3(-0.1, 0.15, -0.7 + 0.7 * Math.cos(time));
+      const left = { position: tracked, orientation: trackerAtJoint.orientation };
+      posture.update(standing(time), frame ? 1 / rateHz : 0, { left, right: null });
+      const ankle = { ...posture.legs.left.ankle };
+      expectWhole(posture);
+      if (before) {
+        expect(distance(ankle, before.ankle)).toBeLessThan(4 * distance(tracked, before.tracked) + 2e-3);
+      }
+      before = { tracked, ankle };
     }
   });
 

@@ -22,7 +22,7 @@ interface Colours {
  * Triangles before seams are cut: a beard or a large head needs some of them for its shapes, so that the file stays as
  * small.
  */
-const usualTriangles = 5_350;
+const usualTriangles = 4_800;
 
 function person(
   name: string,
@@ -120,7 +120,7 @@ const man = person(
     },
   },
   { skin: '#7a4e35', hair: '#15100e', top: '#d9d4c7', bottom: '#33475f' },
-  5_150,
+  4_600,
 );
 
 const stout = person(
@@ -153,7 +153,7 @@ const stout = person(
     },
   },
   { skin: '#e0ac86', hair: '#7a4324', top: '#b5523b', bottom: '#3c3f45' },
-  4_300,
+  3_600,
 );
 
 const child = person(
@@ -187,7 +187,7 @@ const child = person(
     },
   },
   { skin: '#d39a72', hair: '#4a2c1c', top: '#e6b23c', bottom: '#3a5a8c' },
-  4_850,
+  4_550,
 );
 
 /** Every body that is ours, by the name of its file. */

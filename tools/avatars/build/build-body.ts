@@ -1,4 +1,5 @@
 import type { FaceShape, Figure } from './figure';
+import { hipLine } from './rig';
 import type { Point } from './signed-distance';
 import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, refine, type Surface } from './surface';
 import type { Label, Seam } from './surface-labels';
@@ -62,21 +63,27 @@ function onLine(at: Point, from: Point, to: Point): { readonly share: number; re
   return { share, distance: Math.hypot(...past.map((value, axis) => value - share * way[axis]!)) };
 }
 
-/**
- * No edge is longer than this where an elbow bends and where a shoulder turns [m]: bent, they would be seen as corners.
- */
-const bending = { elbow: { within: 0.045, longest: 0.025 }, shoulder: { within: 0.06, longest: 0.034 } };
+/** No edge is longer than this so near to a joint that bends or turns [m]: bent, it would be seen as a corner. */
+const bending = {
+  elbow: { within: 0.045, longest: 0.025 },
+  shoulder: { within: 0.06, longest: 0.034 },
+  knee: { within: 0.06, longest: 0.034 },
+  hip: { within: 0.1, longest: 0.05 },
+};
 
 /** How long edges may be at a place [m]. */
 function finenessOf({ rig, finer }: Figure): (x: number, y: number, z: number) => number {
   const { elbow, shoulder } = rig.armJoints;
-  const { elbow: atElbow, shoulder: atShoulder } = bending;
+  const { elbow: atElbow, shoulder: atShoulder, knee: atKnee, hip: atHip } = bending;
+  const kneeHeight = rig.bones.find(({ name }) => name === 'leftLowerLeg')!.joint[1];
   return (x, y, z) => {
     const own = finer?.(x, y, z) ?? 1;
     const aside = Math.abs(x);
     if (Math.abs(aside - elbow) < atElbow.within && y > rig.armHeight - 0.1) return Math.min(own, atElbow.longest);
     if (Math.hypot(aside - shoulder - 0.01, y - rig.armHeight) < atShoulder.within)
       return Math.min(own, atShoulder.longest);
+    if (Math.abs(y - kneeHeight) < atKnee.within) return Math.min(own, atKnee.longest);
+    if (Math.abs(y - hipLine) < atHip.within) return Math.min(own, atHip.longest);
     return own;
   };
 }

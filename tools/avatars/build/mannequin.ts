@@ -58,7 +58,7 @@ export const mannequin: Figure = {
     [-0.92, -0.02, -0.2],
     [0.92, 1.74, 0.24],
   ],
-  triangles: 11_500,
+  triangles: 10_600,
   finer,
   shapes: { aa: (x, y, z) => openMouth(mouth, x, y, z) },
   colors: {

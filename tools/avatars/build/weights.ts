@@ -1,5 +1,5 @@
 import { type Anatomy, foldedX } from './anatomy';
-import type { BodyRig } from './rig';
+import { type BodyRig, hipLine } from './rig';
 import { type Surface, smoothOver } from './surface';
 
 /** Four bones and weights per vertex; weights sum to 1. */
@@ -39,7 +39,8 @@ function shoulderShare(x: number, y: number): number {
  * Weights by nearness to the parts of the anatomy, then spread over the surface: neighbours across a gap (fingers, arm
  * and flank) share nothing.
  */
-export function skinWeights(surface: Surface, { parts, rig }: Pick<Anatomy, 'parts' | 'rig'>): SkinWeights {
+export function skinWeights(surface: Surface, anatomy: Anatomy): SkinWeights {
+  const { parts, rig } = anatomy;
   const { bones } = rig;
   const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
   const vertices = surface.positions.length / 3;
@@ -69,30 +70,124 @@ export function skinWeights(surface: Surface, { parts, rig }: Pick<Anatomy, 'par
     const sum = [...found.values()].reduce((total, weight) => total + weight, 0);
     for (const [name, weight] of found) dense[v * bones.length + boneIndex.get(name)!] = weight / sum;
   }
-  sharpenHinges(surface, dense, rig);
+  shareAtHinges(surface, dense, anatomy);
   smoothOver(surface, dense, bones.length, 6, 0.5);
   return strongest(dense, vertices, bones.length);
 }
 
+/** A joint at which skin is shared among the bones that meet there by the place alone. */
+interface Hinge {
+  /** Bones of a body's left half. */
+  readonly bones: readonly string[];
+  /** Returns the part of each of `bones` at a place of the left half; they sum to 1. null: not at this joint. */
+  partsAt(x: number, y: number, z: number): readonly number[] | null;
+}
+
 /** At elbow and wrist the hand-over is by the distance along the arm, evenly round the limb. */
-function sharpenHinges(surface: Surface, dense: Float32Array, { bones, armJoints }: BodyRig): void {
-  const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
-  const hinges = [
-    { at: armJoints.elbow, before: 'UpperArm', after: 'LowerArm', width: 0.045 },
-    { at: armJoints.wrist - 0.002, before: 'LowerArm', after: 'Hand', width: 0.03 },
+const armHinges = ({ shoulder, elbow, wrist }: BodyRig['armJoints']): readonly Hinge[] =>
+  [
+    { at: elbow, bones: ['leftUpperArm', 'leftLowerArm'], width: 0.045 },
+    { at: wrist - 0.002, bones: ['leftLowerArm', 'leftHand'], width: 0.03 },
+  ].map(({ at, bones, width }) => ({
+    bones,
+    partsAt(x) {
+      if (x < shoulder + 0.11) return null;
+      const share = smoothstep(at - width, at + width, x);
+      return [1 - share, share];
+    },
+  }));
+
+/** How skin passes from the bone above a joint of the leg to the one below. */
+interface LegJointSkin {
+  /** The middle, above the joint, and half the height of the range, ahead of the joint and behind it [m]. */
+  readonly ahead: { readonly above: number; readonly half: number };
+  readonly behind: { readonly above: number; readonly half: number };
+  /** The distance before and behind the joint at which these hold in full [m]. */
+  readonly depth: number;
+  /** By how much the middle rises with each metre outwards from the joint. */
+  readonly slope: number;
+}
+
+/** The groin folds along a line that rises outwards, while the seat stretches; the knee stretches ahead. */
+const hipSkin: LegJointSkin = {
+  ahead: { above: 0, half: 0.09 },
+  behind: { above: -0.01, half: 0.13 },
+  depth: 0.08,
+  slope: 0.35,
+};
+const kneeSkin: LegJointSkin = {
+  ahead: { above: 0.005, half: 0.075 },
+  behind: { above: 0, half: 0.05 },
+  depth: 0.045,
+  slope: 0,
+};
+
+/** The distance from the middle [m] within which both legs share the skin between them, and its height [m]. */
+const between = { aside: 0.05, height: 0.08 };
+
+function legHinges({ rig, body }: Anatomy): readonly Hinge[] {
+  const shareBelow = (joint: string, { ahead, behind, depth, slope }: LegJointSkin) => {
+    const [jointX, jointY, jointZ] = rig.bones.find(({ name }) => name === joint)!.joint;
+    return (x: number, y: number, z: number): number => {
+      const front = smoothstep(-depth, depth, z - jointZ);
+      const half = behind.half + (ahead.half - behind.half) * front;
+      const middle = jointY + behind.above + (ahead.above - behind.above) * front + slope * (x - jointX);
+      return 1 - smoothstep(middle - half, middle + half, y);
+    };
+  };
+  const [hip, knee] = [shareBelow('leftUpperLeg', hipSkin), shareBelow('leftLowerLeg', kneeSkin)];
+  const crotch = crotchOf(body);
+  return [
+    {
+      bones: ['hips', 'leftUpperLeg', 'rightUpperLeg'],
+      partsAt(x, y, z) {
+        const legs = hip(x, y, z);
+        const joined = smoothstep(crotch - between.height / 2, crotch + between.height / 2, y);
+        const other = (legs * joined * (1 - smoothstep(0, between.aside, x))) / 2;
+        return [1 - legs, legs - other, other];
+      },
+    },
+    {
+      bones: ['leftUpperLeg', 'leftLowerLeg'],
+      partsAt(x, y, z) {
+        const share = knee(x, y, z);
+        return [1 - share, share];
+      },
+    },
   ];
-  for (let v = 0; v < surface.positions.length / 3; v++) {
-    const x = surface.positions[3 * v]!;
-    if (Math.abs(x) < armJoints.shoulder + 0.11) continue;
-    const side = x < 0 ? 'right' : 'left';
-    for (const { at, before, after, width } of hinges) {
-      const a = v * bones.length + boneIndex.get(`${side}${before}`)!;
-      const b = v * bones.length + boneIndex.get(`${side}${after}`)!;
-      const both = dense[a]! + dense[b]!;
-      if (both < 0.5) continue;
-      const share = smoothstep(at - width, at + width, Math.abs(x));
-      dense[a] = both * (1 - share);
-      dense[b] = both * share;
+}
+
+/** Returns the height below which the legs are apart [m]. */
+function crotchOf(body: Anatomy['body']): number {
+  const step = 0.005;
+  const isJoined = (y: number) => Array.from({ length: 60 }, (_, i) => body(0, y, step * (i - 30))).some((d) => d < 0);
+  let y = hipLine;
+  while (y > 0 && isJoined(y)) y -= step;
+  return y;
+}
+
+const otherSide = (bone: string): string =>
+  bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
+
+/** Shares the skin at hinges by the place, however near the parts of the anatomy are. */
+function shareAtHinges({ positions }: Surface, dense: Float32Array, anatomy: Anatomy): void {
+  const { bones, armJoints } = anatomy.rig;
+  const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
+  const hinges = [...armHinges(armJoints), ...legHinges(anatomy)].map((hinge) => ({
+    ...hinge,
+    left: hinge.bones.map((name) => boneIndex.get(name)!),
+    right: hinge.bones.map((name) => boneIndex.get(otherSide(name))!),
+  }));
+  for (let v = 0; v < positions.length / 3; v++) {
+    const [x, y, z] = [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
+    const row = dense.subarray(v * bones.length, (v + 1) * bones.length);
+    for (const { left, right, partsAt } of hinges) {
+      const own = x < 0 ? right : left;
+      const sum = own.reduce((total, bone) => total + row[bone]!, 0);
+      const parts = sum < 0.5 ? null : partsAt(Math.abs(x), y, z);
+      parts?.forEach((part, i) => {
+        row[own[i]!] = sum * part;
+      });
     }
   }
 }

@@ -1,3 +1,4 @@
+import type { TrackedPose } from 'threepoint/core/math/pose';
 import { fromAxes, fromAxisAngle, identity, type Quat } from 'threepoint/core/math/quat';
 import {
   backward,
@@ -49,10 +50,20 @@ const both = (hand: Hand): [Hand, Hand] => [
 /** By how much the body is turned to the left in a twist [rad]. */
 const twisted = Math.PI / 3;
 
+/** An ankle that a tracker pins, sole level, toes ahead. */
+const ankle = (x: number, y: number, z: number): TrackedPose => point(vec3(x, y, z), identity);
+
+const onKnees = both({ at: vec3(-0.13, 0.62, -0.36), fingers: forward, palm: down });
+
 const hanging: Hand = { at: vec3(-0.24, 0.83, 0.02), fingers: down, palm: inwards.left };
 
+interface Posture {
+  readonly name: string;
+  readonly frame: TrackingFrame;
+}
+
 /** What a person of 1.70 m does on the pictures of a sheet: floor frame [m], facing −Z. */
-export const postures: readonly { readonly name: string; readonly frame: TrackingFrame }[] = [
+export const postures: readonly Posture[] = [
   {
     name: 'T-pose',
     frame: posture(
@@ -137,5 +148,45 @@ export const postures: readonly { readonly name: string; readonly frame: Trackin
       { at: vec3(-0.29, 1.25, -0.4), fingers: vec3(-0.87, 0, -0.5), palm: vec3(-0.5, 0, 0.87) },
       fromAxisAngle(up, twisted),
     ),
+  },
+];
+
+/** What that person does with trackers at the joints of hips and feet. */
+export const trackedPostures: readonly Posture[] = [
+  {
+    name: 'sitting',
+    frame: {
+      ...posture(vec3(0, 1.15, -0.14), ...onKnees),
+      trackers: {
+        hips: point(vec3(0, 0.55, 0), identity),
+        leftFoot: ankle(-0.1, 0.085, -0.44),
+        rightFoot: ankle(0.1, 0.085, -0.44),
+      },
+    },
+  },
+  {
+    name: 'deep squat',
+    frame: {
+      ...posture(
+        vec3(0, 0.87, -0.3),
+        ...both({ at: vec3(-0.16, 0.62, -0.52), fingers: vec3(0.3, 0.1, -1), palm: right }),
+      ),
+      trackers: {
+        hips: point(vec3(0, 0.36, 0.12), fromAxisAngle(right, -0.4)),
+        leftFoot: ankle(-0.13, 0.085, -0.1),
+        rightFoot: ankle(0.13, 0.085, -0.1),
+      },
+    },
+  },
+  {
+    name: 'knee raised',
+    frame: {
+      ...posture(eyes, hanging, { ...hanging, at: mirrored(hanging.at), palm: inwards.right }),
+      trackers: {
+        hips: point(vec3(0, 0.98, 0.1), identity),
+        leftFoot: ankle(-0.1, 0.51, -0.34),
+        rightFoot: ankle(0.1, 0.085, 0.1),
+      },
+    },
   },
 ];

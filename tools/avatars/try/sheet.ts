@@ -6,21 +6,26 @@ import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { createIk } from 'threepoint/core/estimation/estimators';
+import { pinning } from 'threepoint/core/estimation/pinning';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { postures } from './postures';
+import { postures, trackedPostures } from './postures';
 
 /** A picture [pixels] on the sheet, and the line of text above all. */
 const width = 330;
 const height = 430;
 const headline = 34;
-/** Postures side by side; each is seen from two sides. */
+const allPostures = [...postures, ...trackedPostures];
+/** Postures side by side; each is seen from three sides. */
 const columns = 6;
-const sides = 2;
+const sides = 3;
 /** A body's picture [pixels] in the row of all bodies of a folder. */
 const bodyWidth = 300;
 const bodyHeight = 520;
+/** Postures with trackers state the joints themselves. */
+const trackerOffsets = { hips: trackerAtJoint, leftFoot: trackerAtJoint, rightFoot: trackerAtJoint };
 /** The time a posture is held before its picture [s], and the frame rate until then [Hz]. */
 const heldSeconds = 2;
 const rateHz = 30;
@@ -57,7 +62,7 @@ function createScene(): Scene {
 
 /** Holds a posture until filters, feet and hair have come to rest. */
 function hold(avatar: Avatar, frame: TrackingFrame, from: number): void {
-  const estimator = createIk(defaultCalibration);
+  const estimator = createIk({ ...defaultCalibration, trackerOffsets }, { pinning });
   for (let step = 0; step < heldSeconds * rateHz; step++) {
     const time = from + step / rateHz;
     avatar.setPose(estimator.update({ ...frame, time }).pose, time);
@@ -114,10 +119,10 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   const scene = createScene();
   scene.add(avatar.object);
   avatar.setCalibration(defaultCalibration);
-  const outside = [fromOutside(-0.9, -3.8), fromOutside(2.4, 3.1)];
+  const outside = [fromOutside(-0.9, -3.8), fromOutside(-3.9, -0.3), fromOutside(1.2, 3.7)];
   let seenFromInside = 0;
   let waving: string | null = null;
-  for (const [index, { name: posture, frame }] of postures.entries()) {
+  for (const [index, { name: posture, frame }] of allPostures.entries()) {
     avatar.setFirstPerson(false);
     hold(avatar, frame, index * 10);
     const [column, band] = [index % columns, Math.floor(index / columns)];
@@ -139,7 +144,7 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
 window.makeSheet = async (address, name) => {
   const canvas = document.createElement('canvas');
   canvas.width = width * (columns + 1);
-  canvas.height = headline + Math.ceil(postures.length / columns) * sides * height;
+  canvas.height = headline + Math.ceil(allPostures.length / columns) * sides * height;
   const sheet = canvas.getContext('2d');
   if (!sheet) throw new Error('no 2D canvas');
   sheet.fillStyle = '#ffffff';

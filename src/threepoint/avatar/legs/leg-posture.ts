@@ -3,7 +3,7 @@ import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
 import { Gait } from '../../core/estimation/gait/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
-import { followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
+import { followPin, handOverSeconds, makePin, type Pin, trustBeyond } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
 import { makePose } from '../../core/math/pose';
 import {
@@ -78,8 +78,6 @@ const longestWay = 0.5;
  */
 const fastestTurn = 14;
 const furthestTurn = Math.PI / 2;
-/** A tracked ankle that is this far [m] beyond the reach of its leg is wrong, and counts as lost. */
-const strayAnkle = 0.15;
 /** The shortest frame [s] that is assumed: jittering time stamps report shorter ones. */
 const shortestFrame = 1 / 60;
 
@@ -103,18 +101,16 @@ const pole = vec3(0, 0, 0);
 const bend = vec3(0, 0, 0);
 const line = vec3(0, 0, 0);
 const nod = quat(0, 0, 0, 1);
-const axisX = vec3(0, 0, 0);
+const hinge = vec3(0, 0, 0);
 const axisY = vec3(0, 0, 0);
 const axisZ = vec3(0, 0, 0);
 const kneeCircle = makeElbowCircle();
 const fallbacks: readonly [Vec3, Vec3] = [levelForward, up];
 
-/** The rotation that takes a leg hanging down, toes to −Z, along `direction` with its knee towards `towards`. */
-function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
+/** The rotation that takes a leg hanging down, toes to −Z, along `direction` with its hinge along `hinge`, unit. */
+function aimDown(direction: Vec3, hinge: Vec3, target: MutableQuat): Quat {
   normalise(scale(direction, -1, axisY), up, axisY);
-  scale(towards, -1, axisZ);
-  normalise(cross(axisY, axisZ, axisX), right, axisX);
-  return fromAxes(axisX, axisY, cross(axisX, axisY, axisZ), target);
+  return fromAxes(hinge, axisY, cross(hinge, axisY, axisZ), target);
 }
 
 /**
@@ -211,8 +207,8 @@ export class LegPosture {
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);
     copyQuat(foot, estimated.orientation);
-    const near = tracked && distance(tracked.position, hip) <= upper + lower + strayAnkle ? tracked : null;
-    const weight = followPin(pin, estimated, near, pinStep);
+    const trust = tracked ? trustBeyond(distance(tracked.position, hip) - upper - lower) : 0;
+    const weight = followPin(pin, estimated, tracked, trust, pinStep);
     if (weight === 0) return 0;
     lerp(ankle, pin.target.position, weight, ankle);
     slerp(foot, pin.target.orientation, weight, foot);
@@ -232,7 +228,9 @@ export class LegPosture {
     normalise(add(toes, levelForward, pole), levelForward, pole);
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
     elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbacks, bend), knee);
-    aimDown(subtract(knee, hip, line), pole, leg.thigh);
-    aimDown(subtract(ankle, knee, line), pole, leg.shank);
+    // Both bones lie in the plane across the hinge, which is defined even where a thigh points to its knee's pole.
+    cross(circle.axis, bend, hinge);
+    aimDown(subtract(knee, hip, line), hinge, leg.thigh);
+    aimDown(subtract(ankle, knee, line), hinge, leg.shank);
   }
 }

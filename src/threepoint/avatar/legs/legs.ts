@@ -2,7 +2,9 @@ import type { TrackedFeet } from '../../core/body/avatar-pose';
 import type { GaitPoints } from '../../core/estimation/gait/gait-features';
 import { type Side, sides } from '../../core/math/side';
 import { vec3 } from '../../core/math/vec3';
-import type { AvatarJoint, Rig } from '../rig/rig';
+import { LegHelperJoints } from '../rig/leg-helpers';
+import { type AvatarJoint, legJoints, type Rig } from '../rig/rig';
+import type { SpreadLimb } from '../rig/spread-weights';
 import { LegPosture, type LegProportions } from './leg-posture';
 
 const bonesOf = {
@@ -41,10 +43,16 @@ export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number)
 /** The legs of an avatar: a leg posture on the bones of its rig. */
 export class Legs {
   private readonly posture = new LegPosture(averageLegs, averageEyeHeight);
-  private readonly whole: boolean;
+  /** null: the rig lacks a bone of a leg. */
+  private readonly helpers: LegHelperJoints | null;
 
   constructor(private readonly rig: Rig) {
-    this.whole = rig.bones.has('leftFoot') && rig.bones.has('rightFoot');
+    this.helpers = legJoints.every((name) => rig.bones.has(name)) ? new LegHelperJoints(rig) : null;
+  }
+
+  /** Returns the joints among which the skin of the legs is to be shared. */
+  limbs(): readonly SpreadLimb[] {
+    return this.helpers?.limbs() ?? [];
   }
 
   /**
@@ -59,14 +67,16 @@ export class Legs {
 
   /** Advances by one frame under the hips of a body, floor frame. feet: the ankles that trackers pin. */
   apply(points: GaitPoints, deltaSeconds: number, feet?: TrackedFeet): void {
-    if (!this.whole) return;
+    if (!this.helpers) return;
     this.posture.update(points, deltaSeconds, feet);
     for (const side of sides) {
-      const { hip, knee, ankle, thigh, shank, foot } = this.posture.legs[side];
+      const leg = this.posture.legs[side];
+      const { hip, knee, ankle, thigh, shank, foot } = leg;
       const bones = bonesOf[side];
       this.rig.place(bones.thigh, hip, thigh);
       this.rig.place(bones.shank, knee, shank);
       this.rig.place(bones.foot, ankle, foot);
+      this.helpers.place(side, points.hips, leg);
     }
   }
 }

@@ -1,4 +1,3 @@
-import type { Object3D } from 'three';
 import { alongArm, unwrapTwist } from '../../core/body/arm-rotations';
 import type { MutableJointPoses } from '../../core/body/forward-kinematics';
 import {
@@ -13,9 +12,8 @@ import {
   twistOf,
 } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
-import type { Steps } from '../in-steps';
 import type { HelperJoint, Rig } from './rig';
-import { type SpreadArm, spreadArms } from './spread-weights';
+import type { SpreadLimb } from './spread-weights';
 
 /** One arm's joints that its file lacks. */
 interface ArmHelpers {
@@ -64,12 +62,9 @@ export class ArmHelperJoints {
     this.#arms = sides.map((side) => makeHelpers(rig, side));
   }
 
-  /** Shares the skin under `scene` among the joints, once. The rig must be at rest, its world matrices up to date. */
-  shareSkin(scene: Object3D): Steps<void> {
-    return spreadArms(
-      scene,
-      this.#arms.map((arm) => spreadOf(this.#rig, arm)),
-    );
+  /** Returns the joints among which the skin is to be shared. */
+  limbs(): readonly SpreadLimb[] {
+    return this.#arms.map((arm) => spreadOf(this.#rig, arm));
   }
 
   /** Takes the twist out of the forearms of a pose, floor frame; `place` gives it back to what lies along them. */
@@ -141,7 +136,7 @@ function makeHelpers(rig: Rig, side: Side): ArmHelpers {
   };
 }
 
-function spreadOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmHelpers): SpreadArm {
+function spreadOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmHelpers): SpreadLimb {
   const bone = (name: 'UpperArm' | 'LowerArm' | 'Hand') => {
     const found = rig.bones.get(`${side}${name}`);
     if (!found) throw new Error(`avatar/arm-helpers: a rig without ${side}${name}`);
@@ -149,13 +144,13 @@ function spreadOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmH
   };
   const [upperArm, lowerArm, hand] = [bone('UpperArm'), bone('LowerArm'), bone('Hand')];
   return {
-    upperArm: upperArm.node,
-    lowerArm: lowerArm.node,
-    hand: hand.node,
+    upper: upperArm.node,
+    lower: lowerArm.node,
+    end: hand.node,
     places: [upperArm.restPosition, lowerArm.restPosition, hand.restPosition],
-    shoulder: shoulder.node,
-    elbow: elbow.node,
-    wrist: wrist.node,
+    beforeUpper: shoulder.node,
+    beforeLower: elbow.node,
+    beforeEnd: wrist.node,
     alongUpper: [...upper.map(({ node }) => node), upperArm.node],
     alongLower: [lowerArm.node, ...lower.map(({ node }) => node)],
   };

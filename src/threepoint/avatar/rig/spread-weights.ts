@@ -12,18 +12,19 @@ import type { Steps } from '../in-steps';
 import { skinnedMeshesOf } from '../meshes-of';
 import { isBelow } from './body-meshes';
 
-/** The bones of an arm and the joints between them among which its skin is to be shared. */
-export interface SpreadArm {
-  readonly upperArm: Object3D;
-  readonly lowerArm: Object3D;
-  readonly hand: Object3D;
-  /** Shoulder, elbow and wrist at rest, world frame [m]. */
+/** The bones of an arm or a leg and the joints between them among which its skin is to be shared. */
+export interface SpreadLimb {
+  /** The bones from shoulder or hip, from elbow or knee, and from wrist or ankle on. */
+  readonly upper: Object3D;
+  readonly lower: Object3D;
+  readonly end: Object3D;
+  /** Their joints at rest, world frame [m]. */
   readonly places: readonly [Vector3, Vector3, Vector3];
-  /** Half of the way between the bones that meet there. */
-  readonly shoulder: Object3D;
-  readonly elbow: Object3D;
-  readonly wrist: Object3D;
-  /** From shoulder to elbow and from elbow to wrist, at even distances. */
+  /** The joints half of the way between the bones that meet where each of these bones begins. */
+  readonly beforeUpper: Object3D;
+  readonly beforeLower: Object3D;
+  readonly beforeEnd: Object3D;
+  /** From the first joint to the second and from there to the third, at even distances. */
   readonly alongUpper: readonly Object3D[];
   readonly alongLower: readonly Object3D[];
 }
@@ -39,19 +40,19 @@ const influences = 4;
 /** Shares of a vertex by the bone's index in the skeleton. */
 type Shares = Map<number, number>;
 
-/** A SpreadArm as one skeleton has it; −1: it lacks the bone. */
-interface ArmIndices {
+/** A SpreadLimb as one skeleton has it; −1: it lacks the bone. */
+interface LimbIndices {
   readonly upper: ReadonlySet<number>;
   readonly lower: ReadonlySet<number>;
-  readonly hand: number;
-  /** Every bone from the upper arm on. */
-  readonly arm: ReadonlySet<number>;
-  readonly shoulder: number;
-  readonly elbow: number;
-  readonly wrist: number;
+  readonly end: number;
+  /** Every bone from the upper one on. */
+  readonly limb: ReadonlySet<number>;
+  readonly beforeUpper: number;
+  readonly beforeLower: number;
+  readonly beforeEnd: number;
   readonly alongUpper: readonly number[];
   readonly alongLower: readonly number[];
-  readonly places: SpreadArm['places'];
+  readonly places: SpreadLimb['places'];
 }
 
 /** Twist bones that lie beside the way to the next bone, by what Unreal, Character Creator and 3ds Max call them. */
@@ -101,13 +102,13 @@ function halfBind(skeleton: Skeleton, before: number, after: number): Matrix4 {
 }
 
 /** Adds the joints between to a skeleton. Those along a bone are bound as it is. */
-function extend(skeleton: Skeleton, arm: SpreadArm): ArmIndices | null {
+function extend(skeleton: Skeleton, limb: SpreadLimb): LimbIndices | null {
   const { bones, boneInverses } = skeleton;
-  const upper = alongBone(bones, arm.upperArm, arm.lowerArm);
-  const lower = alongBone(bones, arm.lowerArm, arm.hand);
-  const [first, second, third] = [arm.upperArm, arm.lowerArm, arm.hand].map((node) => bones.indexOf(node as Bone));
+  const upper = alongBone(bones, limb.upper, limb.lower);
+  const lower = alongBone(bones, limb.lower, limb.end);
+  const [first, second, third] = [limb.upper, limb.lower, limb.end].map((node) => bones.indexOf(node as Bone));
   if (first === undefined || second === undefined || third === undefined || (first < 0 && second < 0)) return null;
-  const all = new Set(bones.flatMap((bone, index) => (isBelow(bone, arm.upperArm) ? [index] : [])));
+  const all = new Set(bones.flatMap((bone, index) => (isBelow(bone, limb.upper) ? [index] : [])));
   const add = (node: Object3D, base: number, bind = boneInverses[base]?.clone()): number => {
     if (!bind) return -1;
     bones.push(node as Bone);
@@ -126,14 +127,14 @@ function extend(skeleton: Skeleton, arm: SpreadArm): ArmIndices | null {
   return {
     upper,
     lower,
-    hand: third,
-    arm: all,
-    shoulder: between(arm.shoulder, first),
-    elbow: between(arm.elbow, second),
-    wrist: between(arm.wrist, third),
-    alongUpper: along(arm.alongUpper, first),
-    alongLower: along(arm.alongLower, second),
-    places: arm.places,
+    end: third,
+    limb: all,
+    beforeUpper: between(limb.beforeUpper, first),
+    beforeLower: between(limb.beforeLower, second),
+    beforeEnd: between(limb.beforeEnd, third),
+    alongUpper: along(limb.alongUpper, first),
+    alongLower: along(limb.alongLower, second),
+    places: limb.places,
   };
 }
 
@@ -167,42 +168,59 @@ function shareAlong(place: Vector3, begin: Vector3, end: Vector3): number {
 /** Hands a share on along a row of bones. */
 function giveAlong(shares: Shares, row: readonly number[], share: number, along: number): void {
   const step = along * (row.length - 1);
-  const index = Math.min(row.length - 2, Math.floor(step));
+  const index = Math.floor(step);
   const [before, after] = [row[index], row[index + 1]];
-  if (before === undefined || after === undefined) return;
-  give(shares, before, share * (index + 1 - step));
-  give(shares, after, share * (step - index));
+  if (before !== undefined) give(shares, before, share * (index + 1 - step));
+  if (after !== undefined) give(shares, after, share * (step - index));
 }
 
-/** Shares what the bones of an arm have of a vertex among them and the joints between; false: they have none. */
-function spread(shares: Shares, arm: ArmIndices, place: Vector3): boolean {
-  let upper = take(shares, arm.upper);
-  let lower = take(shares, arm.lower);
-  if (upper + lower === 0) return false;
-  let trunk = 0;
-  for (const [bone, share] of shares) if (!arm.arm.has(bone)) trunk += share;
-  const atShoulder = arm.shoulder < 0 ? 0 : halfWay(trunk, upper);
-  if (trunk > 0 && atShoulder > 0) {
-    const left = (trunk - atShoulder / 2) / trunk;
-    for (const [bone, share] of shares) if (!arm.arm.has(bone)) shares.set(bone, share * left);
-    upper -= atShoulder / 2;
-    give(shares, arm.shoulder, atShoulder);
-  }
-  const atElbow = arm.elbow < 0 ? 0 : halfWay(upper, lower);
-  upper -= atElbow / 2;
-  lower -= atElbow / 2;
-  give(shares, arm.elbow, atElbow);
-  const hand = shares.get(arm.hand) ?? 0;
-  const atWrist = arm.wrist < 0 ? 0 : halfWay(lower, hand);
-  if (atWrist > 0) {
-    lower -= atWrist / 2;
-    shares.set(arm.hand, hand - atWrist / 2);
-    give(shares, arm.wrist, atWrist);
-  }
-  const [shoulder, elbow, wrist] = arm.places;
-  giveAlong(shares, arm.alongUpper, upper, shareAlong(place, shoulder, elbow));
-  giveAlong(shares, arm.alongLower, lower, shareAlong(place, elbow, wrist));
-  return true;
+/** What a vertex moves with of one limb. */
+interface LimbShares {
+  readonly limb: LimbIndices;
+  readonly upper: number;
+  readonly lower: number;
+}
+
+/** Takes the shares of the bones of every limb. */
+const takeLimbs = (shares: Shares, limbs: readonly LimbIndices[]): readonly LimbShares[] =>
+  limbs.flatMap((limb) => {
+    const [upper, lower] = [take(shares, limb.upper), take(shares, limb.lower)];
+    return upper + lower > 0 ? [{ limb, upper, lower }] : [];
+  });
+
+/**
+ * Shares what the bones of limbs have of a vertex among them and the joints between. Limbs that share a vertex, as legs
+ * do at the crotch, each count with a part of the trunk.
+ */
+function spread(shares: Shares, limbs: readonly LimbIndices[], place: Vector3): void {
+  const owned = takeLimbs(shares, limbs);
+  const total = owned.reduce((sum, { upper, lower }) => sum + upper + lower, 0);
+  const trunkBones = [...shares.keys()].filter((bone) => !owned.some(({ limb }) => limb.limb.has(bone)));
+  const trunk = trunkBones.reduce((sum, bone) => sum + shares.get(bone)!, 0);
+  const atRoots = owned.map(({ limb, upper, lower }) =>
+    limb.beforeUpper < 0 ? 0 : halfWay((trunk * (upper + lower)) / total, upper),
+  );
+  const left = trunk - atRoots.reduce((sum, share) => sum + share, 0) / 2;
+  for (const bone of trunkBones) shares.set(bone, (shares.get(bone)! * left) / trunk);
+  owned.forEach((own, i) => {
+    spreadLimb(shares, own, atRoots[i]!, place);
+  });
+}
+
+/** Shares out one limb of a vertex. atRoot: what the joint before it takes, half of it from the limb. */
+function spreadLimb(shares: Shares, { limb, upper, lower }: LimbShares, atRoot: number, place: Vector3): void {
+  give(shares, limb.beforeUpper, atRoot);
+  const upperLeft = upper - atRoot / 2;
+  const atMiddle = limb.beforeLower < 0 ? 0 : halfWay(upperLeft, lower);
+  give(shares, limb.beforeLower, atMiddle);
+  const lowerLeft = lower - atMiddle / 2;
+  const end = shares.get(limb.end) ?? 0;
+  const atEnd = limb.beforeEnd < 0 ? 0 : halfWay(lowerLeft, end);
+  give(shares, limb.beforeEnd, atEnd);
+  if (atEnd > 0) shares.set(limb.end, end - atEnd / 2);
+  const [first, second, third] = limb.places;
+  giveAlong(shares, limb.alongUpper, upperLeft - atMiddle / 2, shareAlong(place, first, second));
+  giveAlong(shares, limb.alongLower, lowerLeft - atEnd / 2, shareAlong(place, second, third));
 }
 
 interface Weights {
@@ -213,27 +231,27 @@ interface Weights {
 /** The number of vertices that one step processes. */
 const verticesAStep = 512;
 
-function* spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Steps<Weights | null> {
+function* spreadMesh(mesh: SkinnedMesh, limbs: readonly LimbIndices[]): Steps<Weights | null> {
   const { skinIndex, skinWeight } = mesh.geometry.attributes;
   if (!skinIndex || !skinWeight) return null;
   const indices = new Uint16Array(skinIndex.count * influences);
   const weights = new Float32Array(skinIndex.count * influences);
-  const touched = new Set(arms.flatMap(({ upper, lower }) => [...upper, ...lower]));
+  const touched = new Set(limbs.flatMap(({ upper, lower }) => [...upper, ...lower]));
   const shares: Shares = new Map();
   const place = new Vector3();
   for (let vertex = 0; vertex < skinIndex.count; vertex++) {
     if (vertex % verticesAStep === 0) yield;
     shares.clear();
-    let isOfArm = false;
+    let isOfLimb = false;
     for (let slot = 0; slot < influences; slot++) {
       const bone = skinIndex.getComponent(vertex, slot);
       const share = skinWeight.getComponent(vertex, slot);
       give(shares, bone, share);
-      isOfArm ||= share > 0 && touched.has(bone);
+      isOfLimb ||= share > 0 && touched.has(bone);
     }
-    if (isOfArm) {
+    if (isOfLimb) {
       mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld);
-      for (const arm of arms) if (spread(shares, arm, place)) break;
+      spread(shares, limbs, place);
     }
     writeStrongest(shares, vertex * influences, indices, weights);
   }
@@ -255,17 +273,17 @@ function writeStrongest(shares: Shares, at: number, indices: Uint16Array, weight
 }
 
 /**
- * Shares the skin of arms among their bones and the joints between, in every mesh under `scene`. The rig must be at
+ * Shares the skin of limbs among their bones and the joints between, in every mesh under `scene`. The rig must be at
  * rest, its world matrices up to date.
  */
-export function* spreadArms(scene: Object3D, arms: readonly SpreadArm[]): Steps<void> {
+export function* spreadLimbs(scene: Object3D, limbs: readonly SpreadLimb[]): Steps<void> {
   scene.updateMatrixWorld(true);
-  const extended = new Map<Skeleton, readonly ArmIndices[]>();
+  const extended = new Map<Skeleton, readonly LimbIndices[]>();
   const done = new Map<Skeleton, Map<unknown, Weights>>();
   for (const node of skinnedMeshesOf(scene)) {
     const { skeleton, geometry } = node;
     const known = extended.get(skeleton);
-    const own = known ?? arms.flatMap((arm) => extend(skeleton, arm) ?? []);
+    const own = known ?? limbs.flatMap((limb) => extend(skeleton, limb) ?? []);
     if (!known) {
       extended.set(skeleton, own);
       skeleton.init();

@@ -1,5 +1,12 @@
 import limbLimits from '../body/limb-limits.json';
-import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
+import {
+  elbowCircle,
+  elbowOnCircle,
+  type LimbBones,
+  makeElbowCircle,
+  poleAcross,
+  softenedReach,
+} from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import {
@@ -37,15 +44,19 @@ import {
 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import limits from './kinematic-limits.json';
-import { followPin, handOverSeconds, makePin, type Pin } from './pin';
+import { followPin, handOverSeconds, makePin, type Pin, trustBeyond } from './pin';
 import type { TrackedJoints } from './tracked-joints';
 import { placeShoulder, type TorsoBones, type TorsoPose } from './trunk/fit-torso';
 
-/** A tracked joint that is this far [m] beyond the reach of its bones from the head is wrong, and counts as lost. */
-const strayTracker = 0.15;
 const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
-/** The fastest turn [rad/s] of the side to which the trunk bends: near straight it is ill-defined. */
+/**
+ * The fastest turn [rad/s] of the side to which the trunk bends, and the fastest way [m/s] of a joint by it: near
+ * straight, and where a trunk folds, the side is ill-defined.
+ */
 const bendSpeed = 8;
+const bendWay = 0.5;
+/** The fastest change [m/s] of the back's bow: near straight, a millimetre of the hips gives it centimetres. */
+const bowSpeed = 1;
 /** The share of the pelvis's turn against its estimate that the spine joint takes; the chest joint takes the rest. */
 const spineShare = 0.5;
 
@@ -53,6 +64,8 @@ const spineShare = 0.5;
 interface TrunkPin extends Pin {
   /** Unit, frame of the pinned joint; zero: not known. */
   readonly bend: MutableVec3;
+  /** The distance [m] of the joint above the hips from the line between its neighbours; null: not known. */
+  bow: number | null;
 }
 
 export interface PinTrunkState {
@@ -64,8 +77,8 @@ export interface PinTrunkState {
 
 export const makePinTrunkState = (): PinTrunkState => ({
   known: false,
-  hips: { ...makePin(), bend: vec3(0, 0, 0) },
-  chest: { ...makePin(), bend: vec3(0, 0, 0) },
+  hips: { ...makePin(), bend: vec3(0, 0, 0), bow: null },
+  chest: { ...makePin(), bend: vec3(0, 0, 0), bow: null },
 });
 
 /** A trunk before a pin moves it; floor frame. */
@@ -117,25 +130,25 @@ export function pinTrunk(
   bones: TorsoBones,
   deltaSeconds: number,
 ): void {
-  const step = state.known ? Math.max(deltaSeconds, 0) / handOverSeconds : 1;
+  const seconds = Math.max(deltaSeconds, 0);
+  const step = state.known ? seconds / handOverSeconds : 1;
   state.known = true;
   if (!tracked.hips && !tracked.chest && state.hips.share === 0 && state.chest.share === 0) return;
   copyTrunk(torso, fitted);
   const { headJoint } = frame;
-  const most = bendSpeed * Math.max(deltaSeconds, 0);
   const chestReach = bones.neckLength + bones.thoraxLength;
-  const chest = nearEnough(tracked.chest, headJoint, chestReach);
-  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), chest, step);
+  const chestTrust = trustOf(tracked.chest, headJoint, chestReach);
+  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), tracked.chest, chestTrust, step);
   if (chestWeight > 0) {
     copyTrunk(torso, before);
-    moveChest(torso, state.chest, headJoint, bones, most);
+    moveChest(torso, state.chest, headJoint, bones, seconds);
     mixTrunk(torso, headJoint, bones, chestWeight);
   }
-  const hips = nearEnough(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
-  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), hips, step);
+  const hipsTrust = trustOf(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
+  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), tracked.hips, hipsTrust, step);
   if (hipsWeight > 0) {
     copyTrunk(torso, before);
-    moveHips(torso, state.hips, headJoint, bones, most);
+    moveHips(torso, state.hips, headJoint, bones, seconds);
     mixTrunk(torso, headJoint, bones, hipsWeight);
   }
   if (chestWeight === 0 && hipsWeight === 0) return;
@@ -149,11 +162,12 @@ export function resetPinTrunk(state: PinTrunkState): void {
   for (const pin of [state.hips, state.chest]) {
     pin.share = 0;
     setVec3(pin.bend, 0, 0, 0);
+    pin.bow = null;
   }
 }
 
-const nearEnough = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): Pose<'floor'> | null =>
-  joint && distance(joint.position, headJoint) <= reach + strayTracker ? joint : null;
+const trustOf = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): number =>
+  joint ? trustBeyond(distance(joint.position, headJoint) - reach) : 0;
 
 function copyTrunk({ neck, chest, hips, rotations }: TrunkBefore, target: TrunkBefore): void {
   copyVec3(neck, target.neck);
@@ -186,14 +200,14 @@ function mixTrunk(
 }
 
 /** The chest joint at its target, as nearly as neck and thorax reach; the lower back is carried along. */
-function moveChest(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: TorsoBones, most: number): void {
+function moveChest(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: TorsoBones, seconds: number): void {
   const { target } = pin;
   const { neck, chest, hips, rotations } = torso;
   limb.upper = bones.neckLength;
   limb.lower = bones.thoraxLength;
   elbowCircle(headJoint, target.position, limb, down, circle);
   add(target.position, rotate(target.orientation, bones.thorax.main, bone), neck);
-  bendTowards(neck, pin, most);
+  bendTowards(neck, pin, seconds);
   addScaled(headJoint, circle.axis, circle.span, chest);
   add(hips, subtract(chest, before.chest, bone), hips);
 
@@ -206,14 +220,13 @@ function moveChest(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: Tors
 }
 
 /** The hips at their target, as nearly as the trunk reaches; chest joint and neck move no further than they must. */
-function moveHips(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: TorsoBones, most: number): void {
+function moveHips(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: TorsoBones, seconds: number): void {
   const { target } = pin;
   const { neck, chest, hips, rotations } = torso;
   const { restOffsets } = bones.skeleton;
   const pelvisLength = length(restOffsets.spine);
-  limb.upper = bones.thoraxLength;
-  limb.lower = length(restOffsets.chest);
-  const backReach = limb.upper + limb.lower;
+  const backLength = length(restOffsets.chest);
+  const backReach = bones.thoraxLength + backLength;
   const spineReach = bones.neckLength + backReach;
 
   const far = distance(target.position, headJoint);
@@ -221,15 +234,19 @@ function moveHips(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: Torso
   lerp(headJoint, target.position, Math.min(1, furthest / Math.max(far, 1e-9)), hips);
   rotate(target.orientation, restOffsets.spine, boneBefore);
   add(hips, boneBefore, spine);
-  bringWithin(spine, hips, pelvisLength, headJoint, spineReach, target.orientation);
-  bringWithin(neck, headJoint, bones.neckLength, spine, backReach, target.orientation);
+  bringTo(spine, hips, pelvisLength, headJoint, Math.min(distance(spine, headJoint), spineReach), target.orientation);
+  limb.upper = bones.thoraxLength;
+  limb.lower = backLength;
+  elbowCircle(neck, spine, limb, down, circle);
+  const span = spanOf(bowAfter(pin, circle.radius, seconds), limb);
+  bringTo(neck, headJoint, bones.neckLength, spine, span, target.orientation);
   subtract(spine, hips, bone);
   swingBone(copyQuat(target.orientation, rotations.hips), boneBefore, bone);
 
   limb.upper = bones.thoraxLength;
-  limb.lower = backReach - limb.upper;
-  elbowCircle(neck, spine, limb, down, circle);
-  bendTowards(chest, pin, most);
+  limb.lower = backLength;
+  pin.bow = elbowCircle(neck, spine, limb, down, circle).radius;
+  bendTowards(chest, pin, seconds);
   addScaled(neck, circle.axis, circle.span, spine);
   subtract(spine, bone, hips);
 
@@ -246,18 +263,19 @@ function moveHips(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: Torso
   turnNeck(torso, headJoint);
 }
 
-/** Moves a joint along its sphere about `root` until `goal` is within `reach` [m] of it. */
-function bringWithin(
-  joint: MutableVec3,
-  root: Vec3,
-  boneLength: number,
-  goal: Vec3,
-  reach: number,
-  facing: Quat,
-): void {
-  if (distance(joint, goal) <= reach) return;
+/** Returns the bow [m] after a frame: that of the places, as far as it can change in `seconds`. */
+const bowAfter = ({ bow }: TrunkPin, wanted: number, seconds: number): number =>
+  bow === null ? wanted : clamp(wanted, bow - bowSpeed * seconds, bow + bowSpeed * seconds);
+
+/** Returns the distance [m] between the ends of two bones that meet this far [m] off the line between. */
+const spanOf = (bow: number, { upper, lower }: LimbBones): number =>
+  Math.sqrt(Math.max(upper * upper - bow * bow, 0)) + Math.sqrt(Math.max(lower * lower - bow * bow, 0));
+
+/** Moves a joint along its sphere about `root` to this distance [m] from `goal`, as nearly as its bone can. */
+function bringTo(joint: MutableVec3, root: Vec3, boneLength: number, goal: Vec3, wanted: number, facing: Quat): void {
+  if (Math.abs(distance(joint, goal) - wanted) < 1e-9) return;
   limb.upper = boneLength;
-  limb.lower = reach;
+  limb.lower = wanted;
   elbowCircle(root, goal, limb, down, circle);
   placeOnCircle(joint, facing);
 }
@@ -271,10 +289,10 @@ function placeOnCircle(joint: MutableVec3, facing: Quat): void {
 }
 
 /**
- * Moves the joint above a pinned one onto the circle, turned no further than `most` [rad] from its side before. A joint
+ * Moves the joint above a pinned one onto the circle, turned from its side before no further than in `seconds`. A joint
  * inside the circle is drawn to the back, because near the axis its side is undefined: a trunk that folds gets round.
  */
-function bendTowards(joint: MutableVec3, { target, bend }: TrunkPin, most: number): void {
+function bendTowards(joint: MutableVec3, { target, bend }: TrunkPin, seconds: number): void {
   const { axis, centre, radius } = circle;
   rotate(target.orientation, backward, fallbackPoles[0]);
   rotate(target.orientation, right, fallbackPoles[1]);
@@ -284,6 +302,7 @@ function bendTowards(joint: MutableVec3, { target, bend }: TrunkPin, most: numbe
   if (dot(bend, bend) > 0) {
     poleAcross(axis, rotate(target.orientation, bend, poleBefore), fallbackPoles, poleBefore);
     cross(axis, poleBefore, across);
+    const most = Math.min(bendSpeed, bendWay / Math.max(radius, 1e-9)) * seconds;
     const turn = clamp(Math.atan2(dot(across, pole), dot(poleBefore, pole)), -most, most);
     addScaled(scale(poleBefore, Math.cos(turn), pole), across, Math.sin(turn), pole);
   }
@@ -306,7 +325,7 @@ function carryShoulder(side: Side, torso: TorsoPose, hand: CompletedHand, bones:
   subtract(torso.shoulders[side], fitted.neck, shoulder);
   add(torso.neck, rotate(relative, shoulder, shoulder), shoulder);
   const far = distance(shoulder, hand.goal.position);
-  const missing = hand.source === 'tracked' ? Math.max(far - bones.reach, 0) : 0;
+  const missing = hand.source === 'tracked' ? far - softenedReach(far, bones.reach) : 0;
   lerp(shoulder, hand.goal.position, missing / Math.max(far, 1e-9), shoulder);
   placeShoulder(side, torso, bones, shoulder, limits.torsoExtreme.clavicleSwing);
 }

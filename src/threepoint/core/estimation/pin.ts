@@ -1,4 +1,4 @@
-import { smoothstep } from '../math/damper';
+import { clamp, smoothstep } from '../math/damper';
 import {
   copyPose,
   invertTransform,
@@ -8,35 +8,62 @@ import {
   type Pose,
   transformPose,
 } from '../math/pose';
+import { slerp } from '../math/quat';
+import { lerp } from '../math/vec3';
 
 /** The time [s] in which a joint passes from its estimate to its tracker, or back. */
 export const handOverSeconds = 0.3;
+
+/** How far [m] beyond the reach of its bones a tracked joint starts to count less, and counts as lost. */
+const doubtful = { from: 0.1, to: 0.3 };
+
+/** Returns how much a tracked joint counts that is `beyond` [m] out of the reach of its bones: 1, less, or 0. */
+export const trustBeyond = (beyond: number): number =>
+  clamp((doubtful.to - beyond) / (doubtful.to - doubtful.from), 0, 1);
 
 /** A joint that a tracker pins, and its way there and back. */
 export interface Pin {
   /** The time that has passed on the way from the estimate to the tracker, as a part of it: 0 to 1. */
   share: number;
+  /** The part that has passed of the time from the last difference before a loss to the tracker's own: 0 to 1. */
+  regained: number;
   /** The pinned joint in the frame of the estimated one; keeps its last value while the tracker is lost. */
   readonly difference: MutablePose<'joint'>;
   /** The pinned joint, floor frame; while the tracker is lost, where it would be by the last difference. */
   readonly target: MutablePose<'floor'>;
 }
 
-export const makePin = (): Pin => ({ share: 0, difference: makePose(), target: makePose() });
+export const makePin = (): Pin => ({ share: 0, regained: 0, difference: makePose(), target: makePose() });
 
 const jointFromFloor = makeTransform<'joint', 'floor'>();
+const seen = makePose<'joint'>();
 
 /**
  * Advances a pin by `step` (part of the transition) and writes its target. Returns its weight: 0 where the estimate
- * stands, 1 where the target does. pinned: the joint by its tracker; null: not seen.
+ * stands, 1 where the target does. pinned: the joint by its tracker; null: not seen. trust: how much it counts, 0 to 1.
  */
-export function followPin(pin: Pin, estimated: Pose<'floor'>, pinned: Pose<'floor'> | null, step: number): number {
+export function followPin(
+  pin: Pin,
+  estimated: Pose<'floor'>,
+  pinned: Pose<'floor'> | null,
+  trust: number,
+  step: number,
+): number {
   const { difference, target } = pin;
-  pin.share = pinned ? Math.min(1, pin.share + step) : Math.max(0, pin.share - step);
+  const counts = pinned && trust > 0 ? pinned : null;
+  if (pin.share === 0) pin.regained = 1;
+  else if (!counts) pin.regained = 0;
+  const left = 1 - pin.regained;
+  if (counts) pin.regained = Math.min(1, pin.regained + step);
+  pin.share += clamp((counts ? trust : 0) - pin.share, -step, step);
   if (pin.share === 0) return 0;
-  if (pinned) {
-    transformPose(invertTransform<'floor', 'joint'>(estimated, jointFromFloor), pinned, difference);
-    copyPose(pinned, target);
-  } else transformPose<'floor', 'joint'>(estimated, difference, target);
+  if (counts) {
+    transformPose(invertTransform<'floor', 'joint'>(estimated, jointFromFloor), counts, seen);
+    const way = pin.regained === 1 ? 1 : step / left;
+    lerp(difference.position, seen.position, way, difference.position);
+    slerp(difference.orientation, seen.orientation, way, difference.orientation);
+  }
+  if (counts && pin.regained === 1) copyPose(counts, target);
+  else transformPose<'floor', 'joint'>(estimated, difference, target);
   return smoothstep(0, 1, pin.share);
 }
