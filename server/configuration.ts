@@ -1,6 +1,6 @@
 import { parseArgs } from 'node:util';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { weaknessOf } from 'threepoint-http/secret-bits';
+import { weaknessOf } from 'threepoint-http/secret-strength';
 
 /** The settings of this process, from the command line and the environment. */
 export interface Configuration {

@@ -2,9 +2,9 @@ import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { extname, join } from 'node:path';
-import { type Answer, plain, sendAnswer } from 'threepoint-http/answer';
+import { targetOf } from 'threepoint-http/request-target';
+import { type Answer, plain, sendAnswer } from 'threepoint-http/response';
 import { contentSecurityPolicy, permissionsPolicy } from 'threepoint-http/security-headers';
-import { targetOf } from 'threepoint-http/target';
 
 const contentTypes: Readonly<Record<string, string>> = {
   '.html': 'text/html; charset=utf-8',

@@ -1,12 +1,12 @@
 import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
-import { softwareIn } from 'threepoint-http/software';
+import { softwareIn } from 'threepoint-http/software-version';
 import { type Credentials, prepareServer } from 'threepoint-http/web-server';
 import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
 import { openStudyService } from 'threepoint-study/server/service';
-import { createPageHandler } from './page';
+import { createPageHandler } from './page-handler';
 import { shippedRoomKinds } from './room-kinds';
 
 export interface StartOptions {

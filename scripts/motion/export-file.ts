@@ -1,10 +1,10 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
-import { exportMotionWith, type MotionWriter } from 'threepoint/api/motion-export';
+import { exportMotionWith, type MotionWriter } from 'threepoint/api/motion-file';
 import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
 import type { WorkOptions } from 'threepoint/api/run-work';
-import { avatarClip } from 'threepoint/avatar/avatar-clip';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
+import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { NetworkName } from 'threepoint/core/estimation/estimators';
 import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';

@@ -1,9 +1,9 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
-import { HttpError } from './answer';
 import { type AuthThrottle, createAuthThrottle, TooManyGuesses } from './auth-throttle';
 import { clientAddressOf } from './client-address';
+import { HttpError } from './response';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 

@@ -1,5 +1,5 @@
 import type { IncomingMessage } from 'node:http';
-import { HttpError } from './answer';
+import { HttpError } from './response';
 
 /**
  * Passes the body to `onChunk` as it arrives. Throws an HttpError if it is longer than the limit [bytes] or is cut off.

@@ -1,9 +1,9 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { type Answer, HttpError, json, refusal, sendAnswer } from './answer';
 import { wholeBody } from './request-body';
+import { targetOf } from './request-target';
+import { type Answer, HttpError, json, refusal, sendAnswer } from './response';
 import { createSitePolicy, type SitePolicy } from './site-policy';
-import { targetOf } from './target';
 
 /** A request to a route, with its body. */
 export interface Call {

@@ -8,10 +8,10 @@ import {
 import { createServer as createHttpsServer } from 'node:https';
 import { createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
 import type { Duplex } from 'node:stream';
-import { HttpError, refusal, sendAnswer, sendRawAnswer } from './answer';
 import type { ConnectionLimiter } from './connection-limiter';
-import { listenOnFreePort } from './listen';
-import { complaintAboutHost, targetOf } from './target';
+import { listenOnFreePort } from './listen-on-free-port';
+import { complaintAboutHost, targetOf } from './request-target';
+import { HttpError, refusal, sendAnswer, sendRawAnswer } from './response';
 
 /** A private key and its certificate, PEM. */
 export interface Credentials {

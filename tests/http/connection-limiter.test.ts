@@ -6,7 +6,7 @@ import { noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
-import { createPageHandler } from '../../server/page';
+import { createPageHandler } from '../../server/page-handler';
 import { isNightly } from '../nightly';
 import { reportFigures } from '../reliability/report-figures';
 import { type RunningRelay, startRelay } from '../rooms/server/running-relay';

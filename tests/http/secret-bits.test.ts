@@ -1,5 +1,5 @@
 import { createHash } from 'node:crypto';
-import { secretBits, weaknessOf } from 'threepoint-http/secret-bits';
+import { secretBits, weaknessOf } from 'threepoint-http/secret-strength';
 import { describe, expect, test } from 'vitest';
 
 describe('a secret', () => {

@@ -1,4 +1,4 @@
-import type { Holding } from 'threepoint/avatar/hands/holding';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
@@ -12,7 +12,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { defaultBallOptions } from 'threepoint-games/ball/rules';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
-import { bannerText } from 'threepoint-rooms/client/banner';
+import { bannerText } from 'threepoint-rooms/client/connection-text';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';

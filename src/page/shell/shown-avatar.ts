@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-bodies';
+import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { MotionWithoutBody } from 'threepoint/avatar/file/motion-without-body';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';

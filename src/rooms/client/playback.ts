@@ -2,7 +2,7 @@ import { clamp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper'
 import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PosePacket } from '../protocol/pose-packet';
 import { PathFit, type PathSample } from './path-fit';
-import { ShownPlayer } from './shown-player';
+import { ShownPlayer } from './pose-buffer';
 import { TransitWindow } from './transit-window';
 
 /** Measurements of one player's playback. */

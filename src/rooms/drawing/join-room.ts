@@ -7,7 +7,7 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
 import type { ClientPolicy } from '../client/client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from '../client/connection';
-import { peopleClientPolicy } from '../client/people-client';
+import { peopleClientPolicy } from '../client/people-client-policy';
 import { RoomAddress } from '../client/room-address';
 import { RoomClient } from '../client/room-client';
 import { type Keep, tabStorage } from '../client/room-pass';

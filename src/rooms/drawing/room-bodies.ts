@@ -8,7 +8,7 @@ import type { RoomView } from '../client/connection';
 import type { RemotePerson } from '../client/room-client';
 import { SharedAvatar, type WornAvatar } from '../client/shared-avatar';
 import type { HostedGame } from '../room/match-policy';
-import { SeenAvatars, type SeenAvatarsOptions } from './seen-avatars';
+import { SeenAvatars, type SeenAvatarsOptions } from './room-avatar-loader';
 
 export interface RoomBodiesOptions extends SeenAvatarsOptions {
   /** Returns the room; null before the first welcome. */

@@ -1,7 +1,7 @@
 import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
 import { toMillimetres } from '../protocol/messages';
-import { cleanName } from '../protocol/names';
+import { cleanName } from '../protocol/player-name';
 import { type FloorPlacement, longestPose, poseVersion } from '../protocol/pose-packet';
 
 /**

@@ -7,7 +7,7 @@ import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
 import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
-import { withFingers } from './posed-fingers';
+import { withFingers } from './with-fingers';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {

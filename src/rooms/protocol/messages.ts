@@ -1,7 +1,7 @@
 import { type AvatarRef, avatarHash, type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
-import { cleanName } from './names';
+import { cleanName } from './player-name';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
 
 /**

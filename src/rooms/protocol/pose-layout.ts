@@ -1,7 +1,6 @@
 import { type Side, sides } from 'threepoint/core/math/side';
-import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
+import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bit-stream';
 import { fingerFields } from './finger-steps';
-import { readHandPlace, writeHandPlace } from './hand-place';
 import { longestPose, poseVersion } from './pose-packet';
 import {
   type BodySteps,
@@ -22,6 +21,7 @@ import {
   twistBits,
 } from './pose-steps';
 import { readDirection, readQuat, readStep, writeDirection, writeQuat, writeStep } from './quantise';
+import { readHandPlace, writeHandPlace } from './relative-position';
 
 /** The state of a hand, by its three bits. A lost hand has no fingers, nor has one at which its arm does not end. */
 interface HandState {

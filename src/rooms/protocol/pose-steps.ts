@@ -3,7 +3,6 @@ import type { MutablePose, Pose, TrackedPose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { type FingerSteps, makeFingerSteps } from './finger-steps';
-import { fromHandPlace, type HandPlaceSteps, makeHandPlaceSteps, toHandPlace } from './hand-place';
 import {
   type DirectionSteps,
   fromQuatSteps,
@@ -16,6 +15,7 @@ import {
   toQuatSteps,
   type VecSteps,
 } from './quantise';
+import { fromHandPlace, type HandPlaceSteps, makeHandPlaceSteps, toHandPlace } from './relative-position';
 
 /** Bits of the head's x and z: ±8.19 m in the floor frame, clamped beyond. Headsets allow 15 m at most. */
 export const headBits = 16;

@@ -1,5 +1,5 @@
 import { add, type MutableVec3, setVec3, type Vec3 } from 'threepoint/core/math/vec3';
-import type { BitReader, BitWriter } from './bits';
+import type { BitReader, BitWriter } from './bit-stream';
 import { placeUnit } from './quantise';
 
 /**

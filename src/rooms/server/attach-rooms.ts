@@ -1,10 +1,10 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
-import { sendAnswer } from 'threepoint-http/answer';
+import { targetOf } from 'threepoint-http/request-target';
+import { sendAnswer } from 'threepoint-http/response';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
-import { targetOf } from 'threepoint-http/target';
 import { guarded, refusesUpgrade } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { ConnectionCounts } from './connection-counts';

@@ -1,9 +1,9 @@
 import type { IncomingMessage } from 'node:http';
 import type { Worker } from 'node:worker_threads';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type Answer, HttpError } from 'threepoint-http/answer';
 import { findClientAddress } from 'threepoint-http/client-address';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { type Answer, HttpError } from 'threepoint-http/response';
 import type { Call, Route, Service } from 'threepoint-http/router';
 import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
 import type { StudyDispatcher, StudyOutcome } from './routes/dispatcher';

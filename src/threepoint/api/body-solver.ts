@@ -8,9 +8,9 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
-import { demandOptions, optionNames, warnOfDisposed } from './demand-options';
-import { EstimatorChoice } from './estimator-choice';
-import { HeightPolicy } from './height-policy';
+import { demandOptions, optionNames, warnOfDisposed } from './assert-options';
+import { EstimatorChoice } from './estimator-selector';
+import { HeightPolicy } from './height-estimator';
 import { type InferenceProfiler, profiled } from './inference-profiler';
 
 export type { TrackedPoint } from '../core/tracking/tracking-validator';

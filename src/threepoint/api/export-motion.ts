@@ -1,7 +1,7 @@
 import type { Recording } from '../core/tracking/recording';
-import { demandOptions, optionNames } from './demand-options';
+import { demandOptions, optionNames } from './assert-options';
 import { learnedAlone } from './load-learned';
-import type { MotionExportOptions, MotionFile } from './motion-export';
+import type { MotionExportOptions, MotionFile } from './motion-file';
 
 export type ExportOptions = Omit<MotionExportOptions, 'networks'> & Partial<Pick<MotionExportOptions, 'networks'>>;
 
@@ -28,6 +28,6 @@ const exportOptions = optionNames<ExportOptions>({
 export async function exportMotion(recording: Recording, options: ExportOptions): Promise<MotionFile> {
   demandOptions('exportMotion', options, exportOptions);
   // Pages that export nothing load none of it.
-  const { exportMotionWith: exportMotionBare } = await import('./motion-export');
+  const { exportMotionWith: exportMotionBare } = await import('./motion-file');
   return exportMotionBare(recording, { ...options, networks: options.networks ?? learnedAlone });
 }

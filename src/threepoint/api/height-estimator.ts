@@ -1,6 +1,6 @@
 import { type Calibration, provisionalCalibration } from '../core/body/calibration';
 import { isTracked } from '../core/math/pose';
-import { createHeightWatch } from '../core/tracking/height-watch';
+import { createHeightWatch } from '../core/tracking/height-growth';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 /** The time [s] for which a head must be tracked without a gap before its height is used. */

@@ -37,7 +37,7 @@ export type { BodyOptions } from './body';
 export { Body } from './body';
 export type { BodyEvents, BodySolverOptions, CalibrationSource, TrackedPoint } from './body-solver';
 export { BodySolver } from './body-solver';
-export { createEstimator, skeletonFromCalibration } from './checked-person';
+export { createEstimator, skeletonFromCalibration } from './checked-calibration';
 export type { InferenceProfiler } from './inference-profiler';
 export type { LearnedOptions } from './load-learned';
 export { loadLearned } from './load-learned';

@@ -2,8 +2,8 @@ import contract from '../../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import { demandOptions } from './demand-options';
-import { readOwnWeights } from './own-weights';
+import { demandOptions } from './assert-options';
+import { readOwnWeights } from './bundled-weights';
 
 export interface LearnedOptions {
   /**

@@ -5,7 +5,7 @@ export type { XRBodyJoints } from '../core/motion/xr-body';
 export { toXRBody, XRBodyPoser } from '../core/motion/xr-body';
 export type { ExportOptions } from './export-motion';
 export { exportMotion } from './export-motion';
-export type { MotionFile, MotionWriter } from './motion-export';
+export type { MotionFile, MotionWriter } from './motion-file';
 export type { MotionFormat } from './motion-formats';
 export { motionFormats } from './motion-formats';
 export type { WorkOptions, WorkProgress } from './run-work';

@@ -3,7 +3,7 @@ import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { loadRegressor } from '../onnx/load-regressor';
 import type { ExecutionProvider, WasmPaths } from '../onnx/session';
-import { demandOptions, optionNames } from './demand-options';
+import { demandOptions, optionNames } from './assert-options';
 
 export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 

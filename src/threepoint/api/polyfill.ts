@@ -5,9 +5,9 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { copyPose, invertTransform, makePose, type Pose, type Transform, transformPose } from '../core/math/pose';
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
+import { demandOptions } from './assert-options';
 import { Body, type BodyOptions, warnOfFallback } from './body';
 import { bodyOptions as solverOptions } from './body-solver';
-import { demandOptions } from './demand-options';
 
 export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
   /**

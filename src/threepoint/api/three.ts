@@ -2,9 +2,9 @@
 
 import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
-import { workerCheck } from '../avatar/file/worker-check';
+import { workerCheck } from '../avatar/file/avatar-check-client';
 import { parseAvatar } from '../avatar/load-avatar';
-import { loadSeenAvatar } from '../avatar/load-seen-avatar';
+import { loadSeenAvatar } from '../avatar/load-untrusted-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
@@ -14,13 +14,13 @@ import type { BoneMap } from '../core/humanoid/bones';
 import { type BodyTrackers, demandPinning, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
+import { demandOptions, warnOfDisposed } from './assert-options';
 import { Body, type BodyOptions, warnOfFallback } from './body';
 import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
-import { demandOptions, warnOfDisposed } from './demand-options';
+import { readOwnMannequin } from './bundled-mannequin';
+import { startValidator } from './bundled-validator';
 import { loadLearned } from './load-learned';
-import type { MotionWriter } from './motion-export';
-import { readOwnMannequin } from './own-mannequin';
-import { startValidator } from './own-validator';
+import type { MotionWriter } from './motion-file';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../core/humanoid/bones';
@@ -86,7 +86,7 @@ export async function avatarMotion(
 ): Promise<MotionWriter> {
   demandOptions('avatarMotion', options, ['bones']);
   const { bones } = options;
-  const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);
+  const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-motion-writer'), read(source)]);
   return avatarClip(bytes, name, { bones });
 }
 

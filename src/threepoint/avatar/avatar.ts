@@ -16,18 +16,18 @@ import { type Side, sides } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { finishWork } from '../core/motion/work';
 import { type Mutable, recordOf } from '../core/records';
+import { betweenFrames, type Steps } from './between-frames';
 import { Face } from './face';
 import { HandFingers } from './hands/hand-fingers';
-import { betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
-import { meshesOf } from './meshes-of';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { tieLooseParts } from './rig/loose-parts';
-import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
+import { OwnTrunk } from './rig/rig-trunk';
 import { Springs } from './rig/springs';
+import { meshesOf } from './scene-meshes';
 
 /**
  * A drawn body. Poses are in the floor frame; `object` stays at the floor's origin.

@@ -1,4 +1,4 @@
-import { smoothstep } from '../../core/math/damper';
+import { smoothstep } from '../core/math/damper';
 
 /** A head that is lost for a moment changes nothing [s]. */
 const holdSeconds = 0.2;

@@ -16,7 +16,7 @@ import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
-import { meshesOf } from './meshes-of';
+import { meshesOf } from './scene-meshes';
 
 /** Another person to draw in this frame. */
 export interface SeenPerson {

@@ -8,7 +8,7 @@ import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
 import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { VrMenu } from 'threepoint-page/shell/vr-menu/vr-menu';
-import { longestName } from 'threepoint-rooms/protocol/names';
+import { longestName } from 'threepoint-rooms/protocol/player-name';
 import { describe, expect, test } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, paper, studioMenu } from './menu-parts';

@@ -1,5 +1,5 @@
 import { BackOff } from 'threepoint-rooms/client/back-off';
-import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
+import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
 import { describe, expect, test } from 'vitest';
 
 describe('trying again', () => {

@@ -1,5 +1,5 @@
 import type { Connection } from 'threepoint-rooms/client/connection';
-import { LoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost } from 'threepoint-rooms/client/loopback-host';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { expect, onTestFinished, test } from 'vitest';

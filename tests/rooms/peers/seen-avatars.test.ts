@@ -4,7 +4,7 @@ import type { AddressInfo } from 'node:net';
 import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
 import { PassingFault } from 'threepoint/core/errors/passing-fault';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import { SeenAvatars } from 'threepoint-rooms/drawing/seen-avatars';
+import { SeenAvatars } from 'threepoint-rooms/drawing/room-avatar-loader';
 import { expect, onTestFinished, test } from 'vitest';
 import { collectGarbage } from '../../collect-garbage';
 

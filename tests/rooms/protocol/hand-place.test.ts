@@ -1,13 +1,13 @@
 import fc from 'fast-check';
 import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import {
   fromHandPlace,
   makeHandPlaceSteps,
   readHandPlace,
   toHandPlace,
   writeHandPlace,
-} from 'threepoint-rooms/protocol/hand-place';
+} from 'threepoint-rooms/protocol/relative-position';
 import { expect, test } from 'vitest';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 

@@ -11,7 +11,7 @@ import {
   protocolVersion,
   unpackSeatInfo,
 } from 'threepoint-rooms/protocol/messages';
-import { cleanName } from 'threepoint-rooms/protocol/names';
+import { cleanName } from 'threepoint-rooms/protocol/player-name';
 import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { poseVersion } from 'threepoint-rooms/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/socket-parsers';

@@ -1,7 +1,7 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import type { BallState } from 'threepoint-games/ball/ball-state';
-import { bannerText } from 'threepoint-rooms/client/banner';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
+import { bannerText } from 'threepoint-rooms/client/connection-text';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';

@@ -5,7 +5,7 @@ import { createExperimenterClient, createParticipantClient } from 'threepoint-st
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { startServer } from '../../../server/start';
+import { startServer } from '../../../server/start-server';
 import { visitor } from '../../rooms/client/people';
 import { testSecret, until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';

@@ -1,4 +1,4 @@
-import { EstimatorChoice } from 'threepoint/api/estimator-choice';
+import { EstimatorChoice } from 'threepoint/api/estimator-selector';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';

@@ -1,7 +1,7 @@
 import type { Vector3 } from 'three';
-import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
-import type { Holding } from 'threepoint/avatar/hands/holding';
-import { fingerBonesOf } from 'threepoint/core/body/finger-bones';
+import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import { fingerBonesOf } from 'threepoint/core/body/finger-bone-names';
 import { distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
 import { type FingerName, fingerNames, type MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimators';

@@ -1,4 +1,4 @@
-import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { fingerBones } from 'threepoint/core/body/finger-bone-names';
 import type { BodyRig } from './rig';
 import {
   boxOf,

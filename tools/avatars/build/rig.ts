@@ -1,4 +1,4 @@
-import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { fingerBones } from 'threepoint/core/body/finger-bone-names';
 import averageHand from 'threepoint/core/body/hand-geometry.json';
 import type { FingerName } from 'threepoint/core/body/hand-shape';
 import { type JointName, parentOf } from 'threepoint/core/body/joints';

@@ -1,4 +1,4 @@
-import { fingersOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
+import { fingersOfButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';

@@ -1,6 +1,6 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballsLeft } from 'threepoint-games/ball/state-readings';
-import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
+import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
 import { roleTexts } from '../court/court-plan';
 import type { BallFrame } from '../match/ball-frame';
 import type { BallPlay } from '../match/ball-play';

@@ -1,5 +1,5 @@
 import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
-import type { MotionWriter } from 'threepoint/api/motion-export';
+import type { MotionWriter } from 'threepoint/api/motion-file';
 import type { MotionFormat } from 'threepoint/api/motion-formats';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -54,7 +54,7 @@ export class MotionExport {
     const { signal } = this.#giveUp;
     this.#tell({ name: stem, method: label, share: 0, secondsLeft: null });
     try {
-      const { exportMotionWith: exportMotionBare } = await import('threepoint/api/motion-export');
+      const { exportMotionWith: exportMotionBare } = await import('threepoint/api/motion-file');
       const { extension, type, parts } = await exportMotionBare(recording, {
         to: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
@@ -77,7 +77,7 @@ export class MotionExport {
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
     const { avatar } = this.#options;
-    const { avatarClip } = await import('threepoint/avatar/avatar-clip');
+    const { avatarClip } = await import('threepoint/avatar/avatar-motion-writer');
     return avatarClip(await avatar.file(), avatar.name, { decoders });
   }
 

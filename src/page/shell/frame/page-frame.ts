@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
-import { shapeOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
+import { shapeOfButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';

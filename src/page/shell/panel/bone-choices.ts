@@ -1,4 +1,4 @@
-import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { fingerBones } from 'threepoint/core/body/finger-bone-names';
 import { type BoneMap, type BoneName, boneNames, fingerNames, neededBones } from 'threepoint/core/humanoid/bones';
 import { type Side, sides } from 'threepoint/core/math/side';
 import type { WaitingForBones } from '../shown-avatar';

@@ -1,5 +1,5 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { weaknessOf } from 'threepoint-http/secret-bits';
+import { weaknessOf } from 'threepoint-http/secret-strength';
 import { type Environment, partsOf, wrong } from './environment';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 

@@ -1,5 +1,5 @@
 import { createHash, createHmac } from 'node:crypto';
-import { type Answer, json } from 'threepoint-http/answer';
+import { type Answer, json } from 'threepoint-http/response';
 import type { Call, Route } from 'threepoint-http/router';
 import { requirePass } from '../access/request-pass';
 import type { RoomTokens } from '../access/room-tokens';

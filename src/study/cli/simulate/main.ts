@@ -3,7 +3,7 @@ import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { softwareIn } from 'threepoint-http/software';
+import { softwareIn } from 'threepoint-http/software-version';
 import { checkedPlan, parsePlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { compareCohorts } from '../../model/results/compare-cohorts';

@@ -2,7 +2,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { softwareIn } from 'threepoint-http/software';
+import { softwareIn } from 'threepoint-http/software-version';
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { verifyExport } from './verify-export';
 

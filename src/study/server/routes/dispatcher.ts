@@ -1,4 +1,4 @@
-import type { Answer } from 'threepoint-http/answer';
+import type { Answer } from 'threepoint-http/response';
 import { StoreRefusal } from '../storage/database';
 import type { StudyStore } from '../storage/store';
 import type { StudyRequest, StudyRoute } from './route';

@@ -1,4 +1,4 @@
-import type { Answer } from 'threepoint-http/answer';
+import type { Answer } from 'threepoint-http/response';
 import { exportName } from '../export/export-zip';
 import type { StudyAccess } from './guard';
 import { type Handle, route, type StudyParts, type StudyRoute } from './route';

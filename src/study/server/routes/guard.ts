@@ -1,8 +1,8 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { HttpError } from 'threepoint-http/answer';
 import { createAuthThrottle, type Guess, TooManyGuesses, type WrongGuess } from 'threepoint-http/auth-throttle';
 import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
+import { HttpError } from 'threepoint-http/response';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/store';
 

@@ -1,6 +1,6 @@
 import { parseRecording } from 'threepoint/core/tracking/recording';
 import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
-import { done, HttpError, json } from 'threepoint-http/answer';
+import { done, HttpError, json } from 'threepoint-http/response';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';

@@ -1,7 +1,7 @@
-import type { Answer } from 'threepoint-http/answer';
 import type { ClientAddress } from 'threepoint-http/client-address';
+import type { Answer } from 'threepoint-http/response';
 import type { Route } from 'threepoint-http/router';
-import type { Software } from 'threepoint-http/software';
+import type { Software } from 'threepoint-http/software-version';
 import { mostMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
 import type { StudyStore } from '../storage/store';

@@ -1,5 +1,5 @@
 import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
-import { type Answer, HttpError } from 'threepoint-http/answer';
+import { type Answer, HttpError } from 'threepoint-http/response';
 import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
 import { StoreRefusal } from '../storage/database';
 import { type Concerned, createStudyGuard, type StudyGuardOptions } from './guard';

@@ -1,5 +1,5 @@
 import { checked, integerBetween, participantId, text } from 'threepoint/core/validation/validation';
-import { type Answer, done, json } from 'threepoint-http/answer';
+import { type Answer, done, json } from 'threepoint-http/response';
 import { jsonOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';

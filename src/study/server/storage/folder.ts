@@ -3,8 +3,8 @@ import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync
 import { join } from 'node:path';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { weaknessOf } from 'threepoint-http/secret-bits';
-import type { Software } from 'threepoint-http/software';
+import { weaknessOf } from 'threepoint-http/secret-strength';
+import type { Software } from 'threepoint-http/software-version';
 import { FolderLock, FolderTaken, StoreRefusal, sqliteCodeOf } from './database';
 import { DatabaseProblem } from './schema';
 import { openStudyStore, type StudyStore } from './store';

@@ -1,11 +1,11 @@
+import type { WorkerAnswer, WorkerQuestion } from './avatar-check-worker';
 import type { AvatarCheck, CheckedAvatar } from './check-avatar';
-import type { WorkerAnswer, WorkerQuestion } from './check-worker';
 import { MotionWithoutBody } from './motion-without-body';
 
 /** The longest time [ms] that the start of a worker, and its check, may take. */
 const patienceMs = 20_000;
 
-/** Resolves when a worker of check-worker.ts has reported that it runs, or to null where it does not start. */
+/** Resolves when a worker of avatar-check-worker.ts has reported that it runs, or to null where it does not start. */
 async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Worker | null> {
   // Node has no workers of pages: onnxruntime-web sets this name to the workers of node:worker_threads there.
   if (!(globalThis.Worker?.prototype instanceof EventTarget)) return null;

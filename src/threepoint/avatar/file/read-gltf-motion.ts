@@ -1,6 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
+import { glbOfFile } from './convert-to-glb';
 import { chunksOf } from './glb-chunks';
-import { glbOfFile } from './glb-of-file';
 
 /** The parts of a file of glTF that holds motion. */
 export interface GltfMotion {

@@ -1,6 +1,6 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Bone, type Object3D, Quaternion, Vector3 } from 'three';
-import { fingerBonesOf } from '../../core/body/finger-bones';
+import { fingerBonesOf } from '../../core/body/finger-bone-names';
 import {
   bendOfPoints,
   type FingerGeometry,
@@ -30,7 +30,7 @@ import {
   vec3,
 } from '../../core/math/vec3';
 import { boneNode } from '../humanoid/needed-bones';
-import { skinnedMeshesOf } from '../meshes-of';
+import { skinnedMeshesOf } from '../scene-meshes';
 
 export type BoneIndex = 0 | 1 | 2;
 

@@ -4,7 +4,7 @@ import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
-import { meshesOf, skinnedMeshesOf } from '../meshes-of';
+import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import { demandBones } from './needed-bones';
 import { fileBones, UnknownBones } from './unknown-bones';
 

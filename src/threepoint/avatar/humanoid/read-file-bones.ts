@@ -2,7 +2,7 @@ import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
 import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
-import { skeletonOf } from './humanoid-of-scene';
+import { skeletonOf } from './create-humanoid';
 import { type FileBones, fileBones } from './unknown-bones';
 
 /** The bones of a file, and whether it is worn without a map of them. */

@@ -13,9 +13,9 @@ import {
   twistOf,
 } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
-import type { Steps } from '../in-steps';
+import type { Steps } from '../between-frames';
 import type { HelperJoint, Rig } from './rig';
-import { type SpreadArm, spreadArms } from './spread-weights';
+import { type SpreadArm, spreadArms } from './spread-arm-weights';
 
 /** One arm's joints that its file lacks. */
 interface ArmHelpers {
@@ -53,7 +53,7 @@ function angleAbout(from: Quat, to: Quat, along: (typeof alongArm)[Side]): numbe
 /**
  * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads
  * over the forearm and that of the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of
- * any rig is shared among them (spread-weights); twist bones of its own are taken for the bone they lie on.
+ * any rig is shared among them (spread-arm-weights); twist bones of its own are taken for the bone they lie on.
  */
 export class ArmHelperJoints {
   readonly #rig: Rig;

@@ -114,7 +114,7 @@ export class OwnTrunk {
       return place && at(place);
     };
     const [hips, head, left, right] = [rest('hips'), rest('head'), rest('leftUpperArm'), rest('rightUpperArm')];
-    if (!hips || !head || !left || !right) throw new Error('avatar/own-trunk: a rig without hips, head or arms');
+    if (!hips || !head || !left || !right) throw new Error('avatar/rig-trunk: a rig without hips, head or arms');
     const restNeck = rest('neck') ?? lerp(lerp(left, right, 0.5), head, neckShare);
     subtract(head, restNeck, this.neckToHead);
     // The spine is as long as pelvis and head leave it; its joints keep their shares.

@@ -8,8 +8,8 @@ import {
   type SkinnedMesh,
   Vector3,
 } from 'three';
-import type { Steps } from '../in-steps';
-import { skinnedMeshesOf } from '../meshes-of';
+import type { Steps } from '../between-frames';
+import { skinnedMeshesOf } from '../scene-meshes';
 import { isBelow } from './body-meshes';
 
 /** The bones of an arm and the joints between them among which its skin is to be shared. */

@@ -1,4 +1,4 @@
-import { fingerBones } from '../body/finger-bones';
+import { fingerBones } from '../body/finger-bone-names';
 import { type Side, sides } from '../math/side';
 
 const centreBones = ['hips', 'spine', 'chest', 'upperChest', 'neck', 'head', 'jaw'] as const;

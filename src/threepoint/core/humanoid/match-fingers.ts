@@ -1,4 +1,4 @@
-import { fingerBones } from '../body/finger-bones';
+import { fingerBones } from '../body/finger-bone-names';
 import { distance, dot, normalise, subtract, zero } from '../math/vec3';
 import { fingerNames } from './bones';
 import type { JointTree } from './joint-tree';

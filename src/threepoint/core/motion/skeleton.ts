@@ -1,9 +1,9 @@
 import { type Calibration, statureFromEyeHeight } from '../body/calibration';
-import { fingerBonesOf } from '../body/finger-bones';
+import { fingerBonesOf } from '../body/finger-bone-names';
 import { averageHand, fingerPoints, type HandGeometry, makeFingerPoints, mirrorPoint } from '../body/hand-geometry';
 import { type FingerBend, type FingerName, fingerNames } from '../body/hand-shape';
 import { type JointName, jointNames, parentOf } from '../body/joints';
-import { legShares } from '../body/leg-shares';
+import { legShares } from '../body/leg-proportions';
 import { type Skeleton, sideSign, skeletonFromCalibration, wristFromHandBone } from '../body/skeleton';
 import { type MutableQuat, type Quat, rotateInverse, setQuat } from '../math/quat';
 import { type Side, sides } from '../math/side';

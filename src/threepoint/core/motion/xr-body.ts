@@ -1,6 +1,6 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
-import { fingerBonesOf } from '../body/finger-bones';
+import { fingerBonesOf } from '../body/finger-bone-names';
 import { type Fingers, fingerNames, unknownFingers } from '../body/hand-shape';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';

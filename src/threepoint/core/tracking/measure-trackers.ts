@@ -1,5 +1,5 @@
 import type { Calibration } from '../body/calibration';
-import { legShares } from '../body/leg-shares';
+import { legShares } from '../body/leg-proportions';
 import { skeletonFromCalibration } from '../body/skeleton';
 import { isPlausibleOffset, type TrackerName, type TrackerOffset, trackerNames } from '../body/tracker-offsets';
 import {

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { fingerBonesOf } from 'threepoint/core/body/finger-bones';
+import { fingerBonesOf } from 'threepoint/core/body/finger-bone-names';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from 'threepoint/core/body/hand-geometry';
 import { closedHand, fingerNames, flatHand, type HandShape, mixHandShape } from 'threepoint/core/body/hand-shape';

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
-import { legShares } from 'threepoint/core/body/leg-shares';
+import { legShares } from 'threepoint/core/body/leg-proportions';
 import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { trackerNames } from 'threepoint/core/body/tracker-offsets';
 import { createIk } from 'threepoint/core/estimation/estimators';

@@ -9,7 +9,7 @@ import {
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
 import { right, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import { createHeightWatch } from 'threepoint/core/tracking/height-watch';
+import { createHeightWatch } from 'threepoint/core/tracking/height-growth';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
