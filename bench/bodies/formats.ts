@@ -1,6 +1,6 @@
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics, type JointPoses } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { copyQuat, type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
@@ -58,7 +58,7 @@ interface BufferedFormat {
 class BufferedPerson {
   readonly #place: BufferedFormat['place'];
   readonly #packets: Packet[] = [];
-  readonly #joints = makeJointPoses();
+  readonly #joints = createJointPoses();
   #shown: Packet | null = null;
   #offset = Number.POSITIVE_INFINITY;
   #drawn: Drawn | null = null;

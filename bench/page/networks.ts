@@ -33,7 +33,7 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
   const opened = performance.now();
   const regressor = await load(way);
   const estimator = createWithNetwork('learned', defaultCalibration, regressor);
-  const { afterwards, close } = createAfterFrame();
+  const { schedule: afterwards, close } = createAfterFrame();
   const inFrame: number[] = [];
   const onThread: number[] = [];
   let firstBodyMs = Number.NaN;

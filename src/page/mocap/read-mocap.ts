@@ -27,7 +27,7 @@ export function readMocap(
       else if ('refused' in answer) reject(new Error(answer.refused));
       else {
         const { share } = answer;
-        onProgress?.({ share, secondsLeft: secondsLeft(share, (performance.now() - begun) / 1000) });
+        onProgress?.({ fraction: share, secondsLeft: secondsLeft(share, (performance.now() - begun) / 1000) });
       }
     });
     worker.addEventListener('error', ({ message }) => {

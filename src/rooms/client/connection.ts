@@ -10,7 +10,7 @@ import type { HostedGame } from '../room/match-policy';
 export interface LocalClock {
   now(): number;
   /** The total of the pauses that it skipped [s]; other clocks ran on. */
-  readonly leftOut: number;
+  readonly skippedSeconds: number;
 }
 
 /** The state of a page's connection to its room. */

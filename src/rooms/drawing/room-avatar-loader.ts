@@ -8,8 +8,8 @@ import {
   bodyOf,
   isBuiltInAvatar,
 } from 'threepoint/core/body/avatar-ref';
-import { PassingFault } from 'threepoint/core/errors/passing-fault';
 import { reasonOf } from 'threepoint/core/errors/reasons';
+import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { Avatar } from 'threepoint/three';
 import type { AvatarExchange } from '../client/avatar-exchange';
 
@@ -39,7 +39,7 @@ export class SeenAvatars {
     this.#options = options;
   }
 
-  /** Rejects with a sentence; with a PassingFault where the avatar could not be fetched. */
+  /** Rejects with a sentence; with a TransientError where the avatar could not be fetched. */
   async load(avatar: AvatarRef): Promise<Avatar> {
     if (isBuiltInAvatar(avatar)) return this.#options.loadBuiltIn(bodyOf(avatar));
     return this.#options.loadFile(await this.#fetch(avatar));
@@ -65,18 +65,18 @@ export class SeenAvatars {
     let reason = '';
     let passes = false;
     const addresses = await exchange.addressesOf(hash).catch((error: unknown) => {
-      throw new PassingFault(reasonOf(error));
+      throw new TransientError(reasonOf(error));
     });
     for (const { url, headers } of addresses) {
       try {
         return await downloadLimited(url, seenFile, { headers, signal });
       } catch (error) {
-        passes ||= error instanceof PassingFault;
+        passes ||= error instanceof TransientError;
         reason ||= reasonOf(error).replace(`${hash}: `, '');
         if (signal.aborted) break;
       }
     }
-    if (late.aborted) throw new PassingFault('it did not arrive in time');
-    throw passes ? new PassingFault(reason) : new Error(reason);
+    if (late.aborted) throw new TransientError('it did not arrive in time');
+    throw passes ? new TransientError(reason) : new Error(reason);
   }
 }

@@ -1,4 +1,4 @@
-import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
+import { type Calibration, calibrationProblem } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
 import { toMillimetres } from '../protocol/messages';
 import { cleanName } from '../protocol/player-name';
@@ -58,7 +58,7 @@ const profile = v.pipe(
     avatar: v.nullable(v.pipe(v.string(), v.maxLength(longestAvatarReference))),
     visible: v.boolean(),
   }),
-  v.check(({ calibration }) => calibrationComplaint(calibration) === null),
+  v.check(({ calibration }) => calibrationProblem(calibration) === null),
 );
 
 const encoder = new TextEncoder();

@@ -1,5 +1,5 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type Calibration, demandPerson, sameMeasures } from 'threepoint/core/body/calibration';
+import { assertCalibration, type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { toMillimetres } from '../protocol/messages';
@@ -117,7 +117,7 @@ export class PoseSender {
 
   #setCalibration(calibration: Calibration): void {
     if (this.#calibration && sameMeasures(calibration, this.#calibration)) return;
-    demandPerson(calibration);
+    assertCalibration(calibration);
     this.#calibration = calibration;
     // The others know the measures rounded to millimetres.
     this.#skeleton = skeletonFromCalibration(toMillimetres(calibration));

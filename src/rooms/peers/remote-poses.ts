@@ -1,6 +1,6 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
-import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics, type JointPoses } from 'threepoint/core/body/forward-kinematics';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
@@ -132,7 +132,7 @@ class Peer implements RemotePose {
   readonly #bucket = new TokenBucket(packetsPerSecond);
   readonly #playback = new Playback();
   readonly pose: AvatarPose = withFingers(this.#playback.shown);
-  readonly #joints = makeJointPoses();
+  readonly #joints = createJointPoses();
   #profile: PeerProfile | null = null;
   #skeleton: Skeleton | null = null;
   #lastPacketAt: number;

@@ -2,7 +2,7 @@
  * Throws a TypeError where options are missing or have a name that is not known: a misspelt one would have no effect.
  * `of`: the function or class with these options.
  */
-export function demandOptions(of: string, options: object | null | undefined, known: readonly string[]): void {
+export function assertOptions(of: string, options: object | null | undefined, known: readonly string[]): void {
   if (typeof options !== 'object' || options === null) {
     throw new TypeError(`${of} needs an object of options. Use ${known.join(', ')}.`);
   }
@@ -21,7 +21,7 @@ const warned = new WeakSet<object>();
  * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: the name of its class,
  * which bundlers change.
  */
-export function warnOfDisposed(object: object, what: string): void {
+export function warnAfterDispose(object: object, what: string): void {
   if (warned.has(object)) return;
   warned.add(object);
   console.warn(`threepoint: “update” has no effect after “dispose”. Stop calling it, or create another ${what}.`);

@@ -1,4 +1,4 @@
-import { type Calibration, demandPerson } from '../core/body/calibration';
+import { assertCalibration, type Calibration } from '../core/body/calibration';
 import * as bodies from '../core/body/skeleton';
 import * as estimators from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
@@ -15,7 +15,7 @@ import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estim
  * const skeleton = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 });
  */
 export function skeletonFromCalibration(calibration: Calibration): bodies.Skeleton {
-  demandPerson(calibration);
+  assertCalibration(calibration);
   return bodies.skeletonFromCalibration(calibration);
 }
 
@@ -33,7 +33,7 @@ export function createEstimator(
   regressor: PoseRegressor | null = null,
   { pinning }: { readonly pinning?: Pinning } = {},
 ): PoseEstimator {
-  demandPerson(calibration);
-  pinning?.demandOffsets(calibration);
+  assertCalibration(calibration);
+  pinning?.assertOffsets(calibration);
   return estimators.createEstimator(name, calibration, regressor, { pinning });
 }

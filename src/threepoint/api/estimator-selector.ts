@@ -6,7 +6,7 @@ import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-export interface EstimatorChoiceOptions {
+export interface EstimatorSelectorOptions {
   /** The estimator to start with; no callback is called before the constructor has returned. */
   readonly estimator: EstimatorName;
   readonly calibration: Calibration;
@@ -16,32 +16,32 @@ export interface EstimatorChoiceOptions {
   /** Called when another estimator draws, or when one has become unavailable. */
   onChange(): void;
   /** Called when a network is unavailable: inverse kinematics draws instead. */
-  onFault(name: NetworkName, reason: string): void;
+  onUnavailable(name: NetworkName, reason: string): void;
 }
 
 /**
- * Selects the estimator that draws: the wanted one, or inverse kinematics until its network has loaded and when it
+ * Selects the estimator that draws: the selected one, or inverse kinematics until its network has loaded and when it
  * fails.
  */
-export class EstimatorChoice {
-  readonly #options: EstimatorChoiceOptions;
+export class EstimatorSelector {
+  readonly #options: EstimatorSelectorOptions;
   readonly #loading = new Map<NetworkName, Promise<PoseRegressor>>();
   readonly #unavailable: Partial<Record<EstimatorName, string>> = {};
   #calibration: Calibration;
-  #wanted: EstimatorName;
+  #selected: EstimatorName;
   #current: PoseEstimator;
   #regressor: PoseRegressor | null = null;
   #disposed = false;
   /** The number of changes and resets of the estimator so far. */
   #changes = 0;
 
-  constructor(options: EstimatorChoiceOptions) {
+  constructor(options: EstimatorSelectorOptions) {
     this.#options = options;
     this.#calibration = options.calibration;
-    this.#wanted = options.estimator;
-    const loads = networkOf(this.#wanted) !== null;
-    this.#current = this.#make(loads ? 'ik' : this.#wanted, null);
-    if (loads) void this.setEstimator(this.#wanted);
+    this.#selected = options.estimator;
+    const loads = networkOf(this.#selected) !== null;
+    this.#current = this.#create(loads ? 'ik' : this.#selected, null);
+    if (loads) void this.setEstimator(this.#selected);
   }
 
   get current(): PoseEstimator {
@@ -49,8 +49,8 @@ export class EstimatorChoice {
   }
 
   /** The selected estimator, which may still be loading. */
-  get wanted(): EstimatorName {
-    return this.#wanted;
+  get selected(): EstimatorName {
+    return this.#selected;
   }
 
   /** The network behind the current estimator; null: it has none. */
@@ -70,28 +70,28 @@ export class EstimatorChoice {
     if (this.#disposed || this.#unavailable[name] !== undefined) return;
     const needed = networkOf(name);
     if (needed) {
-      this.#wanted = name;
-      return this.#chooseWith(name, needed);
+      this.#selected = name;
+      return this.#selectWithNetwork(name, needed);
     }
-    this.#drawWith(name, null);
-    this.#wanted = name;
+    this.#switchTo(name, null);
+    this.#selected = name;
     this.#options.onChange();
   }
 
-  async #chooseWith(name: EstimatorName, needed: NetworkName): Promise<void> {
+  async #selectWithNetwork(name: EstimatorName, needed: NetworkName): Promise<void> {
     let network: PoseRegressor | null = null;
     if (this.#unavailable[needed] === undefined) {
       try {
         network = await this.#network(needed);
         // A page may supply the network of another estimator: this one is unavailable then, whoever selected it.
-        this.#make(needed, network);
+        this.#create(needed, network);
       } catch (error) {
-        this.#giveUp(needed, error);
+        this.#markUnavailable(needed, error);
       }
     }
     // Meanwhile the user may have selected another estimator, or the network may have failed.
-    if (this.#disposed || this.#wanted !== name) return;
-    this.#drawWith(name, this.#unavailable[needed] === undefined ? network : null);
+    if (this.#disposed || this.#selected !== name) return;
+    this.#switchTo(name, this.#unavailable[needed] === undefined ? network : null);
     this.#options.onChange();
   }
 
@@ -115,7 +115,7 @@ export class EstimatorChoice {
   async warmUp(frames: Iterable<TrackingFrame>, then: (pose: AvatarPose) => void): Promise<void> {
     this.#changes += 1;
     const begun = this.#changes;
-    const living = this.#make(this.#current.name, this.#regressor);
+    const living = this.#create(this.#current.name, this.#regressor);
     let lived: AvatarPose | null = null;
     for (const frame of frames) {
       const { pose, request } = living.update(frame);
@@ -133,7 +133,7 @@ export class EstimatorChoice {
   check(): void {
     const fault = this.#current.fault();
     const network = networkOf(this.#current.name);
-    if (fault !== null && network !== null) this.#giveUp(network, fault);
+    if (fault !== null && network !== null) this.#markUnavailable(network, fault);
   }
 
   /**
@@ -143,7 +143,7 @@ export class EstimatorChoice {
   async dispose(): Promise<void> {
     this.#disposed = true;
     this.#changes += 1;
-    this.#current = this.#make('ik', null);
+    this.#current = this.#create('ik', null);
     this.#regressor = null;
     const arrived = await Promise.allSettled(this.#loading.values());
     const goes = arrived.map((arriving) => (arriving.status === 'fulfilled' ? arriving.value.dispose() : null));
@@ -151,15 +151,15 @@ export class EstimatorChoice {
     await Promise.all(goes);
   }
 
-  #make(name: EstimatorName, network: PoseRegressor | null): PoseEstimator {
+  #create(name: EstimatorName, network: PoseRegressor | null): PoseEstimator {
     const { create } = this.#options;
     return network ? create(name, this.#calibration, network) : create(name, this.#calibration);
   }
 
   /** Keeps the current estimator where method and network are the same, with its estimate of how the hands are held. */
-  #drawWith(name: EstimatorName, network: PoseRegressor | null): void {
+  #switchTo(name: EstimatorName, network: PoseRegressor | null): void {
     if (this.#current.name === name && this.#regressor === network) return;
-    this.#current = this.#make(name, network);
+    this.#current = this.#create(name, network);
     this.#changes += 1;
     this.#regressor = network;
   }
@@ -168,16 +168,16 @@ export class EstimatorChoice {
    * Replaces what draws with a failed network: by the same method where it works without one, else by inverse
    * kinematics.
    */
-  #giveUp(network: NetworkName, error: unknown): void {
+  #markUnavailable(network: NetworkName, error: unknown): void {
     if (this.#disposed || this.#unavailable[network] !== undefined) return;
     const reason = reasonOf(error);
     this.#unavailable[network] = reason;
     const { name } = this.#current;
-    const wanted = this.#wanted === network;
-    if (wanted) this.#wanted = 'ik';
-    if (wanted && name !== 'ik') this.#drawWith('ik', null);
-    else if (this.#regressor && networkOf(name) === network) this.#drawWith(needsRegressor(name) ? 'ik' : name, null);
-    this.#options.onFault(network, reason);
+    const isSelected = this.#selected === network;
+    if (isSelected) this.#selected = 'ik';
+    if (isSelected && name !== 'ik') this.#switchTo('ik', null);
+    else if (this.#regressor && networkOf(name) === network) this.#switchTo(needsRegressor(name) ? 'ik' : name, null);
+    this.#options.onUnavailable(network, reason);
     this.#options.onChange();
   }
 

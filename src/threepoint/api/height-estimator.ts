@@ -1,16 +1,16 @@
-import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { type Calibration, calibrationFromHeadHeight } from '../core/body/calibration';
 import { isTracked } from '../core/math/pose';
-import { createHeightWatch } from '../core/tracking/height-growth';
+import { createGrowthDetector } from '../core/tracking/height-growth';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 /** The time [s] for which a head must be tracked without a gap before its height is used. */
 const settleSeconds = 0.7;
 
-export interface HeightPolicyOptions {
+export interface HeightEstimatorOptions {
   /** Returns the measures in force. */
   calibration(): Calibration;
   /** Returns whether the wearer has calibrated: these measures stay, and a mismatch is reported. */
-  calibrated(): boolean;
+  isCalibrated(): boolean;
   /** Whether the wearer may stand taller than the measures. */
   readonly autoGrow: boolean;
   /**
@@ -29,15 +29,15 @@ export interface HeightPolicyOptions {
  * `settleSeconds` of tracking, and grows when the wearer stands up straight. With a calibration that is too small, the
  * mismatch is reported.
  */
-export class HeightPolicy {
-  readonly #options: HeightPolicyOptions;
-  readonly #watch = createHeightWatch();
+export class HeightEstimator {
+  readonly #options: HeightEstimatorOptions;
+  readonly #watch = createGrowthDetector();
   /** The time [s] since which the head is tracked; null: it is not; 'done' once the headset's height was used. */
   #settledSince: number | 'done' | null = null;
   /** The calibration whose mismatch was reported. */
   #reportedMismatch: Calibration | null = null;
 
-  constructor(options: HeightPolicyOptions) {
+  constructor(options: HeightEstimatorOptions) {
     this.#options = options;
   }
 
@@ -47,19 +47,19 @@ export class HeightPolicy {
   }
 
   /** Restarts the settling time: the head is not seen. */
-  lose(): void {
+  onHeadLost(): void {
     if (this.#settledSince !== 'done') this.#settledSince = null;
   }
 
   /** Restarts the observation: the floor lies elsewhere, or another person may wear the headset. */
   reset(): void {
-    this.lose();
+    this.onHeadLost();
     this.#watch.reset();
   }
 
   /** Observes a frame in which the wearer's head is seen. */
   observe(frame: TrackingFrame): void {
-    if (!this.#options.calibrated()) this.#settle(frame);
+    if (!this.#options.isCalibrated()) this.#settle(frame);
     if (this.#options.autoGrow) this.#grow(frame);
   }
 
@@ -72,7 +72,7 @@ export class HeightPolicy {
     this.#settledSince ??= time;
     if (time - this.#settledSince < settleSeconds) return;
     this.#settledSince = 'done';
-    this.#options.onMeasured(provisionalCalibration(head.position.y), 'headset');
+    this.#options.onMeasured(calibrationFromHeadHeight(head.position.y), 'headset');
   }
 
   #grow(frame: TrackingFrame): void {
@@ -80,7 +80,7 @@ export class HeightPolicy {
     if (calibration === this.#reportedMismatch) return;
     const grown = this.#watch.observe(frame, calibration);
     if (!grown) return;
-    if (!this.#options.calibrated()) {
+    if (!this.#options.isCalibrated()) {
       this.#options.onMeasured(grown, 'stood-taller');
       return;
     }

@@ -1,4 +1,4 @@
-import { type Calibration, demandPerson, provisionalCalibration } from '../core/body/calibration';
+import { assertCalibration, type Calibration, calibrationFromHeadHeight } from '../core/body/calibration';
 import { createEstimator, type NetworkName, networkOf } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
@@ -22,15 +22,15 @@ export interface MotionFile {
   readonly parts: readonly (string | Uint8Array<ArrayBuffer>)[];
 }
 
-/** Writes motions as files of one format; `avatarMotion` of threepoint/three returns another writer. */
+/** Writes motions as files of one format; `avatarMotionWriter` of threepoint/three returns another writer. */
 export interface MotionWriter {
   readonly extension: string;
   readonly type: string;
   write(motion: Motion): Work<MotionFile['parts']>;
 }
 
-export interface MotionExportOptions extends WorkOptions, BvhOptions {
-  readonly to: MotionFormat | MotionWriter;
+export interface MotionFileOptions extends WorkOptions, BvhOptions {
+  readonly format: MotionFormat | MotionWriter;
   /** The estimator of the body between the points; default: 'learned'. */
   readonly estimator?: EstimatorName;
   /** Loads the networks, as of a BodySolver. They are released at the end. */
@@ -39,7 +39,7 @@ export interface MotionExportOptions extends WorkOptions, BvhOptions {
   readonly calibration?: Calibration | undefined;
 }
 
-function writerOf({ to, ...options }: MotionExportOptions): MotionWriter {
+function writerOf({ format: to, ...options }: MotionFileOptions): MotionWriter {
   if (typeof to === 'object') return to;
   if (to === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
   if (to === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
@@ -51,7 +51,7 @@ function writerOf({ to, ...options }: MotionExportOptions): MotionWriter {
 const estimating = 0.7;
 
 /** Throws a sentence where no frame has a device body: another method would draw all of them. */
-function* demandBody({ frames }: Replayable): Generator<number, void> {
+function* requireDeviceBody({ frames }: Replayable): Generator<number, void> {
   for (const { deviceBody } of frames) {
     if (deviceBody) return;
     yield 0;
@@ -99,9 +99,9 @@ function personOf({ calibration, frames }: Replayable, given: Calibration | unde
   const person = given ?? calibration;
   if (!person) {
     const [first] = validFrames(frames);
-    return provisionalCalibration(first?.head.position.y ?? Number.NaN);
+    return calibrationFromHeadHeight(first?.head.position.y ?? Number.NaN);
   }
-  demandPerson(person);
+  assertCalibration(person);
   return person;
 }
 
@@ -109,10 +109,10 @@ async function* exportWork(
   recording: Replayable,
   calibration: Calibration,
   regressor: PoseRegressor | null,
-  { estimator = 'learned' }: MotionExportOptions,
+  { estimator = 'learned' }: MotionFileOptions,
   writer: MotionWriter,
 ): AsyncGenerator<number, MotionFile['parts']> {
-  if (estimator === 'device') yield* demandBody(recording);
+  if (estimator === 'device') yield* requireDeviceBody(recording);
   const drawn = createEstimator(estimator, calibration, regressor);
   const admitted = { ...recording, frames: new AdmittedRecording(recording) };
   const motion = yield* scaleProgressAsync(estimateMotion(admitted, calibration, drawn), 0, estimating);
@@ -120,7 +120,7 @@ async function* exportWork(
 }
 
 /** Returns the loading network. Rejects as soon as the work is aborted, and releases a network that arrives later. */
-async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSignal | undefined): Promise<PoseRegressor> {
+async function untilAborted(loading: Promise<PoseRegressor>, signal: AbortSignal | undefined): Promise<PoseRegressor> {
   if (!signal) return loading;
   let giveUp = (): void => undefined;
   const givenUp = new Promise<never>((_, reject) => {
@@ -143,13 +143,13 @@ async function unlessGivenUp(loading: Promise<PoseRegressor>, signal: AbortSigna
  * loads, the measures are not human, times do not rise, or 'device' is chosen and no frame has a device body; with the
  * signal's reason where it is aborted.
  */
-export async function exportMotionWith(recording: Replayable, options: MotionExportOptions): Promise<MotionFile> {
+export async function writeMotionFile(recording: Replayable, options: MotionFileOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;
   const writer = writerOf(options);
   const calibration = personOf(recording, options.calibration);
   options.signal?.throwIfAborted();
   const network = networkOf(estimator);
-  const regressor = network && (await unlessGivenUp(networks(network), options.signal));
+  const regressor = network && (await untilAborted(networks(network), options.signal));
   try {
     const parts = await runWork(exportWork(recording, calibration, regressor, options, writer), options);
     return { extension: writer.extension, type: writer.type, parts };

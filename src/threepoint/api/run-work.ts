@@ -3,7 +3,7 @@ import { runInTurns, secondsLeft, type Work, type WorkHost } from '../core/motio
 /** The progress of long work. */
 export interface WorkProgress {
   /** The share [0, 1] that is done. */
-  readonly share: number;
+  readonly fraction: number;
   /** The estimated time left [s]; null: too little is done for an estimate. */
   readonly secondsLeft: number | null;
 }
@@ -41,9 +41,9 @@ export async function runWork<Result>(work: Work<Result>, { onProgress, signal }
     const now = host.now();
     if (now - reportedAt < reportEveryMs) return;
     reportedAt = now;
-    onProgress?.({ share, secondsLeft: secondsLeft(share, (now - begun) / 1000) });
+    onProgress?.({ fraction: share, secondsLeft: secondsLeft(share, (now - begun) / 1000) });
   });
   signal?.throwIfAborted();
-  onProgress?.({ share: 1, secondsLeft: 0 });
+  onProgress?.({ fraction: 1, secondsLeft: 0 });
   return result;
 }

@@ -1,7 +1,7 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import type { BoneName } from '../core/humanoid/bones';
-import { type JointPoses, makeJointPoses } from '../core/motion/file-motion';
+import { createJointPoses, type JointPoses } from '../core/motion/file-motion';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
 import { type Motion, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
@@ -125,7 +125,7 @@ function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, re
   const rotations = driven.map(() => new Float32Array(4 * count));
   const hips = new Float32Array(3 * count);
   const place = hipsPlacer(avatar.vrm, motion);
-  const posed = makeJointPoses(motion.bones.length);
+  const posed = createJointPoses(motion.bones.length);
   for (let frame = 0; frame < count; frame++) {
     poseBones(motion, frame, posed);
     const { x, y, z } = posed.positions[0]!;

@@ -4,7 +4,7 @@ import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { SkinTone } from '../core/body/avatar-ref';
 import type { Calibration } from '../core/body/calibration';
-import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
@@ -141,7 +141,7 @@ class VrmAvatar implements Avatar {
   private skeleton: Skeleton = skeletonFromCalibration(averageBody);
   private scale = 1;
   private lastTime: number | null = null;
-  private readonly joints = makeJointPoses();
+  private readonly joints = createJointPoses();
   /** The points of a pose that the legs follow. */
   private readonly points: Mutable<GaitPoints> = {
     hips: this.joints.hips,

@@ -2,7 +2,7 @@ import { createHash } from 'node:crypto';
 import { createServer, type RequestListener } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
-import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { SeenAvatars } from 'threepoint-rooms/drawing/room-avatar-loader';
 import { expect, onTestFinished, test } from 'vitest';
@@ -76,7 +76,7 @@ test.each<[what: string, answer: RequestListener, passes: boolean]>([
     .load(hash)
     .catch((error: unknown) => error);
   expect(fault).toBeInstanceOf(Error);
-  expect(fault instanceof PassingFault).toBe(passes);
+  expect(fault instanceof TransientError).toBe(passes);
 });
 
 test('another file than the announced one is refused before it is read', async () => {

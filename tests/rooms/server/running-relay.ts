@@ -81,7 +81,7 @@ export function arrive(
     room,
     visitor: visitor(name, more),
     pass,
-    clock: { now, leftOut: 0 },
+    clock: { now, skippedSeconds: 0 },
   });
   const person = createPerson(connection);
   let frames: ((time: number) => void) | null = null;

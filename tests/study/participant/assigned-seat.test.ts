@@ -13,7 +13,7 @@ import { paperPlan } from '../model/studies';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const trial = { step: 'ball/1/trial-1', run: 1 };
-const clock = { now: () => performance.now() / 1000, leftOut: 0 };
+const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
 
 /** The server as it is started, and what brings each of the first group to the court. */
 async function invited() {

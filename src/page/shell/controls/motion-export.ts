@@ -12,7 +12,7 @@ import type { ShownAvatar } from '../shown-avatar';
 
 export interface MotionExportOptions {
   readonly recorder: Pick<Recorder, 'recording' | 'name'>;
-  readonly body: Pick<BodySolver, 'wanted' | 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'selectedEstimator' | 'userCalibration'>;
   readonly avatar: Pick<ShownAvatar, 'name' | 'file'>;
   readonly networks: BodySolverOptions['networks'];
   readonly notices: Pick<Notices, 'show'>;
@@ -47,20 +47,20 @@ export class MotionExport {
     const { recorder, body, notices } = this.#options;
     const { recording, name } = recorder;
     if (!recording || !name || this.#state) return;
-    const estimator = body.wanted;
+    const estimator = body.selectedEstimator;
     const stem = name.replace(/\.json$/i, '');
     const { label } = estimatorTexts[estimator];
     this.#giveUp = new AbortController();
     const { signal } = this.#giveUp;
-    this.#tell({ name: stem, method: label, share: 0, secondsLeft: null });
+    this.#tell({ name: stem, method: label, fraction: 0, secondsLeft: null });
     try {
-      const { exportMotionWith: exportMotionBare } = await import('threepoint/api/motion-file');
+      const { writeMotionFile: exportMotionBare } = await import('threepoint/api/motion-file');
       const { extension, type, parts } = await exportMotionBare(recording, {
-        to: await this.#formatOf(choice),
+        format: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
         estimator,
         networks: this.#options.networks,
-        calibration: recording.calibration ?? body.wearerCalibration,
+        calibration: recording.calibration ?? body.userCalibration,
         signal,
         onProgress: (progress) => this.#tell({ name: stem, method: label, ...progress }),
       });

@@ -1,6 +1,6 @@
 import type { WorkerAnswer, WorkerQuestion } from './avatar-check-worker';
 import type { AvatarCheck, CheckedAvatar } from './check-avatar';
-import { MotionWithoutBody } from './motion-without-body';
+import { MotionWithoutBody } from './motion-only-error';
 
 /** The longest time [ms] that the start of a worker, and its check, may take. */
 const patienceMs = 20_000;

@@ -1,6 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
 import { type AvatarQuestion, type CheckedAvatar, checkAvatar } from './check-avatar';
-import { MotionWithoutBody } from './motion-without-body';
+import { MotionWithoutBody } from './motion-only-error';
 
 export interface WorkerQuestion extends AvatarQuestion {
   readonly bytes: ArrayBuffer;

@@ -1,4 +1,4 @@
-import { closeRound, distanceToBall, distanceToRod, type Surface } from '../../core/body/grasp';
+import { closeAround, distanceToBall, distanceToRod, type Surface } from '../../core/body/grasp';
 import { averageHand, type HandGeometry, mirrorPoint } from '../../core/body/hand-geometry';
 import { copyHandShape, type FingerName, type MutableHandShape, makeHandShape } from '../../core/body/hand-shape';
 import type { Pose } from '../../core/math/pose';
@@ -110,7 +110,7 @@ export class Holding {
       held.tube = tube;
       copyVec3(this.#middle, held.middle);
       copyVec3(this.#axis, held.axis);
-      closeRound(held.surface, this.#hands[side], held.shape);
+      closeAround(held.surface, this.#hands[side], held.shape);
     }
     copyHandShape(held.shape, target);
   }

@@ -1,6 +1,6 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Bone, type Object3D, Quaternion, Vector3 } from 'three';
-import { fingerBonesOf } from '../../core/body/finger-bone-names';
+import { fingerBoneNames } from '../../core/body/finger-bone-names';
 import {
   bendOfPoints,
   type FingerGeometry,
@@ -68,7 +68,7 @@ export interface RigHand {
  * rig lacks one.
  */
 const nodesOf = (vrm: VRM, side: Side, finger: FingerName): (Object3D | null)[] =>
-  fingerBonesOf(side, finger).map((bone) => boneNode(vrm, bone as BoneName));
+  fingerBoneNames(side, finger).map((bone) => boneNode(vrm, bone as BoneName));
 
 /** A wrist at rest in the rig's frame, which faces +Z, arms spread, palms down. */
 const rigFromWrist: Readonly<Record<Side, Quat>> = {

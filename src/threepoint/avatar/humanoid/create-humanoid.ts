@@ -6,7 +6,7 @@ import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-huma
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import { demandBones } from './needed-bones';
-import { fileBones, UnknownBones } from './unknown-bones';
+import { fileBones, UnknownBones } from './unknown-bones-error';
 
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);

@@ -3,7 +3,7 @@ import type { BoneName } from '../../core/humanoid/bones';
 import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
 import { skeletonOf } from './create-humanoid';
-import { type FileBones, fileBones } from './unknown-bones';
+import { type FileBones, fileBones } from './unknown-bones-error';
 
 /** The bones of a file, and whether it is worn without a map of them. */
 export interface ReadBones extends FileBones {

@@ -1,6 +1,6 @@
 import {
   type Calibration,
-  calibrationComplaint,
+  calibrationProblem,
   defaultCalibration,
   eyeHeightRange,
   withEyeHeight,
@@ -15,7 +15,7 @@ import type { TrackingFrame } from './tracking-frame';
  * Detects a wearer who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
  * sit.
  */
-interface HeightWatch {
+interface GrowthDetector {
   /**
    * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null.
    * Another object is another calibration, unless it is the one that was returned.
@@ -49,7 +49,7 @@ interface CalmStand {
   readonly highest: number;
 }
 
-export function createHeightWatch(): HeightWatch {
+export function createGrowthDetector(): GrowthDetector {
   let current: Calibration | null = null;
   /** The eye height [m] before any growth, and the highest plausible one: above it a wearer stands on something. */
   let measured = 0;
@@ -86,7 +86,7 @@ export function createHeightWatch(): HeightWatch {
       if (!stand || time - stand.since < provingSeconds) return null;
       const grown = withEyeHeight(calibration, (stand.lowest + stand.highest) / 2);
       stand = null;
-      if (calibrationComplaint(grown) !== null) return null;
+      if (calibrationProblem(grown) !== null) return null;
       if (calibration === defaultCalibration) take(grown);
       else current = grown;
       return grown;

@@ -1,4 +1,4 @@
-import { turnOfTilt } from 'threepoint/core/body/hand-tilt';
+import { tiltRotation } from 'threepoint/core/body/hand-tilt';
 import { estimatedJoints, type JointName } from 'threepoint/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { solveIk } from 'threepoint/core/estimation/ik/solve-ik';
@@ -25,7 +25,7 @@ const expectNear = (actual: ArrayLike<number>, expected: readonly number[], what
 
 /** How hands are turned in a frame. */
 const turnsOf = ({ handTilts: [left = [], right = []] }: GoldenCase['frames'][number]) => {
-  const turn = ([pitch = Number.NaN, yaw = Number.NaN]: readonly number[]) => turnOfTilt({ pitch, yaw });
+  const turn = ([pitch = Number.NaN, yaw = Number.NaN]: readonly number[]) => tiltRotation({ pitch, yaw });
   return { left: turn(left), right: turn(right) };
 };
 
