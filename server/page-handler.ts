@@ -2,8 +2,8 @@ import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { extname, join } from 'node:path';
-import { targetOf } from 'threepoint-http/request-target';
-import { type Answer, plain, sendAnswer } from 'threepoint-http/response';
+import { parseRequestTarget } from 'threepoint-http/request-target';
+import { type HttpResponse, sendResponse, textResponse } from 'threepoint-http/response';
 import { contentSecurityPolicy, permissionsPolicy } from 'threepoint-http/security-headers';
 
 const contentTypes: Readonly<Record<string, string>> = {
@@ -116,19 +116,19 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
   }
   const files = load(directory, options);
 
-  function answerTo({ method, url, headers: asked }: IncomingMessage): Answer {
+  function answerTo({ method, url, headers: asked }: IncomingMessage): HttpResponse {
     if (method !== 'GET' && method !== 'HEAD') {
-      const refused = plain('Only GET and HEAD are answered here.', 405);
+      const refused = textResponse('Only GET and HEAD are answered here.', 405);
       return { ...refused, headers: { ...refused.headers, allow: 'GET, HEAD' } };
     }
-    const target = targetOf(url);
-    if (!target) return plain('This address is not well formed.', 400);
+    const target = parseRequestTarget(url);
+    if (!target) return textResponse('This address is not well formed.', 400);
     const path = decodeURIComponent(target.path);
-    if (path === '/healthz') return plain('ok');
+    if (path === '/healthz') return textResponse('ok');
     const name = path.endsWith('/') ? `${path}index.html` : path;
     // Pages are requested by name: /results is results.html.
     const file = files.get(name) ?? files.get(`${name}.html`);
-    if (!file) return plain('Not found.', 404);
+    if (!file) return textResponse('Not found.', 404);
     const encoding = encodings.find(
       ({ name: encodingName }) => file.compressed.has(encodingName) && accepts(asked['accept-encoding'], encodingName),
     );
@@ -137,5 +137,5 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
     return known?.includes(String(headers.etag)) ? { status: 304, headers } : { status: 200, headers, body };
   }
 
-  return (request, response) => sendAnswer(request, response, answerTo(request));
+  return (request, response) => sendResponse(request, response, answerTo(request));
 }

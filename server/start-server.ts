@@ -1,7 +1,7 @@
 import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
-import { softwareIn } from 'threepoint-http/software-version';
+import { readSoftwareVersion } from 'threepoint-http/software-version';
 import { type Credentials, prepareServer } from 'threepoint-http/web-server';
 import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
@@ -47,7 +47,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     thread: new URL('./study-thread-worker.mjs', import.meta.url),
     directory: options.studyDirectory,
     token: options.experimenterToken,
-    software: softwareIn(options.pageDirectory, new URL('../package.json', import.meta.url)),
+    software: readSoftwareVersion(options.pageDirectory, new URL('../package.json', import.meta.url)),
     now,
     secret: options.secret,
     trustProxy: relaying.trustProxy,
@@ -65,7 +65,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     ...relaying,
     secret: options.secret,
     games: shippedRoomKinds(relaying),
-    operations: true,
+    monitoring: true,
     connections: connectionLimiter,
   });
   const server = await prepared.listen({ host, port }).catch(async (error: unknown) => {

@@ -28,7 +28,7 @@ export async function readBody(
 }
 
 /** Returns the whole body in a buffer of its own, which can be transferred to another thread. */
-export async function wholeBody(request: IncomingMessage, limit: number): Promise<Uint8Array<ArrayBuffer>> {
+export async function readWholeBody(request: IncomingMessage, limit: number): Promise<Uint8Array<ArrayBuffer>> {
   const chunks: Buffer[] = [];
   await readBody(request, limit, (chunk) => chunks.push(chunk));
   const bytes = new Uint8Array(chunks.reduce((sum, { length }) => sum + length, 0));

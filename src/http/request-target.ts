@@ -1,7 +1,7 @@
 import type { IncomingMessage } from 'node:http';
 
 /** The target of a request. */
-export interface Target {
+export interface RequestTarget {
   /** The path as sent: it begins with one slash; percent signs and dots are not decoded. */
   readonly path: string;
   readonly query: URLSearchParams;
@@ -13,7 +13,7 @@ const absolute = /^https?:\/\/[^/?#]+/i;
 const wellFormed = /^\/(?!\/)[!-[\]-~]*$/;
 
 /** Returns the target of a request line, or null where it is not well formed. Never throws. */
-export function targetOf(url: string | undefined): Target | null {
+export function parseRequestTarget(url: string | undefined): RequestTarget | null {
   const origin = absolute.exec(url ?? '')?.[0];
   if (origin !== undefined && !URL.canParse(origin)) return null;
   const relative = (url ?? '').slice(origin?.length ?? 0).replace(/#.*$/s, '') || '/';
@@ -33,7 +33,7 @@ export function targetOf(url: string | undefined): Target | null {
  * Returns what is wrong with the host of a request, or null. A request has one Host header (HTTP/1.0: at most one), and
  * an absolute target names the same authority. With two names a proxy and a server could route differently.
  */
-export function complaintAboutHost({ url = '', headersDistinct, httpVersion }: IncomingMessage): string | null {
+export function hostProblem({ url = '', headersDistinct, httpVersion }: IncomingMessage): string | null {
   const { host: hosts = [] } = headersDistinct;
   const [host] = hosts;
   if (hosts.length > 1) return 'the request has more than one Host header';

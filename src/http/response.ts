@@ -3,7 +3,7 @@ import type { Duplex } from 'node:stream';
 import { securityHeaders } from './security-headers';
 
 /** The answer to a request, before it is sent. */
-export interface Answer {
+export interface HttpResponse {
   readonly status: number;
   /** Headers by their names in lower case; they replace the default ones. */
   readonly headers?: Readonly<Record<string, string | number>>;
@@ -29,23 +29,23 @@ export class HttpError extends Error {
   }
 }
 
-export const json = (value: unknown, status = 200): Answer => ({
+export const jsonResponse = (value: unknown, status = 200): HttpResponse => ({
   status,
   headers: { 'content-type': 'application/json; charset=utf-8' },
   body: `${JSON.stringify(value)}\n`,
 });
 
-export const plain = (text: string, status = 200): Answer => ({
+export const textResponse = (text: string, status = 200): HttpResponse => ({
   status,
   headers: { 'content-type': 'text/plain; charset=utf-8' },
   body: `${text}\n`,
 });
 
 /** An answer without a body. */
-export const done: Answer = { status: 204 };
+export const noContent: HttpResponse = { status: 204 };
 
-export const refusal = ({ status, message, field, headers }: HttpError): Answer => {
-  const answer = json({ error: message, field }, status);
+export const errorResponse = ({ status, message, field, headers }: HttpError): HttpResponse => {
+  const answer = jsonResponse({ error: message, field }, status);
   return { ...answer, headers: { ...answer.headers, ...headers } };
 };
 
@@ -53,7 +53,7 @@ export const refusal = ({ status, message, field, headers }: HttpError): Answer 
 const lingerBytes = 2 ** 20;
 const lingerMs = 1000;
 
-const headersOf = ({ headers, body }: Answer): Record<string, string | number> => ({
+const headersOf = ({ headers, body }: HttpResponse): Record<string, string | number> => ({
   ...securityHeaders,
   'cache-control': 'no-store',
   ...(body !== undefined && { 'content-length': Buffer.byteLength(body) }),
@@ -64,7 +64,7 @@ const announcesBody = ({ headers }: IncomingMessage): boolean =>
   headers['transfer-encoding'] !== undefined || Number(headers['content-length'] ?? 0) > 0;
 
 /** Drains the body, then calls `done`: at its end, or when `lingerBytes` or `lingerMs` is exceeded. */
-function linger(request: IncomingMessage, done: () => void): void {
+function drain(request: IncomingMessage, done: () => void): void {
   let read = 0;
   const finish = (): void => {
     clearTimeout(timer);
@@ -80,7 +80,7 @@ function linger(request: IncomingMessage, done: () => void): void {
 }
 
 /** Sends an answer with the security headers. After an unread body the connection is closed. */
-export function sendAnswer(request: IncomingMessage, response: ServerResponse, answer: Answer): void {
+export function sendResponse(request: IncomingMessage, response: ServerResponse, answer: HttpResponse): void {
   if (response.destroyed || response.headersSent) return;
   const unread = announcesBody(request) && !request.complete;
   response.writeHead(answer.status, { ...headersOf(answer), ...(unread && { connection: 'close' }) });
@@ -92,11 +92,11 @@ export function sendAnswer(request: IncomingMessage, response: ServerResponse, a
   // The response ends later, but the client knows its length from the header.
   if (body !== undefined) response.write(body);
   else response.flushHeaders();
-  linger(request, () => response.end());
+  drain(request, () => response.end());
 }
 
 /** Sends an answer on a raw socket: the request could not be parsed, or asked for an upgrade. */
-export function sendRawAnswer(socket: Duplex, answer: Answer): void {
+export function sendRawResponse(socket: Duplex, answer: HttpResponse): void {
   const headers = { ...headersOf(answer), connection: 'close' };
   const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
   const head = `HTTP/1.1 ${answer.status} ${STATUS_CODES[answer.status]}\r\n${lines.join('')}\r\n`;

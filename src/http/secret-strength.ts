@@ -41,7 +41,7 @@ function withoutRepeats(text: string): { readonly kept: string; readonly repeats
  * Returns an upper bound of a secret's entropy [bits] from its length and alphabet; words and repetitions count little.
  * It cannot prove that a secret is random, but finds those that plainly are not.
  */
-export function secretBits(secret: string): number {
+export function secretEntropyBits(secret: string): number {
   const { kept, repeats } = withoutRepeats(secret);
   const { size } = alphabets.find(({ pattern }) => pattern.test(secret)) ?? { size: largestAlphabet };
   const letters = size === 16 ? 0 : (kept.match(textLetters) ?? []).reduce((sum, { length }) => sum + length, 0);
@@ -52,8 +52,8 @@ export function secretBits(secret: string): number {
 }
 
 /** Returns why a secret is too weak, as the rest of a sentence that begins with its name; null: it is strong enough. */
-export function weaknessOf(secret: string): string | null {
-  const bits = Math.floor(secretBits(secret));
+export function secretWeakness(secret: string): string | null {
+  const bits = Math.floor(secretEntropyBits(secret));
   if (bits >= fewestSecretBits) return null;
   return `has some ${bits} bits; it needs ${fewestSecretBits}. Generate one: openssl rand -base64 32`;
 }

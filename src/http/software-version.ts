@@ -16,7 +16,7 @@ const isWeights = (file: string): boolean => /\.(onnx|bin)$/.test(file);
  * Returns this program, its version by the `manifest` (a package.json), and the networks below `pageDirectory`, which
  * may have none.
  */
-export function softwareIn(pageDirectory: string, manifest: URL): Software {
+export function readSoftwareVersion(pageDirectory: string, manifest: URL): Software {
   const { version } = JSON.parse(readFileSync(manifest, 'utf8')) as Software;
   const models = join(pageDirectory, 'models');
   const files = existsSync(models) ? readdirSync(models).filter(isWeights).toSorted() : [];

@@ -143,7 +143,7 @@ export class CourtActivity implements OpenActivity {
     this.voices.begin();
     this.#avatars.share();
     this.#place();
-    const voided = this.play.room?.voided ?? 0;
+    const voided = this.play.room?.voidedRounds ?? 0;
     if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
     this.#voided = voided;
   }
@@ -306,7 +306,7 @@ export class CourtActivity implements OpenActivity {
 async function roomFor({ place, switches, clock, server, layout }: ActivityContext): Promise<BallPlace> {
   if (place) return assignedSeat(place.seat, clock);
   // A server that does not answer now may answer later. Without a server the match is in this page.
-  const hosted = switches.room !== null && (await server.known()) !== 'none';
+  const hosted = switches.room !== null && (await server.whenKnown()) !== 'none';
   return connectionsFor(hosted ? switches.room : null, {
     seed: layout.seed,
     clock,

@@ -60,8 +60,8 @@ const jointLabels: Readonly<Record<EstimatedJoint, string>> = {
 };
 const none = '–';
 const centimetres = (value: number): string => value.toFixed(1);
-const percent = ({ fraction: share, secondsLeft }: WorkProgress): string =>
-  `${Math.floor(100 * share)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
+const percent = ({ fraction, secondsLeft }: WorkProgress): string =>
+  `${Math.floor(100 * fraction)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
 
 /** How far measuring is; null: it is over, or failed. */
 const progressOf = (mean: ClipMean): WorkProgress | null =>

@@ -10,7 +10,7 @@ import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
+import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import type { KnownBones } from './known-bones';
@@ -39,7 +39,7 @@ export const buildBuiltIn = async (
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
-  readonly worn: WornAvatar;
+  readonly worn: OwnAvatar;
   /** null: a built-in avatar. */
   readonly source: MappedFile | null;
 }

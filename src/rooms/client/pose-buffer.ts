@@ -29,10 +29,10 @@ import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 
 /** The pose of a player in one frame. */
-export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
+export type BufferedPose = Omit<PosePacket, 'timeMs' | 'jump'>;
 
 /** A buffer for the drawn pose of a player; methods may use the buffer itself as a source. */
-export class ShownPlayer implements Shown {
+export class PoseBuffer implements BufferedPose {
   readonly pose: {
     readonly head: MutableTrackedPose;
     leftHand: MutableTrackedPose | null;
@@ -57,7 +57,7 @@ export class ShownPlayer implements Shown {
   }
 
   /** Copies a pose. */
-  copy({ pose, fingers, placement }: Shown): this {
+  copy({ pose, fingers, placement }: BufferedPose): this {
     copyTracked(pose.head, this.pose.head);
     this.pose.leftHand = pose.leftHand && copyTracked(pose.leftHand, this.hands.left);
     this.pose.rightHand = pose.rightHand && copyTracked(pose.rightHand, this.hands.right);
@@ -73,7 +73,7 @@ export class ShownPlayer implements Shown {
    * Writes the pose at a fitted time. A part that is missing in a sample is interpolated from a (t = 0) to b (t = 1),
    * the neighbouring packets.
    */
-  follow(samples: readonly PathSample[], fit: PathFit, a: Shown, b: Shown, t: number): this {
+  writeFitted(samples: readonly PathSample[], fit: PathFit, a: BufferedPose, b: BufferedPose, t: number): this {
     const { pose, hands, fingers, shapes } = this;
     const next = (t < 1 ? a : b).pose;
     fitPose(samples, fit, 'head', pose.head);
@@ -98,7 +98,7 @@ export class ShownPlayer implements Shown {
   }
 
   /** Interpolates from a (t = 0) to b (t = 1), or extrapolates beyond b. */
-  mix(a: Shown, b: Shown, t: number): this {
+  interpolate(a: BufferedPose, b: BufferedPose, t: number): this {
     mixTracked(a.pose.head, b.pose.head, t, this.pose.head);
     this.pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, this.hands.left);
     this.pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, this.hands.right);
@@ -157,7 +157,7 @@ function allHave(samples: readonly PathSample[], { first, count }: PathFit, part
 const sum = quat(0, 0, 0, 0);
 
 /** Adds `share` times q, or −q if that is nearer to `near`, to `sum`. */
-function addShare(q: Quat, share: number, near: Quat): void {
+function addWeighted(q: Quat, share: number, near: Quat): void {
   const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -share : share;
   sum.x += k * q.x;
   sum.y += k * q.y;
@@ -167,7 +167,7 @@ function addShare(q: Quat, share: number, near: Quat): void {
 
 function fitPose<Target extends MutablePose<'floor'>>(
   samples: readonly PathSample[],
-  { first, count, shares }: PathFit,
+  { first, count, weights }: PathFit,
   part: PosePart,
   target: Target,
 ): Target {
@@ -177,8 +177,8 @@ function fitPose<Target extends MutablePose<'floor'>>(
   setQuat(sum, 0, 0, 0, 0);
   for (let i = 0; i < count; i++) {
     const pose = partOf(samples[first + i]!.packet.pose, part)!;
-    addScaled(position, pose.position, shares[i]!, position);
-    addShare(pose.orientation, shares[i]!, near);
+    addScaled(position, pose.position, weights[i]!, position);
+    addWeighted(pose.orientation, weights[i]!, near);
   }
   normaliseQuat(sum, orientation);
   return target;
@@ -213,20 +213,20 @@ function mixFoot(
 
 function fitBody(
   samples: readonly PathSample[],
-  { first, count, shares }: PathFit,
+  { first, count, weights }: PathFit,
   target: MutableUpperBodyPose,
 ): MutableUpperBodyPose {
   const { hipsPosition } = target;
   setVec3(hipsPosition, 0, 0, 0);
   for (let i = 0; i < count; i++) {
-    addScaled(hipsPosition, samples[first + i]!.packet.pose.body!.hipsPosition, shares[i]!, hipsPosition);
+    addScaled(hipsPosition, samples[first + i]!.packet.pose.body!.hipsPosition, weights[i]!, hipsPosition);
   }
   for (let j = 0; j < jointNames.length; j++) {
     const name = jointNames[j]!;
     const near = samples[first + count - 1]!.packet.pose.body!.localRotations[name];
     setQuat(sum, 0, 0, 0, 0);
     for (let i = 0; i < count; i++) {
-      addShare(samples[first + i]!.packet.pose.body!.localRotations[name], shares[i]!, near);
+      addWeighted(samples[first + i]!.packet.pose.body!.localRotations[name], weights[i]!, near);
     }
     normaliseQuat(sum, target.localRotations[name]);
   }

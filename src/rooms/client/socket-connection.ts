@@ -90,9 +90,9 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   }
 
   update(time: number): ConnectionUpdate<Game> {
-    const { skippedSeconds: leftOut } = this.#clock;
-    if (leftOut > this.#leftOut) this.leaveOut(leftOut - this.#leftOut, time);
-    this.#leftOut = leftOut;
+    const { skippedSeconds } = this.#clock;
+    if (skippedSeconds > this.#leftOut) this.leaveOut(skippedSeconds - this.#leftOut, time);
+    this.#leftOut = skippedSeconds;
     return this.takeUpdate(time, this.#isJoined);
   }
 
@@ -162,7 +162,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     this.#reason = null;
     this.#joinedOnce = true;
     this.#refusals = 0;
-    this.#backOff.succeeded();
+    this.#backOff.reset();
   }
 
   #attempt(): void {

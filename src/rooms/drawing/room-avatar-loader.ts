@@ -16,7 +16,7 @@ import type { AvatarExchange } from '../client/avatar-exchange';
 /** The file of another person. */
 const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };
 
-export interface SeenAvatarsOptions {
+export interface RoomAvatarLoaderOptions {
   /** null: without a server, and in rooms of a study; then no file can be loaded. */
   readonly exchange: AvatarExchange | null;
   /** Loads a copy of a built-in body. */
@@ -24,18 +24,18 @@ export interface SeenAvatarsOptions {
   /** Loads a stranger's file, which has the announced hash; `loadAvatar` with `untrusted` refuses the same files. */
   loadFile(bytes: ArrayBuffer): Promise<Avatar>;
   /** A download that takes longer [ms] is cancelled: other avatars wait for it. */
-  readonly patienceMs?: number;
+  readonly timeoutMs?: number;
 }
 
 /**
  * Loads the avatars of other people. A file comes only from the store of the room or from the server that the store
  * names. It is refused if its hash differs from the announced one, or if it exceeds what a stranger's file may have.
  */
-export class SeenAvatars {
-  readonly #options: SeenAvatarsOptions;
+export class RoomAvatarLoader {
+  readonly #options: RoomAvatarLoaderOptions;
   readonly #leaving = new AbortController();
 
-  constructor(options: SeenAvatarsOptions) {
+  constructor(options: RoomAvatarLoaderOptions) {
     this.#options = options;
   }
 
@@ -46,7 +46,7 @@ export class SeenAvatars {
   }
 
   /** Cancels all downloads. */
-  leave(): void {
+  dispose(): void {
     this.#leaving.abort();
   }
 
@@ -57,10 +57,10 @@ export class SeenAvatars {
   }
 
   async #download(hash: AvatarHash): Promise<ArrayBuffer> {
-    const { exchange, patienceMs = 60_000 } = this.#options;
+    const { exchange, timeoutMs = 60_000 } = this.#options;
     if (!exchange) throw new Error('no server has the file');
     // Named, and asked below: Node forgets a timeout of which nothing but AbortSignal.any knows (nodejs/node#57736).
-    const late = AbortSignal.timeout(patienceMs);
+    const late = AbortSignal.timeout(timeoutMs);
     const signal = AbortSignal.any([this.#leaving.signal, late]);
     let reason = '';
     let passes = false;

@@ -48,7 +48,7 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body, feet }: AvatarPose): 
   (!feet || (isFinitePose(feet.left) && isFinitePose(feet.right)));
 
 /**
- * Returns the packet's bytes, `longestPose` at most; null if head, a hand, the body or a foot is not finite. The
+ * Returns the packet's bytes, `maxPosePacketBytes` at most; null if head, a hand, the body or a foot is not finite. The
  * skeleton is the sender's own; the body's head must be where the pose's head is, as with every estimator. Feet are
  * sent with a body. Positions beyond the ranges of `writePacket` are clamped.
  */

@@ -7,14 +7,14 @@ import { placeUnit } from './quantise';
  * ±1.25 m on each axis, as people do. The remaining codes have coarser steps within ±2.09 m, for controllers that are
  * put down. A buffer.
  */
-export interface HandPlaceSteps {
+export interface RelativePositionSteps {
   far: boolean;
   x: number;
   y: number;
   z: number;
 }
 
-export const makeHandPlaceSteps = (): HandPlaceSteps => ({ far: false, x: 0, y: 0, z: 0 });
+export const makeRelativePositionSteps = (): RelativePositionSteps => ({ far: false, x: 0, y: 0, z: 0 });
 
 interface Grid {
   /** Size of a step [m]. */
@@ -40,7 +40,7 @@ const stepsOf = (along: number, { unit, most }: Grid): number =>
   Math.max(-most, Math.min(most, Math.round(along / unit))) + 0;
 
 /** Writes the steps of a hand's position [m]; beyond ±2.09 m of the head on an axis they are clamped. */
-export function toHandPlace(head: Vec3, hand: Vec3, target: HandPlaceSteps): void {
+export function toRelativePosition(head: Vec3, hand: Vec3, target: RelativePositionSteps): void {
   const x = hand.x - head.x;
   const y = hand.y - head.y;
   const z = hand.z - head.z;
@@ -53,13 +53,17 @@ export function toHandPlace(head: Vec3, hand: Vec3, target: HandPlaceSteps): voi
 }
 
 /** Writes the hand's position into `target`, in the frame of `head` [m]. */
-export function fromHandPlace(head: Vec3, { far, x, y, z }: HandPlaceSteps, target: MutableVec3): MutableVec3 {
+export function fromRelativePosition(
+  head: Vec3,
+  { far, x, y, z }: RelativePositionSteps,
+  target: MutableVec3,
+): MutableVec3 {
   const { unit } = far ? wide : near;
   return add(head, setVec3(target, x * unit, y * unit, z * unit), target);
 }
 
-/** Writes a position as 40 bits. The steps must lie within their grid, as those of `toHandPlace` do. */
-export function writeHandPlace(writer: BitWriter, { far, x, y, z }: HandPlaceSteps): void {
+/** Writes a position as 40 bits. The steps must lie within their grid, as those of `toRelativePosition` do. */
+export function writeRelativePosition(writer: BitWriter, { far, x, y, z }: RelativePositionSteps): void {
   const { most, count } = far ? wide : near;
   const code = (far ? nearCodes : 0) + ((x + most) * count + (y + most)) * count + (z + most);
   writer.write(Math.floor(code / half), halfBits);
@@ -67,7 +71,7 @@ export function writeHandPlace(writer: BitWriter, { far, x, y, z }: HandPlaceSte
 }
 
 /** Reads a position. Returns false for an invalid code: too large, or coarse within the finer grid. */
-export function readHandPlace(reader: BitReader, target: HandPlaceSteps): boolean {
+export function readRelativePosition(reader: BitReader, target: RelativePositionSteps): boolean {
   const high = reader.read(halfBits);
   const code = high * half + reader.read(halfBits);
   if (code >= allCodes) return false;

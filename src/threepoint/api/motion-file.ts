@@ -39,12 +39,12 @@ export interface MotionFileOptions extends WorkOptions, BvhOptions {
   readonly calibration?: Calibration | undefined;
 }
 
-function writerOf({ format: to, ...options }: MotionFileOptions): MotionWriter {
-  if (typeof to === 'object') return to;
-  if (to === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
-  if (to === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
-  if (to === 'vrma') return { extension: 'vrma', type: 'model/gltf-binary', write: writeVrma };
-  throw new Error(`“${String(to)}” is not a motion format. Use one of ${motionFormats.join(', ')}.`);
+function writerOf({ format, ...options }: MotionFileOptions): MotionWriter {
+  if (typeof format === 'object') return format;
+  if (format === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
+  if (format === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
+  if (format === 'vrma') return { extension: 'vrma', type: 'model/gltf-binary', write: writeVrma };
+  throw new Error(`“${String(format)}” is not a motion format. Use one of ${motionFormats.join(', ')}.`);
 }
 
 /** The share of the work that is spent on estimating; the rest is writing. */

@@ -3,7 +3,7 @@ export type { Motion } from '../core/motion/motion';
 export type { MotionBone } from '../core/motion/skeleton';
 export type { XRBodyJoints } from '../core/motion/xr-body';
 export { toXRBody, XRBodyPoser } from '../core/motion/xr-body';
-export type { ExportMotionOptions as ExportOptions } from './export-motion';
+export type { ExportMotionOptions } from './export-motion';
 export { exportMotion } from './export-motion';
 export type { MotionFile, MotionWriter } from './motion-file';
 export type { MotionFormat } from './motion-formats';

@@ -36,12 +36,12 @@ export async function runWork<Result>(work: Work<Result>, { onProgress, signal }
   signal?.throwIfAborted();
   const begun = host.now();
   let reportedAt = Number.NEGATIVE_INFINITY;
-  const result = await runInTurns(work, host, (share) => {
+  const result = await runInTurns(work, host, (fraction) => {
     signal?.throwIfAborted();
     const now = host.now();
     if (now - reportedAt < reportEveryMs) return;
     reportedAt = now;
-    onProgress?.({ fraction: share, secondsLeft: secondsLeft(share, (now - begun) / 1000) });
+    onProgress?.({ fraction, secondsLeft: secondsLeft(fraction, (now - begun) / 1000) });
   });
   signal?.throwIfAborted();
   onProgress?.({ fraction: 1, secondsLeft: 0 });

@@ -77,11 +77,11 @@ test('a match of a group waits for all of it: one whose connection is lost is no
       return connection.room?.match;
     });
   await until('two seated', () => there.every(({ room }) => room !== null));
-  for (const connection of there) connection.ready(true);
+  for (const connection of there) connection.setReady(true);
   await until('two ready', () => matches().every((match) => match?.players.filter(({ ready }) => ready).length === 2));
   expect(matches().map((match) => match?.phase)).toEqual(['ready', 'ready']);
   const third = await come(late);
   await until('the third seated', () => third.room !== null);
-  third.ready(true);
+  third.setReady(true);
   await until('begun', () => matches().every((match) => match?.phase === 'running'));
 });

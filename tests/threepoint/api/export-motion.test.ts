@@ -53,9 +53,9 @@ describe('a recording', () => {
     await regressor?.dispose();
   });
 
-  test.each(['csv', 'vrma'] as const)('becomes a file of kind %s', async (to) => {
-    const { parts, extension, type } = await exportMotion(recording, { format: to, estimator: 'ik' });
-    expect(extension).toBe(to);
+  test.each(['csv', 'vrma'] as const)('becomes a file of kind %s', async (format) => {
+    const { parts, extension, type } = await exportMotion(recording, { format, estimator: 'ik' });
+    expect(extension).toBe(format);
     expect(new Blob([...parts], { type }).size).toBeGreaterThan(10_000);
   });
 
@@ -149,8 +149,8 @@ describe('a long export', () => {
     await exportMotion(recordingOf(20), {
       format: 'bvh',
       estimator: 'ik',
-      onProgress({ fraction: share, secondsLeft }) {
-        told.push(share);
+      onProgress({ fraction, secondsLeft }) {
+        told.push(fraction);
         left.push(secondsLeft);
       },
     });

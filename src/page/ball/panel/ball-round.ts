@@ -58,7 +58,7 @@ export function ballRound({ play, frame, players, secondsLeft, acting, voices }:
   const ended = play.status.phase === 'ended';
   const own = me === null ? null : state.players[me];
   const standing = { state, seconds: Math.ceil(secondsLeft), people: players, me, rotate, acting };
-  const delay = play.room?.delay ?? null;
+  const delay = play.room?.responseTime ?? null;
   return {
     phase: state.phase,
     score: state.score,

@@ -41,7 +41,7 @@ export function createUpgradeAdmission(
   return (request, query) => {
     const error = protocolErrorOf(request, query);
     if (error) throw error;
-    const refusal = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
+    const refusal = site.checkHost(request) ?? site.checkOrigin(request);
     if (refusal) {
       metrics.kicked('origin');
       log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
