@@ -139,7 +139,7 @@ export default {
       to: {
         pathNot: [
           pure,
-          '^src/rooms/client/(client-policy|connection|loopback-connection)\\.ts$',
+          '^src/rooms/client/(client-policy|connection|loopback-host)\\.ts$',
           packagePath('valibot'),
         ],
       },

@@ -24,7 +24,7 @@ async function follow({ file }: GuestOrder): Promise<Omit<GuestAnswer, 'id'>> {
   if (!file) return { hash: (await exchange.terms()).yours };
   const hash = createHash('sha256').update(file).digest('base64url');
   await exchange.store(hash, new Blob([file]));
-  person.connection.wear(hash);
+  person.connection.setAvatar(hash);
   return { hash };
 }
 

@@ -4,7 +4,7 @@ import { type Browser, test as base, type ConsoleMessage, expect, type Page, typ
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { serve } from 'threepoint-http/web-server';
 import type { Probe } from 'threepoint-page/shell/probe';
-import { createPageHandler } from '../server/page';
+import { createPageHandler } from '../server/page-handler';
 import { drawSeldom, screenshot } from './draw-seldom';
 import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';

@@ -13,7 +13,7 @@ type FrameWithBody = XRFrame & {
 const device = new XRDevice(metaQuest3, { stereoEnabled: false });
 device.installRuntime({ forceInstall: true });
 const faults: string[] = [];
-const uninstall = installBodyTracking({ estimator: 'ik', onFault: (reason) => faults.push(reason) });
+const uninstall = installBodyTracking({ estimator: 'ik', onWarning: (reason) => faults.push(reason) });
 
 function hold(height: number): void {
   device.position.set(0.3, 1.6, -0.2);

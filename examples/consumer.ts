@@ -12,20 +12,20 @@ import {
   defaultCalibration,
   forwardKinematics,
   type GuidedCalibration,
+  initialGuidedCalibration,
   loadLearned,
   type PoseRegressor,
   parseRecording,
   skeletonFromCalibration,
-  startGuidedCalibration,
   stepGuidedCalibration,
   type TrackingFrame,
 } from 'threepoint';
 import { exportMotion, toXRBody, type XRBodyJoints } from 'threepoint/motion';
-import { type OnnxOptions, onnxNetworks } from 'threepoint/onnx';
+import { type OnnxNetworksOptions, onnxNetworks } from 'threepoint/onnx';
 import 'threepoint/onnx-worker';
 import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';
 import { RemoteAvatar, SelfAvatar } from 'threepoint/react';
-import { type Avatar, avatarMotion, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
+import { type Avatar, avatarMotionWriter, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
 import { type BodyTrackers, pinning, trackerAtJoint } from 'threepoint/trackers';
 
 /** With three.js, its session and an avatar. */
@@ -60,7 +60,11 @@ export const inReact = (send: (pose: AvatarPose | null) => void, received: RefOb
 ];
 
 /** Without three.js, by the runtime, with a clock that the page shares and frame times that it measures. */
-export function withoutThree(options: OnnxOptions, recorded: TrackingFrame, person: Calibration): number | undefined {
+export function withoutThree(
+  options: OnnxNetworksOptions,
+  recorded: TrackingFrame,
+  person: Calibration,
+): number | undefined {
   const events: BodyEvents = {
     discontinuity: () => console.log('moved'),
     heightmismatch: (difference) => console.log(difference),
@@ -93,8 +97,8 @@ export async function forOthers(text: string, signal: AbortSignal): Promise<Blob
   const recording = parseRecording(text);
   const onProgress = ({ share, secondsLeft }: { share: number; secondsLeft: number | null }) =>
     console.log(share, secondsLeft);
-  const bvh = await exportMotion(recording, { to: 'bvh', unit: 'cm', rateHz: 30, signal, onProgress });
-  const glb = await exportMotion(recording, { to: await avatarMotion('/avatars/me.vrm'), estimator: 'ik' });
+  const bvh = await exportMotion(recording, { format: 'bvh', unit: 'cm', rateHz: 30, signal, onProgress });
+  const glb = await exportMotion(recording, { format: await avatarMotionWriter('/avatars/me.vrm'), estimator: 'ik' });
   return [bvh, glb].map(({ parts, type }) => new Blob([...parts], { type }));
 }
 
@@ -105,7 +109,7 @@ export function asWebXR({ body }: AvatarPose, calibration: Calibration): number 
 
 /** With trackers on belt and shoe, whose mounts a guided calibration has measured; the shoe's sends an ankle. */
 export function withTrackers(renderer: WebGLRenderer, avatar: Avatar, read: () => BodyTrackers, frame: TrackingFrame) {
-  const state: GuidedCalibration = stepGuidedCalibration(startGuidedCalibration, frame, pinning);
+  const state: GuidedCalibration = stepGuidedCalibration(initialGuidedCalibration, frame, pinning);
   const measured = state.kind === 'done' ? state.calibration : defaultCalibration;
   const calibration = { ...measured, trackerOffsets: { ...measured.trackerOffsets, leftFoot: trackerAtJoint } };
   return new BodyTracker(renderer, { avatar, calibration, pinning, trackers: read });
@@ -114,5 +118,5 @@ export function withTrackers(renderer: WebGLRenderer, avatar: Avatar, read: () =
 /** For pages that expect the device's own body. */
 export function polyfilled(frame: XRFrame & { readonly body?: EmulatedBody | null }): () => void {
   console.log(frame.body?.get('left-arm-lower')?.jointName, frame.body?.emulated);
-  return installBodyTracking({ estimator: 'ik', calibration: 'auto', onFault: (reason) => console.log(reason) });
+  return installBodyTracking({ estimator: 'ik', calibration: 'auto', onWarning: (reason) => console.log(reason) });
 }

@@ -18,12 +18,12 @@ const frames = Array.from({ length: 60 }, (_, i) => ({
 
 const body = new Body({ calibration });
 await body.setEstimator('learned');
-if (body.estimator !== 'learned') throw new Error(body.unavailable.learned);
+if (body.estimator !== 'learned') throw new Error(body.unavailableEstimators.learned);
 for (const frame of frames) body.update(frame);
 const joints = forwardKinematics(skeletonFromCalibration(calibration), body.pose.body);
 console.log(`The elbow is ${joints.rightLowerArm.position.y.toFixed(2)} m above the floor.`);
 
-const { parts } = await exportMotion({ device: 'none', rateHz: 60, calibration, frames }, { to: 'bvh' });
+const { parts } = await exportMotion({ device: 'none', rateHz: 60, calibration, frames }, { format: 'bvh' });
 console.log(`Its motion as BVH is ${parts.join('').length} characters long.`);
 
 const file = fileURLToPath(import.meta.resolve('threepoint/avatars/mannequin.vrm'));

@@ -2,8 +2,8 @@
 import { createElement } from 'react';
 import type { Scene, WebGLRenderer } from 'three';
 import { type Avatar, BodyTracker, loadMannequin } from 'threepoint/three';
-import { longestPeerPacket, PoseSender, type RemotePose, RemotePoses } from 'threepoint-rooms';
-import { Others } from 'threepoint-rooms/react';
+import { maxPeerPacketBytes, PoseSender, type RemotePose, RemotePoses } from 'threepoint-rooms';
+import { RoomAvatars } from 'threepoint-rooms/react';
 import { type JoinedRoom, joinRoom, placementOf, RemoteBodies } from 'threepoint-rooms/three';
 
 /** A room of a server, with the wearer's body and those of the others. */
@@ -25,14 +25,14 @@ export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<Jo
 
 /** Draws the others in react-three-fiber. */
 export const othersOf = (body: BodyTracker) =>
-  createElement(Others, { url: 'https://example.org', name: 'Ada', body, ref: (room) => console.log(room?.seat) });
+  createElement(RoomAvatars, { url: 'https://example.org', name: 'Ada', body, ref: (room) => console.log(room?.seat) });
 
 /** A transport of the page, with bodies in a scene. */
 export function overAChannel(channel: RTCDataChannel, body: BodyTracker, scene: Scene): (timeMs: number) => void {
-  const others = new RemoteBodies({ mostPeers: 1, onForgotten: (peer: string) => console.log(peer) });
+  const others = new RemoteBodies({ maxPeers: 1, onPeerTimeout: (peer: string) => console.log(peer) });
   scene.add(others.object);
   channel.onmessage = ({ data }: MessageEvent<ArrayBuffer>) => others.receive('peer', data);
-  const sender = new PoseSender((bytes) => channel.send(bytes), { name: 'Ada', rate: 30 });
+  const sender = new PoseSender((bytes) => channel.send(bytes), { name: 'Ada', rateHz: 30 });
   return (timeMs) => {
     sender.update(timeMs, body, { placement: placementOf(body.avatar.object) });
     others.update(timeMs);
@@ -42,6 +42,6 @@ export function overAChannel(channel: RTCDataChannel, body: BodyTracker, scene: 
 /** Poses without three.js. */
 export function elbowsOf(packets: readonly Uint8Array[], timeMs: number): (number | undefined)[] {
   const poses = new RemotePoses({ onRefused: (peer, reason) => console.log(peer, reason) });
-  for (const bytes of packets) if (bytes.length <= longestPeerPacket) poses.receive('ada', bytes, timeMs);
+  for (const bytes of packets) if (bytes.length <= maxPeerPacketBytes) poses.receive('ada', bytes, timeMs);
   return poses.update(timeMs).map(({ joints }: RemotePose) => joints?.leftLowerArm.position.y);
 }

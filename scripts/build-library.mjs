@@ -68,7 +68,7 @@ function published() {
  */
 const readers = [
   {
-    module: 'own-weights',
+    module: 'bundled-weights',
     file: 'public/models/learned.bin',
     code: (bytes) => `export async function readOwnWeights(_stated, onProgress) {
       const read = await ${bytes};
@@ -77,13 +77,13 @@ const readers = [
     }`,
   },
   {
-    module: 'own-mannequin',
+    module: 'bundled-mannequin',
     file: 'public/avatars/mannequin.vrm',
     code: (bytes) => `export const readOwnMannequin = async () => (await ${bytes}).buffer;`,
   },
   {
-    module: 'own-validator',
-    worker: 'src/threepoint/avatar/file/check-worker.ts',
+    module: 'bundled-validator',
+    worker: 'src/threepoint/avatar/file/avatar-check-worker.ts',
     code: (bytes) => `let address;
     export async function startValidator() {
       address ??= URL.createObjectURL(new Blob([await ${bytes}], { type: 'text/javascript' }));
@@ -98,7 +98,7 @@ const filesInModules = {
   name: 'files-in-modules',
   resolveId: { filter: { id: /^\0embedded-/ }, handler: (id) => id },
   load: {
-    filter: { id: /^\0embedded-|\/api\/own-\w+\.ts$/ },
+    filter: { id: /^\0embedded-|\/api\/bundled-\w+\.ts$/ },
     async handler(id) {
       const { module, file, worker, code } = readers.find((reader) => id.includes(reader.module));
       if (id === embedded(module)) {
@@ -139,9 +139,9 @@ async function bundle(input, plugins) {
 
 /** Modules from outside the library's folder, by their names in the build: npm packs no folder node_modules. */
 const movedModules = {
-  '_virtual/_embedded-own-weights': 'learned-weights',
-  '_virtual/_embedded-own-mannequin': 'mannequin',
-  '_virtual/_embedded-own-validator': 'validator',
+  '_virtual/_embedded-bundled-weights': 'learned-weights',
+  '_virtual/_embedded-bundled-mannequin': 'mannequin',
+  '_virtual/_embedded-bundled-validator': 'validator',
   'public/models/learned.json': 'api/learned-contract',
   'node_modules/valibot/dist/index': 'bundled/valibot',
   'node_modules/gltf-validator/module': 'bundled/gltf-validator',

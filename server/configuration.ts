@@ -1,6 +1,6 @@
 import { parseArgs } from 'node:util';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { weaknessOf } from 'threepoint-http/secret-bits';
+import { secretWeakness } from 'threepoint-http/secret-strength';
 
 /** The settings of this process, from the command line and the environment. */
 export interface Configuration {
@@ -64,7 +64,7 @@ export function configurationFrom(
         'The environment variable EXPERIMENTER_TOKEN must have 16 to 256 characters: letters, digits and - _ ~ + / .',
       );
     }
-    const weakness = weaknessOf(experimenterToken);
+    const weakness = secretWeakness(experimenterToken);
     if (weakness) throw new ConfigurationError(`The token in the environment variable EXPERIMENTER_TOKEN ${weakness}`);
   }
   const studyDirectory = values.studies ?? (environment.STUDIES || null);

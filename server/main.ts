@@ -7,7 +7,7 @@ import { loadStudyPlugins } from 'threepoint-study/server/plugins/load-plugins';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
-import { startServer } from './start';
+import { startServer } from './start-server';
 import { startupMessage } from './startup-message';
 
 const pathInRepository = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));

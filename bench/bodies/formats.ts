@@ -1,12 +1,12 @@
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics, type JointPoses } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { copyQuat, type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
 import { copyVec3, lerp, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
 import { recordOf } from 'threepoint/core/records';
-import type { SentBody } from 'threepoint-rooms/peers/pose-sender';
+import type { PoseSource } from 'threepoint-rooms/peers/pose-sender';
 import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
 
@@ -20,7 +20,7 @@ export interface Drawn {
 export interface BodyFormat {
   readonly name: string;
   /** Creates a sender; `send` gets the packets. */
-  sender(send: (bytes: Uint8Array) => void): (timeMs: number, body: SentBody) => void;
+  sender(send: (bytes: Uint8Array) => void): (timeMs: number, body: PoseSource) => void;
   receiver(): {
     receive(peer: string, bytes: Uint8Array, timeMs: number): void;
     /** Computes what is drawn of all people at this time [ms]. */
@@ -58,7 +58,7 @@ interface BufferedFormat {
 class BufferedPerson {
   readonly #place: BufferedFormat['place'];
   readonly #packets: Packet[] = [];
-  readonly #joints = makeJointPoses();
+  readonly #joints = createJointPoses();
   #shown: Packet | null = null;
   #offset = Number.POSITIVE_INFINITY;
   #drawn: Drawn | null = null;

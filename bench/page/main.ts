@@ -69,7 +69,7 @@ async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Bo
       profiler: timing,
     });
     await body.setEstimator(name);
-    if (body.estimator !== name) throw new Error(`${name}: ${body.unavailable[name]}`);
+    if (body.estimator !== name) throw new Error(`${name}: ${body.unavailableEstimators[name]}`);
     bodies[name] = body;
   }
   return bodies as Record<EstimatorName, Body>;

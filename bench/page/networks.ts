@@ -33,7 +33,7 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
   const opened = performance.now();
   const regressor = await load(way);
   const estimator = createWithNetwork('learned', defaultCalibration, regressor);
-  const { afterwards, close } = createAfterFrame();
+  const { schedule, close } = createAfterFrame();
   const inFrame: number[] = [];
   const onThread: number[] = [];
   let firstBodyMs = Number.NaN;
@@ -49,7 +49,7 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
     let later = 0;
     if (request) {
       await new Promise<void>((done) =>
-        afterwards(() => {
+        schedule(() => {
           const asked = performance.now();
           void request.ask();
           later = performance.now() - asked;

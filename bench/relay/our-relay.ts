@@ -2,7 +2,7 @@
 import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
-import { mostSeats } from 'threepoint-rooms/protocol/messages';
+import { maxSeats } from 'threepoint-rooms/protocol/messages';
 import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../server/room-kinds';
@@ -14,7 +14,7 @@ const connectionLimiter = new ConnectionLimiter({
   perAddress: configuration.connectionsPerAddress,
   behindProxy: configuration.trustProxy,
 });
-const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(mostSeats)]]);
+const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(maxSeats)]]);
 const relay = createRelay(configuration, configuration.secret ?? '', connectionLimiter, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
   host: '127.0.0.1',

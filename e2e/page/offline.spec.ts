@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 import { test as base, type Page } from '@playwright/test';
 import { serve } from 'threepoint-http/web-server';
 import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
-import { createPageHandler } from '../../server/page';
+import { createPageHandler } from '../../server/page-handler';
 import { holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { collectErrors, enterVr, expect, keepPicture, newPage, probe } from '../page-fixture';

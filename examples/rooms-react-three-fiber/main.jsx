@@ -4,7 +4,7 @@ import { createRoot } from 'react-dom/client';
 import { VRButton } from 'three/addons/webxr/VRButton.js';
 import mannequin from 'threepoint/avatars/mannequin.vrm?url';
 import { SelfAvatar } from 'threepoint/react';
-import { Others } from 'threepoint-rooms/react';
+import { RoomAvatars } from 'threepoint-rooms/react';
 
 const name = new URLSearchParams(location.search).get('name') ?? 'Guest';
 const publish = (room) => void Object.assign(window, { room, others: room?.others.object });
@@ -15,7 +15,7 @@ function People() {
   return (
     <>
       <SelfAvatar avatar={mannequin} ref={setTracker} />
-      {tracker && <Others url={location.origin} name={name} body={tracker} ref={publish} />}
+      {tracker && <RoomAvatars url={location.origin} name={name} body={tracker} ref={publish} />}
     </>
   );
 }

@@ -1,9 +1,9 @@
 import express from 'express';
-import { longestPeerPacket } from 'threepoint-rooms';
+import { maxPeerPacketBytes } from 'threepoint-rooms';
 import { WebSocket, WebSocketServer } from 'ws';
 
 const app = express().use(express.static('dist'));
-const sockets = new WebSocketServer({ server: app.listen(process.env.PORT ?? 8080), maxPayload: longestPeerPacket });
+const sockets = new WebSocketServer({ server: app.listen(process.env.PORT ?? 8080), maxPayload: maxPeerPacketBytes });
 let people = 0;
 
 sockets.on('connection', (socket) => {

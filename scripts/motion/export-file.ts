@@ -1,10 +1,10 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
-import { exportMotionWith, type MotionWriter } from 'threepoint/api/motion-export';
+import { type MotionWriter, writeMotionFile } from 'threepoint/api/motion-file';
 import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
 import type { WorkOptions } from 'threepoint/api/run-work';
-import { avatarClip } from 'threepoint/avatar/avatar-clip';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
+import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { NetworkName } from 'threepoint/core/estimation/estimators';
 import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
@@ -111,7 +111,13 @@ export async function exportFile(request: MotionRequest, work: WorkOptions = {})
   const options = { unit: checked('--unit', unit, ['m', 'cm']), ...rateOf(rate) };
   const to = await formatOf(request);
   const recording = await recordingIn(file);
-  const made = await exportMotionWith(recording, { ...options, ...work, to, estimator: name, networks: network });
+  const made = await writeMotionFile(recording, {
+    ...options,
+    ...work,
+    format: to,
+    estimator: name,
+    networks: network,
+  });
   const out = request.out ?? join(file, '..', `${basename(file, extname(file))}.${made.extension}`);
   if (out === file) throw new MotionError(`${out} would be overwritten; give another file by --out`);
   work.signal?.throwIfAborted();

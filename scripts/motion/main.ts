@@ -10,10 +10,10 @@ for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'] as const) {
 const terminal = process.stderr.isTTY;
 
 /** Overwrites one line of the terminal with the progress; writes nothing without a terminal. */
-function show({ share, secondsLeft }: WorkProgress): void {
+function show({ fraction, secondsLeft }: WorkProgress): void {
   if (!terminal) return;
   const left = secondsLeft === null ? '' : `, ${secondsLeft.toFixed(0)} s left`;
-  process.stderr.write(`\r\u001b[K${(100 * share).toFixed(0)} %${left}`);
+  process.stderr.write(`\r\u001b[K${(100 * fraction).toFixed(0)} %${left}`);
 }
 
 try {

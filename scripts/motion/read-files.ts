@@ -3,7 +3,7 @@
 // request.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type MocapSource, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
 import { readSkeletonMap } from 'threepoint/core/mocap/read-skeleton-map';

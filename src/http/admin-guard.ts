@@ -1,9 +1,9 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
-import { HttpError } from './answer';
-import { type AuthThrottle, createAuthThrottle, TooManyGuesses } from './auth-throttle';
+import { type AuthThrottle, createAuthThrottle, TooManyAttempts } from './auth-throttle';
 import { clientAddressOf } from './client-address';
+import { HttpError } from './response';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 
@@ -34,7 +34,7 @@ export class AdminGuard {
     try {
       return await this.#throttle.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
     } catch (error) {
-      if (!(error instanceof TooManyGuesses)) throw error;
+      if (!(error instanceof TooManyAttempts)) throw error;
       throw new HttpError(429, error.message, { headers: { 'retry-after': String(error.retryAfterSeconds) } });
     }
   }

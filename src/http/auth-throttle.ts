@@ -3,11 +3,11 @@ import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { ClientAddress } from './client-address';
 
 /** The kind of a secret: a token opens a server, a withdrawal code deletes, an invitation takes a place. */
-export type Guessed = 'token' | 'withdrawal code' | 'invitation';
+export type SecretKind = 'token' | 'withdrawal code' | 'invitation';
 
 /** A wrong guess for the log: everything but the secret that was sent. */
-export interface WrongGuess {
-  readonly what: Guessed;
+export interface FailedAttempt {
+  readonly what: SecretKind;
   readonly address: string;
   /** The study that the secret is for; null: the server itself. */
   readonly of: string | null;
@@ -15,8 +15,8 @@ export interface WrongGuess {
   readonly failures: number;
 }
 
-export interface Guess {
-  readonly what: Guessed;
+export interface AuthAttempt {
+  readonly what: SecretKind;
   readonly address: ClientAddress;
   readonly of: string | null;
   /** The secret that was sent, with the name of what it opens. */
@@ -24,10 +24,10 @@ export interface Guess {
 }
 
 /** Refuses a guess unchecked, because too many before it were wrong. */
-export class TooManyGuesses extends Error {
+export class TooManyAttempts extends Error {
   readonly retryAfterSeconds: number;
 
-  constructor(what: Guessed, retryAfterSeconds: number) {
+  constructor(what: SecretKind, retryAfterSeconds: number) {
     super(`too many wrong guesses of a ${what}; try again in ${retryAfterSeconds} s`);
     this.retryAfterSeconds = retryAfterSeconds;
   }
@@ -36,11 +36,11 @@ export class TooManyGuesses extends Error {
 /** Limits how often secrets may be tried: the delay grows with the number of wrong guesses. */
 export interface AuthThrottle {
   /**
-   * Calls `isRight` where this address and this study have a guess left; throws TooManyGuesses otherwise. `isRight` is
+   * Calls `isRight` where this address and this study have a guess left; throws TooManyAttempts otherwise. `isRight` is
    * synchronous; where it throws, no guess is counted. A repeated wrong secret counts once. A secret that was right
    * before is never delayed.
    */
-  attempt(guess: Guess, isRight: () => boolean): Promise<boolean>;
+  attempt(guess: AuthAttempt, isRight: () => boolean): Promise<boolean>;
 }
 
 /** Failures are kept for this long [s]. */
@@ -52,7 +52,7 @@ const addressLimits = { free: 5, longestDelay: 900 } as const;
 /** The limits of all addresses together. Its delay stays short, or a stranger could keep the study's own people out. */
 const studyLimits = { free: 20, longestDelay: 60 } as const;
 
-const digestOf = ({ what, of, secret, address: { network } }: Guess): string =>
+const digestOf = ({ what, of, secret, address: { network } }: AuthAttempt): string =>
   createHash('sha256')
     .update(JSON.stringify([what, of, secret, network]))
     .digest('base64url');
@@ -82,7 +82,7 @@ function createDelay({ free, longestDelay }: { readonly free: number; readonly l
 }
 
 /** Creates a throttle in memory; `onWrong` is called once for each different wrong secret. */
-export function createAuthThrottle(onWrong: (guess: WrongGuess) => void): AuthThrottle {
+export function createAuthThrottle(onWrong: (guess: FailedAttempt) => void): AuthThrottle {
   const byAddress = createDelay(addressLimits);
   const byStudy = createDelay(studyLimits);
   const right = new RateLimiterMemory({ points: 1, duration: trustSeconds });
@@ -97,11 +97,11 @@ export function createAuthThrottle(onWrong: (guess: WrongGuess) => void): AuthTh
       if ((await wrong.get(digest)) !== null) return false;
       const study = JSON.stringify([what, of]);
       const wait = await byAddress.take(network);
-      if (wait !== null) throw new TooManyGuesses(what, wait);
+      if (wait !== null) throw new TooManyAttempts(what, wait);
       const studyWait = await byStudy.take(study);
       if (studyWait !== null) {
         await byAddress.giveBack(network);
-        throw new TooManyGuesses(what, studyWait);
+        throw new TooManyAttempts(what, studyWait);
       }
       let opens: boolean;
       try {

@@ -14,7 +14,7 @@ export class GroupCommit {
    * written. Rejects when it fails, and every time after that: the system drops the pages that it could not write, and
    * a later flush does not report them.
    */
-  flushed(): Promise<void> {
+  flush(): Promise<void> {
     this.#next ??= this.#last.then(() => {
       this.#next = null;
       return this.#flush();

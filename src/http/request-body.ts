@@ -1,5 +1,5 @@
 import type { IncomingMessage } from 'node:http';
-import { HttpError } from './answer';
+import { HttpError } from './response';
 
 /**
  * Passes the body to `onChunk` as it arrives. Throws an HttpError if it is longer than the limit [bytes] or is cut off.
@@ -28,7 +28,7 @@ export async function readBody(
 }
 
 /** Returns the whole body in a buffer of its own, which can be transferred to another thread. */
-export async function wholeBody(request: IncomingMessage, limit: number): Promise<Uint8Array<ArrayBuffer>> {
+export async function readWholeBody(request: IncomingMessage, limit: number): Promise<Uint8Array<ArrayBuffer>> {
   const chunks: Buffer[] = [];
   await readBody(request, limit, (chunk) => chunks.push(chunk));
   const bytes = new Uint8Array(chunks.reduce((sum, { length }) => sum + length, 0));

@@ -1,9 +1,9 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { type Answer, HttpError, json, refusal, sendAnswer } from './answer';
-import { wholeBody } from './request-body';
+import { readWholeBody } from './request-body';
+import { parseRequestTarget } from './request-target';
+import { errorResponse, HttpError, type HttpResponse, jsonResponse, sendResponse } from './response';
 import { createSitePolicy, type SitePolicy } from './site-policy';
-import { targetOf } from './target';
 
 /** A request to a route, with its body. */
 export interface Call {
@@ -24,7 +24,7 @@ export interface Route<Access extends string = string> {
   readonly access: Access;
   /** The longest JSON body [bytes]; 0: the router does not read the body. */
   readonly bodyLimit: number;
-  handle(call: Call): Answer | Promise<Answer>;
+  handle(call: Call): HttpResponse | Promise<HttpResponse>;
 }
 
 /** A set of routes with common access rules and errors. */
@@ -80,19 +80,19 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       const found = pattern.exec(path);
       return found && Object.fromEntries(names.map((name, i) => [name, decodeURIComponent(found[i + 1] as string)]));
     },
-    async answer(call: Omit<Call, 'body'>): Promise<Answer> {
+    async answer(call: Omit<Call, 'body'>): Promise<HttpResponse> {
       await service.admit(route, call);
       if (route.bodyLimit === 0) return route.handle({ ...call, body: new Uint8Array() });
       if (!/^application\/json(;|$)/i.test(call.request.headers['content-type'] ?? '')) {
         throw new HttpError(415, 'the content type must be application/json');
       }
-      return route.handle({ ...call, body: await wholeBody(call.request, route.bodyLimit) });
+      return route.handle({ ...call, body: await readWholeBody(call.request, route.bodyLimit) });
     },
-    answerTo(error: unknown): Answer {
+    answerTo(error: unknown): HttpResponse {
       const known = refusalOf(error) ?? service.refusalOf(error);
-      if (known) return refusal(known);
+      if (known) return errorResponse(known);
       service.onFault(error);
-      return refusal(new HttpError(500, 'the server failed, and stored nothing; try again'));
+      return errorResponse(new HttpError(500, 'the server failed, and stored nothing; try again'));
     },
   };
 }
@@ -112,17 +112,17 @@ export function createRouter(
 ): RequestListener {
   const matchers = services.flatMap((service) => service.routes.map((route) => matcherOf(service, route)));
   return (request, response) => {
-    const target = targetOf(request.url);
+    const target = parseRequestTarget(request.url);
     if (!target) {
-      sendAnswer(request, response, refusal(new HttpError(400, 'this address is not well formed')));
+      sendResponse(request, response, errorResponse(new HttpError(400, 'this address is not well formed')));
       return;
     }
     const { path, query } = target;
     // Any site may link to the page; only pages of this server may use the API.
     const reading = (request.method === 'GET' || request.method === 'HEAD') && !api.test(path);
-    const stranger = site.refusalOfHost(request) ?? (reading ? null : site.refusalOfOrigin(request));
+    const stranger = site.checkHost(request) ?? (reading ? null : site.checkOrigin(request));
     if (stranger) {
-      sendAnswer(request, response, refusal(new HttpError(stranger.status, stranger.message)));
+      sendResponse(request, response, errorResponse(new HttpError(stranger.status, stranger.message)));
       return;
     }
     const here = matchers.flatMap((matcher) => {
@@ -131,7 +131,7 @@ export function createRouter(
     });
     if (here.length === 0) {
       if (api.test(path)) {
-        sendAnswer(request, response, refusal(new HttpError(404, 'there is nothing at this address')));
+        sendResponse(request, response, errorResponse(new HttpError(404, 'there is nothing at this address')));
       } else page(request, response);
       return;
     }
@@ -139,19 +139,19 @@ export function createRouter(
     const found = here.find(({ matcher }) => matcher.route.method === method);
     if (!found) {
       const allow = [...new Set(here.map(({ matcher }) => matcher.route.method))].join(', ');
-      const answer = refusal(new HttpError(405, `this address answers ${allow}`, { headers: { allow } }));
-      sendAnswer(request, response, answer);
+      const answer = errorResponse(new HttpError(405, `this address answers ${allow}`, { headers: { allow } }));
+      sendResponse(request, response, answer);
       return;
     }
     const { matcher, names } = found;
     matcher
       .answer({ request, names, query })
       .catch((error: unknown) => matcher.answerTo(error))
-      .then((answer) => sendAnswer(request, response, answer))
+      .then((answer) => sendResponse(request, response, answer))
       .catch(() => response.destroy());
   };
 }
 
 /** The listener for a server without a page: answers 404. */
 export const noPage: RequestListener = (request, response) =>
-  sendAnswer(request, response, json({ error: 'there is nothing at this address', field: null }, 404));
+  sendResponse(request, response, jsonResponse({ error: 'there is nothing at this address', field: null }, 404));

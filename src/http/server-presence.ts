@@ -46,12 +46,12 @@ export class ServerPresence {
   }
 
   /** Resolves to the known state, after a request if there is none. Never rejects. */
-  known(): Promise<ServerState> {
-    return this.#state === 'unknown' ? this.ask() : (this.#answer ?? Promise.resolve(this.#state));
+  whenKnown(): Promise<ServerState> {
+    return this.#state === 'unknown' ? this.refresh() : (this.#answer ?? Promise.resolve(this.#state));
   }
 
   /** Asks again, unless a request is under way. Never rejects. */
-  ask(): Promise<ServerState> {
+  refresh(): Promise<ServerState> {
     this.#answer ??= this.#ask();
     return this.#answer;
   }

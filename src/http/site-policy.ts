@@ -14,12 +14,12 @@ export interface SitePolicy {
    * Returns why the request's Host is not a name of this server; null: it is. This blocks DNS rebinding, in which
    * another site's name points at this machine. IP addresses are allowed, because they cannot be rebound.
    */
-  refusalOfHost(request: IncomingMessage): SiteRefusal | null;
+  checkHost(request: IncomingMessage): SiteRefusal | null;
   /**
    * Returns why the request's origin may not use the server; null: it may. Programs other than browsers send no origin;
    * they need a secret.
    */
-  refusalOfOrigin(request: IncomingMessage): SiteRefusal | null;
+  checkOrigin(request: IncomingMessage): SiteRefusal | null;
 }
 
 export interface SitePolicyOptions {
@@ -58,7 +58,7 @@ export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptio
   }
 
   return {
-    refusalOfHost({ headers: { host } }) {
+    checkHost({ headers: { host } }) {
       // Browsers always send Host; a request without one (HTTP/1.0) comes from another program.
       if (host === undefined) return null;
       const name = nameIn(host);
@@ -69,7 +69,7 @@ export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptio
         message: `this server does not accept the name ${name}; add it to THREEPOINT_HOSTS`,
       };
     },
-    refusalOfOrigin(request) {
+    checkOrigin(request) {
       const { origin, 'sec-fetch-site': site } = request.headers;
       const refused = { status: 403, message: 'this page may not use this server' } as const;
       if (origin === undefined) return ownFetchSites.includes(site) ? null : refused;

@@ -5,9 +5,9 @@ export type ThreadApi = { readonly [name: string]: (...args: never[]) => unknown
 
 export interface ThreadLimits {
   /** The most unfinished calls, those whose caller has timed out included. */
-  readonly mostCalls: number;
+  readonly maxCalls: number;
   /** The most bytes of their arguments. */
-  readonly mostBytes: number;
+  readonly maxBytes: number;
   /** How long a caller waits [ms]. */
   readonly deadlineMs: number;
 }
@@ -104,9 +104,9 @@ export class ThreadCalls<Api extends ThreadApi> {
     args: Parameters<Api[Name]>,
     { patient = false } = {},
   ): Promise<Awaited<ReturnType<Api[Name]>>> {
-    const { mostCalls, mostBytes, deadlineMs } = this.#limits;
+    const { maxCalls, maxBytes, deadlineMs } = this.#limits;
     const bytes = bytesIn(args).reduce((sum, { byteLength }) => sum + byteLength, 0);
-    if (this.#waiting.size >= mostCalls || this.#bytes + bytes > mostBytes) {
+    if (this.#waiting.size >= maxCalls || this.#bytes + bytes > maxBytes) {
       return Promise.reject(new ThreadUnavailable('full'));
     }
     this.#last += 1;

@@ -8,10 +8,10 @@ import {
 import { createServer as createHttpsServer } from 'node:https';
 import { createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
 import type { Duplex } from 'node:stream';
-import { HttpError, refusal, sendAnswer, sendRawAnswer } from './answer';
 import type { ConnectionLimiter } from './connection-limiter';
-import { listenOnFreePort } from './listen';
-import { complaintAboutHost, targetOf } from './target';
+import { listenOnFreePort } from './listen-on-free-port';
+import { hostProblem, parseRequestTarget } from './request-target';
+import { errorResponse, HttpError, sendRawResponse, sendResponse } from './response';
 
 /** A private key and its certificate, PEM. */
 export interface Credentials {
@@ -44,28 +44,28 @@ export interface WebServerOptions {
    * Idle timeout of a connection [ms], also while a client does not read; WebSockets have their own pings. Default:
    * 30,000.
    */
-  readonly silenceMs?: number;
+  readonly idleTimeoutMs?: number;
 }
 
 /** The first byte of a TLS handshake record; no HTTP request begins with it. */
 const tlsHandshake = 0x16;
 /** Timeout of the TLS handshake and of the request headers [ms]. */
-export const handshakeMs = 5000;
+export const handshakeTimeoutMs = 5000;
 /** Timeout of a whole request [ms]: 16 MB of motion at 1.1 Mbit/s. */
-export const requestMs = 120_000;
+export const requestTimeoutMs = 120_000;
 /** Interval at which Node checks these timeouts [ms]. */
 const checkMs = 1000;
 
 /** Redirects plain HTTP to https, because people omit the "https://". */
 const redirectToHttps: RequestListener = (request, response) => {
   const host = request.headers.host;
-  const target = targetOf(request.url);
+  const target = parseRequestTarget(request.url);
   if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
-    sendAnswer(request, response, refusal(new HttpError(400, 'the address of this request is malformed')));
+    sendResponse(request, response, errorResponse(new HttpError(400, 'the address of this request is malformed')));
     return;
   }
   const search = target.query.size > 0 ? `?${target.query}` : '';
-  sendAnswer(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
+  sendResponse(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
 };
 
 /** Returns the refusal for an error of Node's HTTP parser. */
@@ -77,21 +77,21 @@ function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
 }
 
 /** Refuses requests with a wrong Host before the listener, and tolerates clients that disconnect. */
-export const guarded =
+export const withHostCheck =
   (listener: RequestListener): RequestListener =>
   (request, response) => {
     // A client may disconnect before it has read its answer; that is not an error.
     request.on('error', () => undefined);
     response.on('error', () => undefined);
-    const complaint = complaintAboutHost(request);
+    const complaint = hostProblem(request);
     if (complaint === null) listener(request, response);
-    else sendAnswer(request, response, refusal(new HttpError(400, complaint)));
+    else sendResponse(request, response, errorResponse(new HttpError(400, complaint)));
   };
 
 /** Answers an upgrade request with a wrong Host; returns whether it did. */
 export function refusesUpgrade(request: IncomingMessage, socket: Duplex): boolean {
-  const complaint = complaintAboutHost(request);
-  if (complaint !== null) sendRawAnswer(socket, refusal(new HttpError(400, complaint)));
+  const complaint = hostProblem(request);
+  if (complaint !== null) sendRawResponse(socket, errorResponse(new HttpError(400, complaint)));
   return complaint !== null;
 }
 
@@ -112,22 +112,26 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
   // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the
   // answer.
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
-  server.on('request', guarded(listener));
+  server.on('request', withHostCheck(listener));
   server.on('checkExpectation', (request: IncomingMessage, response: ServerResponse) => {
-    sendAnswer(request, response, refusal(new HttpError(417, 'this server supports no expectation but 100-continue')));
+    sendResponse(
+      request,
+      response,
+      errorResponse(new HttpError(417, 'this server supports no expectation but 100-continue')),
+    );
   });
   server.on('connect', (_request: IncomingMessage, socket: Duplex) => {
     socket.on('error', () => socket.destroy());
-    sendRawAnswer(
+    sendRawResponse(
       socket,
-      refusal(new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } })),
+      errorResponse(new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } })),
     );
   });
   server.on('upgrade', (request: IncomingMessage, socket: Duplex, head: Buffer) => {
     socket.on('error', () => socket.destroy());
     if (refusesUpgrade(request, socket) || upgrade(request, socket, head)) return;
     if (head.length > 0) {
-      sendRawAnswer(socket, refusal(new HttpError(400, 'this address supports no upgrade')));
+      sendRawResponse(socket, errorResponse(new HttpError(400, 'this address supports no upgrade')));
       return;
     }
     // A server may ignore an offer of another protocol; the request is answered as if it had none.
@@ -150,15 +154,15 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
       return;
     }
     refused.add(socket);
-    sendRawAnswer(socket, refusal(refusalOfParser(error)));
+    sendRawResponse(socket, errorResponse(refusalOfParser(error)));
   });
   server.on('tlsClientError', (_error: Error, socket: Socket) => socket.destroy());
 }
 
 /** Creates a server that splits one port: TLS goes to `secure`, plain HTTP to `plain`. */
-function divide(secure: HttpServer, plain: HttpServer): NetServer {
+function splitByProtocol(secure: HttpServer, plain: HttpServer): NetServer {
   return createNetServer((socket) => {
-    socket.setTimeout(handshakeMs, () => socket.destroy());
+    socket.setTimeout(handshakeTimeoutMs, () => socket.destroy());
     socket.once('error', () => socket.destroy());
     socket.once('data', (chunk: Buffer) => {
       socket.setTimeout(0);
@@ -173,10 +177,10 @@ function divide(secure: HttpServer, plain: HttpServer): NetServer {
 }
 
 const limits = {
-  headersTimeout: handshakeMs,
-  requestTimeout: requestMs,
+  headersTimeout: handshakeTimeoutMs,
+  requestTimeout: requestTimeoutMs,
   connectionsCheckingInterval: checkMs,
-  // Answered by `complaintAboutHost` instead, with a sentence and the security headers.
+  // Answered by `hostProblem` instead, with a sentence and the security headers.
   requireHostHeader: false,
   ServerResponse: FollowedResponse,
 };
@@ -191,17 +195,17 @@ export interface PreparedServer {
 /** Prepares a server: HTTP, or with credentials HTTPS and a redirect from HTTP. */
 export function prepareServer(
   listener: RequestListener,
-  { credentials, upgrade = () => false, connectionLimiter, silenceMs = 30_000 }: WebServerOptions,
+  { credentials, upgrade = () => false, connectionLimiter, idleTimeoutMs = 30_000 }: WebServerOptions,
 ): PreparedServer {
   const requests: HttpServer = credentials
-    ? createHttpsServer({ ...credentials, ...limits, handshakeTimeout: handshakeMs })
+    ? createHttpsServer({ ...credentials, ...limits, handshakeTimeout: handshakeTimeoutMs })
     : createHttpServer(limits);
   answerAll(requests, listener, upgrade);
   const redirects = createHttpServer(limits);
   answerAll(redirects, redirectToHttps, () => false);
-  const entrance: NetServer = credentials ? divide(requests, redirects) : requests;
+  const entrance: NetServer = credentials ? splitByProtocol(requests, redirects) : requests;
   for (const server of [requests, redirects]) {
-    server.timeout = silenceMs;
+    server.timeout = idleTimeoutMs;
     // Node starts to check timeouts on this event; a server that receives its connections from another never emits it.
     if (server !== entrance) server.emit('listening');
   }

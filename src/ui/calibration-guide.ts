@@ -1,7 +1,7 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import {
   type GuidedCalibration,
-  startGuidedCalibration,
+  initialGuidedCalibration,
   stepGuidedCalibration,
 } from 'threepoint/core/tracking/guided-calibration';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -23,7 +23,7 @@ export interface CalibrationGuideOptions {
 export function createCalibrationGuide(options: CalibrationGuideOptions) {
   let startTime: number | null = null;
   let running = false;
-  let measuring: GuidedCalibration = startGuidedCalibration;
+  let measuring: GuidedCalibration = initialGuidedCalibration;
   let endTime: number | null = null;
 
   function stop(): void {
@@ -36,7 +36,7 @@ export function createCalibrationGuide(options: CalibrationGuideOptions) {
       running = true;
       startTime = null;
       endTime = null;
-      measuring = startGuidedCalibration;
+      measuring = initialGuidedCalibration;
       options.onStep({ kind: 'countdown', secondsLeft: countdown });
     },
     cancel(): void {

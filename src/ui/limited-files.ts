@@ -14,7 +14,7 @@ export const nameOf = (source: string | File): string =>
 
 /**
  * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused
- * before it is read, or as soon as that shows. Rejects with a sentence that names the file; with a PassingFault where
+ * before it is read, or as soon as that shows. Rejects with a sentence that names the file; with a TransientError where
  * the network or the server is to blame.
  */
 export async function readLimited(

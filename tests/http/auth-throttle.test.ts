@@ -1,4 +1,4 @@
-import { createAuthThrottle, TooManyGuesses, type WrongGuess } from 'threepoint-http/auth-throttle';
+import { createAuthThrottle, type FailedAttempt, TooManyAttempts } from 'threepoint-http/auth-throttle';
 import { type ClientAddress, parseClientAddress } from 'threepoint-http/client-address';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 
@@ -17,7 +17,7 @@ const addressFrom = (text: string): ClientAddress => {
 
 /** A throttle around one secret. `guess` resolves to true, to false, or to the seconds to wait. */
 function throttled(secret = 'the right one') {
-  const wrong: WrongGuess[] = [];
+  const wrong: FailedAttempt[] = [];
   const limits = createAuthThrottle((guess) => wrong.push(guess));
   let lookedAt = 0;
   const guess = async (
@@ -31,7 +31,7 @@ function throttled(secret = 'the right one') {
         return said === secret;
       });
     } catch (error) {
-      if (!(error instanceof TooManyGuesses)) throw error;
+      if (!(error instanceof TooManyAttempts)) throw error;
       return error.retryAfterSeconds;
     }
   };

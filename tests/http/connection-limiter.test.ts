@@ -6,7 +6,7 @@ import { noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
-import { createPageHandler } from '../../server/page';
+import { createPageHandler } from '../../server/page-handler';
 import { isNightly } from '../nightly';
 import { reportFigures } from '../reliability/report-figures';
 import { type RunningRelay, startRelay } from '../rooms/server/running-relay';
@@ -200,7 +200,7 @@ test('a connection that does not say what it wants is ended at the deadline: tol
 test('an answer that is not read is not kept for ever', { tags: ['full'] }, async () => {
   const connectionLimiter = new ConnectionLimiter({ perAddress: 8, behindProxy: false });
   const page = createPageHandler(directoryWith({ 'index.html': Buffer.alloc(32e6) }));
-  const server = await serve(page, { host: '127.0.0.1', port: 0, connectionLimiter, silenceMs: 500 });
+  const server = await serve(page, { host: '127.0.0.1', port: 0, connectionLimiter, idleTimeoutMs: 500 });
   onTestFinished(() => server.close());
   const { socket } = raw(server.port, 'GET / HTTP/1.1\r\nHost: a\r\n\r\n');
   socket.pause();

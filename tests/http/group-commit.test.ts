@@ -36,9 +36,9 @@ describe('flushes for many at once', () => {
     const disk = heldDisk();
     const shared = new GroupCommit(disk.flush);
     const log: string[] = [];
-    const first = order(log, 'first', shared.flushed());
+    const first = order(log, 'first', shared.flush());
     await disk.begun(1);
-    const later = ['second', 'third', 'fourth'].map((name) => order(log, name, shared.flushed()));
+    const later = ['second', 'third', 'fourth'].map((name) => order(log, name, shared.flush()));
     disk.end();
     await first;
     await disk.begun(2);
@@ -53,7 +53,7 @@ describe('flushes for many at once', () => {
     const disk = heldDisk();
     const shared = new GroupCommit(disk.flush);
     for (let count = 1; count <= 3; count++) {
-      const flushed = shared.flushed();
+      const flushed = shared.flush();
       await disk.begun(count);
       disk.end();
       await flushed;
@@ -63,13 +63,13 @@ describe('flushes for many at once', () => {
   test('after one has failed nothing is said to be on the disk any more', async () => {
     const disk = heldDisk();
     const shared = new GroupCommit(disk.flush);
-    const first = shared.flushed();
+    const first = shared.flush();
     await disk.begun(1);
-    const second = shared.flushed();
+    const second = shared.flush();
     disk.fail();
     await expect(first).rejects.toThrow('the disk failed');
     await expect(second).rejects.toThrow('the disk failed');
-    await expect(shared.flushed()).rejects.toThrow('the disk failed');
+    await expect(shared.flush()).rejects.toThrow('the disk failed');
     expect(disk.started).toBe(1);
   });
 });

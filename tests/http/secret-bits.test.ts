@@ -1,5 +1,5 @@
 import { createHash } from 'node:crypto';
-import { secretBits, weaknessOf } from 'threepoint-http/secret-bits';
+import { secretEntropyBits, secretWeakness } from 'threepoint-http/secret-strength';
 import { describe, expect, test } from 'vitest';
 
 describe('a secret', () => {
@@ -13,20 +13,20 @@ describe('a secret', () => {
     ['digits alone', '31415926535897932384626433832795028'],
     ['a drawn one that is too short', 'kN3vQ9xT1mB7rW5c'],
   ])('that is %s is refused', (_what, secret) => {
-    expect(weaknessOf(secret)).toMatch(/^has some \d+ bits; it needs 128/);
+    expect(secretWeakness(secret)).toMatch(/^has some \d+ bits; it needs 128/);
   });
 
   test('of 32 drawn bytes is taken, for every draw, in letters or in hexadecimal', () => {
     for (let draw = 0; draw < 3000; draw++) {
       const drawn = createHash('sha256').update(`draw ${draw}`).digest().subarray(0, 32);
       for (const encoding of ['base64', 'base64url', 'hex'] as const) {
-        expect(weaknessOf(drawn.toString(encoding)), drawn.toString(encoding)).toBeNull();
+        expect(secretWeakness(drawn.toString(encoding)), drawn.toString(encoding)).toBeNull();
       }
     }
   });
 
   test('has no more bits for being said twice', () => {
     const once = 'kN3vQ9xT1mB7rW5cY2nL';
-    expect(secretBits(once + once) - secretBits(once)).toBeLessThan(10);
+    expect(secretEntropyBits(once + once) - secretEntropyBits(once)).toBeLessThan(10);
   });
 });

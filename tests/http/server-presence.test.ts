@@ -24,7 +24,7 @@ test.each([
   ['a host that has been asked too often', 429, '', 'silent'],
 ] as const)('%s is taken for what it is', async (_, status, body, state) => {
   const { presence, states } = await page(says(status, body));
-  expect(await presence.known()).toBe(state);
+  expect(await presence.whenKnown()).toBe(state);
   expect(states).toEqual(['asked', state]);
 });
 
@@ -34,8 +34,8 @@ test('it is asked once, below the folder of the page, however often its state is
     paths.push(request.url);
     response.end('{"rooms":[]}');
   });
-  await Promise.all([presence.known(), presence.known(), presence.ask()]);
-  await presence.known();
+  await Promise.all([presence.whenKnown(), presence.whenKnown(), presence.refresh()]);
+  await presence.whenKnown();
   expect(paths).toEqual(['/threepoint/api/rooms']);
 });
 
@@ -45,10 +45,10 @@ test('one that was away is found when it is asked again', async () => {
     if (away) request.socket.destroy();
     else response.end('{"rooms":[]}');
   });
-  expect(await presence.known()).toBe('silent');
+  expect(await presence.whenKnown()).toBe('silent');
   away = false;
-  expect(await presence.known(), 'what is known is not asked for').toBe('silent');
-  expect(await presence.ask()).toBe('here');
+  expect(await presence.whenKnown(), 'what is known is not asked for').toBe('silent');
+  expect(await presence.refresh()).toBe('here');
 });
 
 test('one whose answer breaks off is silent: what came of it says nothing of the host', async () => {
@@ -56,5 +56,5 @@ test('one whose answer breaks off is silent: what came of it says nothing of the
     response.writeHead(200, { 'content-type': 'application/json', 'content-length': 30 });
     response.write('{"rooms":', () => request.socket.destroy());
   });
-  expect(await presence.known()).toBe('silent');
+  expect(await presence.whenKnown()).toBe('silent');
 });

@@ -2,7 +2,7 @@ import { startThread, ThreadCalls, type ThreadLimits } from 'threepoint-http/thr
 import { expect, onTestFinished, test } from 'vitest';
 import type { ObedientApi } from './obedient-work';
 
-const roomy = { mostCalls: 10, mostBytes: 100, deadlineMs: 60_000 };
+const roomy = { maxCalls: 10, maxBytes: 100, deadlineMs: 60_000 };
 
 function started(limits: Partial<ThreadLimits> = {}) {
   const worker = startThread(new URL('./obedient-worker.mjs', import.meta.url));
@@ -35,7 +35,7 @@ test('an error of a call comes to its caller, and the thread goes on', async () 
 });
 
 test('a thread that hangs answers no one in time; what nobody waits for any more keeps its place and is left undone', async () => {
-  const { calls, memory, release } = started({ mostCalls: 3, deadlineMs: 300 });
+  const { calls, memory, release } = started({ maxCalls: 3, deadlineMs: 300 });
   expect(await calls.call('count', [], { patient: true })).toBe(1);
   const hung = calls.call('hang', [memory], { patient: true });
   const late = [calls.call('count', []), calls.call('count', [])];

@@ -10,7 +10,7 @@ import { fromAxisAngle, multiply, quat, rotate } from 'threepoint/core/math/quat
 import { add, vec3 } from 'threepoint/core/math/vec3';
 import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import 'threepoint-study/model/progress/study-api';
-import 'threepoint-rooms/client/loopback-connection';
+import 'threepoint-rooms/client/loopback-host';
 
 const calls = 20_000;
 /** Until the operation is compiled: at most this often. */

@@ -1,9 +1,9 @@
 import {
   armSpanFromFingertipSpan,
   type Calibration,
+  calibrationFromHeadHeight,
   defaultCalibration,
   eyeHeightFromStature,
-  provisionalCalibration,
 } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
@@ -13,7 +13,7 @@ import type { TrackedPose } from 'threepoint/core/math/pose';
 import { identity } from 'threepoint/core/math/quat';
 import { add, distance, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { startGuidedCalibration, stepGuidedCalibration } from 'threepoint/core/tracking/guided-calibration';
+import { initialGuidedCalibration, stepGuidedCalibration } from 'threepoint/core/tracking/guided-calibration';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect, test } from 'vitest';
 import { poseOf } from '../threepoint/core/estimation/drawn';
@@ -48,7 +48,7 @@ function stretched(body: Calibration, time: number): TrackingFrame {
 
 /** Runs two seconds of the page's guided calibration; returns the message if it is rejected. */
 function measuredInTwoSeconds(body: Calibration, lower: number): Calibration | string {
-  let state = startGuidedCalibration;
+  let state = initialGuidedCalibration;
   for (let i = 0; i <= 2.1 * 72; i++) state = stepGuidedCalibration(state, sunk(stretched(body, 50 + i / 72), lower));
   if (state.kind === 'measuring') throw new Error('two seconds did not end the measuring');
   return state.kind === 'done' ? state.calibration : state.reason;
@@ -122,5 +122,5 @@ test('a floor half a metre too low: no one is measured wrongly; with the height 
 
 test('before anybody has calibrated, an adult’s body is drawn', () => {
   for (const height of [0.4, 0.9, 1.2, 3, Number.NaN])
-    expect(provisionalCalibration(height)).toEqual(defaultCalibration);
+    expect(calibrationFromHeadHeight(height)).toEqual(defaultCalibration);
 });

@@ -1,5 +1,5 @@
 import { readdirSync, readFileSync } from 'node:fs';
-import { cleanName } from 'threepoint-rooms/protocol/names';
+import { cleanName } from 'threepoint-rooms/protocol/player-name';
 import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { expect, test } from 'vitest';
 import { reportFigures } from './report-figures';

@@ -64,7 +64,7 @@ async function wholeServer() {
     ...configuration,
     secret: testSecret,
     games: shippedRoomKinds(configuration),
-    operations: true,
+    monitoring: true,
     connections: connectionLimiter,
   });
   const server = await prepared.listen({ host: '127.0.0.1', port: 0 });

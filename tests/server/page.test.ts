@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { brotliCompressSync, brotliDecompressSync, gunzipSync, gzipSync } from 'node:zlib';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { createPageHandler } from '../../server/page';
+import { createPageHandler } from '../../server/page-handler';
 import { directoryWith } from '../temporary-directory';
 import { ask } from './running-server';
 

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
-import { startServer } from '../../server/start';
+import { startServer } from '../../server/start-server';
 import type { ServerHello, ServerState } from './server-child';
 
 const directory = process.argv[2] as string;

@@ -6,7 +6,7 @@ import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
-import { startServer } from '../../server/start';
+import { startServer } from '../../server/start-server';
 
 /** None follows it that could be tried. */
 const lastPort = 65_535;

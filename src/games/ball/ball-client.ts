@@ -1,6 +1,6 @@
 import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
 import type { Connection, ConnectionUpdate, RoomView } from 'threepoint-rooms/client/connection';
-import { LoopbackHost, type LoopbackOptions } from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost, type LoopbackOptions } from 'threepoint-rooms/client/loopback-host';
 import { ballKind, ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';

@@ -1,9 +1,9 @@
 import {
   finiteWithin,
+  integerWithin,
   type RoomMessage,
   roomMessageReader,
   seconds,
-  wholeFrom,
 } from 'threepoint-rooms/protocol/messages';
 import * as v from 'valibot';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
@@ -23,9 +23,9 @@ export const ballKind = 'ball';
 const vector = (limit: number) =>
   v.strictObject({ z: finiteWithin(limit), y: finiteWithin(limit), x: finiteWithin(limit) });
 const side = v.picklist(['left', 'right']);
-const ball = wholeFrom(0, 19);
-const player = wholeFrom(0, 2);
-const sequence = wholeFrom(1, 2 ** 31 - 1);
+const ball = integerWithin(0, 19);
+const player = integerWithin(0, 2);
+const sequence = integerWithin(1, 2 ** 31 - 1);
 
 /** The schema limits what a message may carry; the rules refuse impossible actions with a reason. */
 const ballAction = v.variant('type', [
@@ -59,14 +59,14 @@ const ballEvent = v.variant('type', [
   v.strictObject({ type: v.literal('bounced'), ball, off: v.picklist(['basket', 'floor']), launch }),
   v.strictObject({ type: v.literal('missed'), ball, player }),
   v.strictObject({ type: v.literal('rolls'), ball, launch }),
-  v.strictObject({ type: v.literal('caught'), ball, player, at: seconds, score: wholeFrom(0, 20) }),
+  v.strictObject({ type: v.literal('caught'), ball, player, at: seconds, score: integerWithin(0, 20) }),
   v.strictObject({
     type: v.literal('refused'),
     player,
     sequence: v.number(),
     reason: v.picklist(refusals),
   }),
-  v.strictObject({ type: v.literal('ended'), end: v.picklist(['balls', 'time']), score: wholeFrom(0, 20) }),
+  v.strictObject({ type: v.literal('ended'), end: v.picklist(['balls', 'time']), score: integerWithin(0, 20) }),
 ]);
 
 /** Returns the validated message of a Room of the ball game; null for anything else. */

@@ -6,7 +6,7 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { PageClock } from 'threepoint/core/tracking/page-clock';
 import type { ServerPresence } from 'threepoint-http/server-presence';
-import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
+import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Quality } from '../scene/renderer';
@@ -77,10 +77,10 @@ export interface ActivityServices {
   readonly headset: { readonly worn: boolean; readonly emulator: object | null };
   readonly body: { readonly calibration: Calibration };
   /** The user's avatar; `isBuiltIn`: it is a built-in one, not a file. */
-  readonly avatar: { readonly isBuiltIn: boolean; readonly worn: WornAvatar };
+  readonly avatar: { readonly isBuiltIn: boolean; readonly worn: OwnAvatar };
   /** Downloads a built-in avatar. */
   fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
-  readonly server: Pick<ServerPresence, 'state' | 'known' | 'ask'>;
+  readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
   readonly notices: Pick<Notices, 'show'>;
   /**
    * The study that the user takes part in. `run`: null without a study; `idle`: no trial is played now; `paused`: a

@@ -1,4 +1,4 @@
-import type { Holding } from 'threepoint/avatar/hands/holding';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';

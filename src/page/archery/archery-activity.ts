@@ -1,4 +1,4 @@
-import type { Holding } from 'threepoint/avatar/hands/holding';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { PointedAt } from 'threepoint/core/input/pointer';

@@ -1,4 +1,4 @@
-import type { Holding } from 'threepoint/avatar/hands/holding';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
@@ -12,7 +12,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { defaultBallOptions } from 'threepoint-games/ball/rules';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
-import { bannerText } from 'threepoint-rooms/client/banner';
+import { bannerText } from 'threepoint-rooms/client/connection-text';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
@@ -143,7 +143,7 @@ export class CourtActivity implements OpenActivity {
     this.voices.begin();
     this.#avatars.share();
     this.#place();
-    const voided = this.play.room?.voided ?? 0;
+    const voided = this.play.room?.voidedRounds ?? 0;
     if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
     this.#voided = voided;
   }
@@ -306,7 +306,7 @@ export class CourtActivity implements OpenActivity {
 async function roomFor({ place, switches, clock, server, layout }: ActivityContext): Promise<BallPlace> {
   if (place) return assignedSeat(place.seat, clock);
   // A server that does not answer now may answer later. Without a server the match is in this page.
-  const hosted = switches.room !== null && (await server.known()) !== 'none';
+  const hosted = switches.room !== null && (await server.whenKnown()) !== 'none';
   return connectionsFor(hosted ? switches.room : null, {
     seed: layout.seed,
     clock,

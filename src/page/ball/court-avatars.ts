@@ -2,7 +2,7 @@ import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { loadSeenAvatar } from 'threepoint/avatar/load-seen-avatar';
+import { loadSeenAvatar } from 'threepoint/avatar/load-untrusted-avatar';
 import { type BuiltInBody, plainAvatar } from 'threepoint/core/body/avatar-ref';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';

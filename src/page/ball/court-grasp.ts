@@ -1,4 +1,4 @@
-import type { Holding } from 'threepoint/avatar/hands/holding';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Pose, transformPoint } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';

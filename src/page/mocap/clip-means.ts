@@ -10,7 +10,7 @@ import type { Truth } from './truth';
 /** Mean errors of a method over a clip, how far measuring them is, or why there are none. */
 export type ClipMean = JointErrors | WorkProgress | string;
 
-const notBegun: WorkProgress = { share: 0, secondsLeft: null };
+const notBegun: WorkProgress = { fraction: 0, secondsLeft: null };
 
 /** Measures methods over a whole clip, one after the other, while the page continues to draw. */
 export class ClipMeans {

@@ -1,6 +1,6 @@
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { estimatedJoints } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { estimateRecording } from 'threepoint/core/estimation/estimate-recording';
@@ -16,7 +16,7 @@ export type JointErrors = Float64Array;
 /** Measures what a method draws of a person of these measures, as the evaluation does. */
 export class ErrorMeter {
   readonly #skeleton;
-  readonly #drawn = makeJointPoses();
+  readonly #drawn = createJointPoses();
 
   constructor(calibration: Calibration) {
     this.#skeleton = skeletonFromCalibration(calibration);

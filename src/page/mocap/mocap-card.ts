@@ -60,8 +60,8 @@ const jointLabels: Readonly<Record<EstimatedJoint, string>> = {
 };
 const none = '–';
 const centimetres = (value: number): string => value.toFixed(1);
-const percent = ({ share, secondsLeft }: WorkProgress): string =>
-  `${Math.floor(100 * share)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
+const percent = ({ fraction, secondsLeft }: WorkProgress): string =>
+  `${Math.floor(100 * fraction)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
 
 /** How far measuring is; null: it is over, or failed. */
 const progressOf = (mean: ClipMean): WorkProgress | null =>
@@ -121,7 +121,7 @@ function createErrorTable(labels: Labels) {
       }
       const unmeasured = methods.filter(({ mean }) => !(mean instanceof Float64Array));
       // One method is measured at a time: it is listed last, before its figures.
-      const measured = unmeasured.find(({ mean }) => progressOf(mean)?.share);
+      const measured = unmeasured.find(({ mean }) => progressOf(mean)?.fraction);
       const told = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
       const words = told.map(
         ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring …'}`,
@@ -247,7 +247,7 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
       reading.hidden = progress === null;
       if (progress) told.show(`Reading ${name}`, `: ${percent(progress)}`);
       else told.show('');
-      bar.value = progress?.share ?? 0;
+      bar.value = progress?.fraction ?? 0;
       node.hidden = reading.hidden && opened.hidden;
     },
     /** null: no clip is open. */

@@ -1,6 +1,6 @@
 import type { Object3D } from 'three';
 import type { BodySolverOptions } from 'threepoint/api/body-solver';
-import type { MovingReplay } from 'threepoint/api/replayed-body';
+import type { ReplayState } from 'threepoint/api/replayed-body';
 import type { Avatar } from 'threepoint/avatar/avatar';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -21,7 +21,7 @@ import { Truth } from './truth';
 import type { TruthPlace } from './truth-places';
 
 /** The page's replay, which brings a recording's frames to its body. */
-export interface Replay extends MovingReplay {
+export interface Replay extends ReplayState {
   readonly duration: number;
   /**
    * Throws a sentence where another recording must not be lost to this one. `asked`: its place among the wishes;
@@ -122,7 +122,7 @@ export class MocapView {
     const name = nameOf(sources[0]!);
     const onProgress = (progress: Parameters<MocapCard['showProgress']>[1]) => this.#card.showProgress(name, progress);
     try {
-      onProgress({ share: 0, secondsLeft: null });
+      onProgress({ fraction: 0, secondsLeft: null });
       const { others, ...files } = pairFiles(sources);
       const prepared = await readMocap(files, { signal, onProgress });
       await this.#prepared;

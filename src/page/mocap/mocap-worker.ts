@@ -1,4 +1,4 @@
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/motion-source';
+import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';

@@ -26,8 +26,8 @@ export function readMocap(
       if ('prepared' in answer) resolve(answer.prepared);
       else if ('refused' in answer) reject(new Error(answer.refused));
       else {
-        const { share } = answer;
-        onProgress?.({ share, secondsLeft: secondsLeft(share, (performance.now() - begun) / 1000) });
+        const { share: fraction } = answer;
+        onProgress?.({ fraction, secondsLeft: secondsLeft(fraction, (performance.now() - begun) / 1000) });
       }
     });
     worker.addEventListener('error', ({ message }) => {

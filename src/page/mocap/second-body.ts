@@ -1,6 +1,6 @@
 import { Group, type Object3D } from 'three';
 import { BodySolver, type BodySolverOptions } from 'threepoint/api/body-solver';
-import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
+import { ReplayedBody, type ReplayState } from 'threepoint/api/replayed-body';
 import type { Avatar } from 'threepoint/avatar/avatar';
 import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import type { Calibration } from 'threepoint/core/body/calibration';
@@ -13,7 +13,7 @@ export interface SecondBodyOptions {
   readonly estimator: EstimatorName;
   readonly networks: BodySolverOptions['networks'];
   /** Moves it. */
-  readonly replay: MovingReplay;
+  readonly replay: ReplayState;
   /** The distance of the second body to the right of the first [m]. */
   readonly aside: number;
   loadAvatar(): Promise<Avatar>;
@@ -46,7 +46,7 @@ export class SecondBody {
 
   /** What was chosen, which may still be loading. */
   get estimator(): EstimatorName {
-    return this.#body.wanted;
+    return this.#body.selectedEstimator;
   }
 
   /** One frame; the body that is drawn, null: this method draws none. */

@@ -1,16 +1,16 @@
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-bodies';
+import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
 import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
-import type { ReadBones } from 'threepoint/avatar/humanoid/bones-of-file';
-import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
+import type { ReadBones } from 'threepoint/avatar/humanoid/read-file-bones';
+import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
+import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import type { KnownBones } from './known-bones';
@@ -39,7 +39,7 @@ export const buildBuiltIn = async (
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
-  readonly worn: WornAvatar;
+  readonly worn: OwnAvatar;
   /** null: a built-in avatar. */
   readonly source: MappedFile | null;
 }
@@ -113,7 +113,7 @@ export class AvatarLoader {
 
   /** Reads the bones of a checked file, and what they are without a map. */
   async bonesOf(checked: AvatarFile, name: string): Promise<ReadBones> {
-    const { bonesOfFile } = await import('threepoint/avatar/humanoid/bones-of-file');
+    const { bonesOfFile } = await import('threepoint/avatar/humanoid/read-file-bones');
     return bonesOfFile(await withBytes(checked), name, decoders);
   }
 

@@ -39,7 +39,7 @@ export function createPageBody({ switches, store, changes, notices, loading, tim
       calibrated: calibrated.emit,
       heightmismatch: outgrown.emit,
       discontinuity: discontinuity.emit,
-      changed: changes.emit,
+      estimatorchange: changes.emit,
       fallback(name, reason) {
         const { label } = estimatorTexts[name];
         notices.show(

@@ -19,7 +19,7 @@ export interface PageMocapOptions {
   readonly scene: Object3D;
   readonly recorder: Recorder;
   readonly settings: Pick<Settings, 'builtInBody' | 'palette'>;
-  readonly body: Pick<BodySolver, 'wanted' | 'setEstimator' | 'discontinuity'>;
+  readonly body: Pick<BodySolver, 'selectedEstimator' | 'setEstimator' | 'discontinuity'>;
   readonly networks: BodySolverOptions['networks'];
   readonly store: Pick<PreferenceStore, 'remember'>;
   readonly notices: Pick<Notices, 'show'>;
@@ -91,7 +91,7 @@ export class PageMocap {
       replay: this.#replay(),
       method: {
         get wanted() {
-          return body.wanted;
+          return body.selectedEstimator;
         },
         choose(estimator) {
           store.remember({ estimator });

@@ -1,5 +1,5 @@
 import { avatarHash, builtInBodies, skinTones } from 'threepoint/core/body/avatar-ref';
-import { calibrationComplaint } from 'threepoint/core/body/calibration';
+import { calibrationProblem } from 'threepoint/core/body/calibration';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';
 import { handTiltsSchema } from 'threepoint/core/validation/validation';
@@ -13,7 +13,7 @@ const calibration = v.pipe(
     gazePitch: v.optional(v.number()),
     handTilts: v.optional(handTiltsSchema),
   }),
-  v.check((measures) => calibrationComplaint(measures) === null, 'no person has these measurements'),
+  v.check((measures) => calibrationProblem(measures) === null, 'no person has these measurements'),
 );
 
 const boneName = v.custom<BoneName>(

@@ -1,13 +1,13 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-bodies';
+import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { MotionWithoutBody } from 'threepoint/avatar/file/motion-without-body';
-import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
+import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
+import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
 import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
+import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { nameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Studio } from '../studio/studio';
@@ -68,7 +68,7 @@ export class ShownAvatar {
   readonly #loader: AvatarLoader;
   #avatar: Avatar | null = null;
   #name = labelOf(plainAvatar);
-  #worn: WornAvatar = plainAvatar;
+  #worn: OwnAvatar = plainAvatar;
   #source: LoadedUserAvatar['source'] = null;
   #seatPalette: string | null = null;
   #pending: string | null = null;
@@ -104,7 +104,7 @@ export class ShownAvatar {
   }
 
   /** The avatar for other players: the same object for as long as it is shown. */
-  get worn(): WornAvatar {
+  get worn(): OwnAvatar {
     return this.#worn;
   }
 

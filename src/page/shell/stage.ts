@@ -1,7 +1,7 @@
 import type { Avatar } from 'threepoint/avatar/avatar';
 import { createDebugSkeleton } from 'threepoint/avatar/debug-skeleton';
+import { createHeadLoss } from 'threepoint/avatar/head-loss-fade';
 import { Mirror } from 'threepoint/avatar/mirror';
-import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';

@@ -1,4 +1,4 @@
-import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
+import { type Calibration, calibrationProblem } from 'threepoint/core/body/calibration';
 import { copyFingers } from 'threepoint/core/body/hand-shape';
 import {
   parseRecording,
@@ -177,7 +177,7 @@ export class Recorder {
    */
   open(name: string, text: string, asked = this.ask()): Replayable {
     const recording = parseRecording(text);
-    const complaint = recording.calibration && calibrationComplaint(recording.calibration);
+    const complaint = recording.calibration && calibrationProblem(recording.calibration);
     if (complaint) throw new Error(complaint);
     this.take(name, recording, asked);
     return recording;

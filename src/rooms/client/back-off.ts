@@ -25,7 +25,7 @@ export class BackOff {
     return seconds * (0.5 + this.#chance());
   }
 
-  succeeded(): void {
+  reset(): void {
     this.#attempts = 0;
   }
 }

@@ -7,8 +7,8 @@ const longestSilence = 5;
 
 /** An answer: when it arrived, and the other clock minus this one by it [s]. */
 interface Answer {
-  readonly at: number;
-  readonly ahead: number;
+  readonly receivedAt: number;
+  readonly offset: number;
   readonly roundTrip: number;
 }
 
@@ -27,11 +27,11 @@ export class ClockSync {
   #lastCall: number | null = null;
   /** Answers to requests from before a pause are ignored. */
   #askedFrom = Number.NEGATIVE_INFINITY;
-  #best: Omit<Answer, 'at'> = { ahead: 0, roundTrip: Number.POSITIVE_INFINITY };
+  #best: Omit<Answer, 'receivedAt'> = { offset: 0, roundTrip: Number.POSITIVE_INFINITY };
 
   /** The other clock minus this one [s]; 0 before the first answer. */
   get offset(): number {
-    return this.#best.ahead;
+    return this.#best.offset;
   }
 
   /** Round trip of the answer from which `offset` is taken [s]; Infinity before the first. */
@@ -40,7 +40,7 @@ export class ClockSync {
   }
 
   /** Returns whether to send a request now: often at first, then every two seconds. */
-  due(now: number): boolean {
+  isDue(now: number): boolean {
     if (this.#lastCall !== null && Math.abs(now - this.#lastCall) > longestSilence) this.reset();
     this.#lastCall = now;
     if (now < this.#nextAsk) return false;
@@ -56,12 +56,12 @@ export class ClockSync {
     if (!(roundTrip >= 0 && roundTrip < longestSilence) || sent < this.#askedFrom) return;
     this.#unanswered = null;
     this.#trips = [...this.#trips.slice(-4), roundTrip];
-    const newest = { at: now, ahead: there - (sent + now) / 2, roundTrip };
-    this.#answers = [...this.#answers.filter(({ at }) => now - at < memory), newest];
+    const newest = { receivedAt: now, offset: there - (sent + now) / 2, roundTrip };
+    this.#answers = [...this.#answers.filter(({ receivedAt }) => now - receivedAt < memory), newest];
     this.#best = this.#answers.reduce((least, answer) => (answer.roundTrip < least.roundTrip ? answer : least));
     // No answer is wrong by more than half its round trip: a larger difference means that a clock was set or a
     // machine slept.
-    if (Math.abs(newest.ahead - this.#best.ahead) > (roundTrip + this.#best.roundTrip) / 2 + 0.005) {
+    if (Math.abs(newest.offset - this.#best.offset) > (roundTrip + this.#best.roundTrip) / 2 + 0.005) {
       this.#answers = [newest];
       this.#best = newest;
     }
@@ -78,8 +78,8 @@ export class ClockSync {
   }
 
   /** Adds a pause that this clock skipped [s] and that ended at `now` to the offset, until the next answer. */
-  paused(seconds: number, now: number): void {
-    this.#best = { ...this.#best, ahead: this.#best.ahead + seconds };
+  addPause(seconds: number, now: number): void {
+    this.#best = { ...this.#best, offset: this.#best.offset + seconds };
     this.#askedFrom = now;
     this.reset();
   }

@@ -10,7 +10,7 @@ import type { HostedGame } from '../room/match-policy';
 export interface LocalClock {
   now(): number;
   /** The total of the pauses that it skipped [s]; other clocks ran on. */
-  readonly leftOut: number;
+  readonly skippedSeconds: number;
 }
 
 /** The state of a page's connection to its room. */
@@ -43,19 +43,19 @@ export interface RoomView<Game extends HostedGame> {
    */
   readonly match: Game['state'] | null;
   /** Response time of the room [s]; null: it runs in this page, or has not answered yet. */
-  readonly delay: number | null;
+  readonly responseTime: number | null;
   /** Seconds of the match minus seconds of this page's clock. */
-  readonly matchAhead: number;
+  readonly matchClockOffset: number;
   /** Whether a player has paused the match clock. */
   readonly paused: boolean;
   /** The number of welcome messages: one after joining and one after each reconnection. */
-  readonly welcomes: number;
+  readonly welcomeCount: number;
   /** The number of rounds that were lost because the server was restarted. */
-  readonly voided: number;
+  readonly voidedRounds: number;
 }
 
 /** A pose packet of another player. */
-export interface ArrivedPose {
+export interface ReceivedPose {
   readonly seat: number;
   readonly packet: PosePacket;
   /** Time of arrival by this page's clock [s]. */
@@ -66,16 +66,16 @@ export interface ArrivedPose {
 export interface ConnectionUpdate<Game extends HostedGame> {
   /** Events of the match, oldest first. Earlier ones are part of the state in the welcome message. */
   readonly events: readonly Game['event'][];
-  readonly poses: readonly ArrivedPose[];
+  readonly poses: readonly ReceivedPose[];
   /**
    * Each at most once. welcome: joined or reconnected. match: another round began. voided: see `RoomView.voided`.
    * resumed: the page was hidden, and the events are from that time.
    */
-  readonly news: readonly ('welcome' | 'match' | 'voided' | 'seats' | 'resumed')[];
+  readonly changes: readonly ('welcome' | 'match' | 'voided' | 'seats' | 'resumed')[];
 }
 
 /** The pose of this page's avatar in one frame, as it is sent to the others; floor frame. */
-export type ShownPose = Omit<PosePacket, 'timeMs'>;
+export type OutgoingPose = Omit<PosePacket, 'timeMs'>;
 
 /** Receives voice changes of a room at once instead of with a frame, because a hidden page draws no frames. */
 export interface VoiceListener {
@@ -90,9 +90,9 @@ export interface VoiceChannel {
   /** Sets the own voice; null: takes no part. Sent again after every reconnection. */
   setVoice(voice: Voice | null): void;
   /** Sends a signal to the page with this session; dropped while there is no connection. */
-  signal(to: string, body: SignalBody): void;
+  sendSignal(to: string, body: SignalBody): void;
   /** Sets the listener; null: none. */
-  listen(listener: VoiceListener | null): void;
+  setListener(listener: VoiceListener | null): void;
 }
 
 /**
@@ -108,20 +108,20 @@ export interface Connection<Game extends HostedGame> {
   /**
    * Sends the pose of a tracked frame at `time`, 30 times a second; to be called once a frame. Spectators send nothing.
    */
-  sendPose(time: number, shown: ShownPose): void;
+  sendPose(time: number, shown: OutgoingPose): void;
   /** Sends an action of the game. It is predicted at once; the Room decides. */
-  act(action: Game['action']): void;
-  ready(ready: boolean): void;
-  rotate(rotate: boolean): void;
+  sendAction(action: Game['action']): void;
+  setReady(ready: boolean): void;
+  setRotation(rotate: boolean): void;
   /** Pauses or resumes the match clock; refused unless the room is pausable. Sent again after every reconnection. */
-  pause(pause: boolean): void;
-  away(away: boolean): void;
+  setPaused(pause: boolean): void;
+  setAway(away: boolean): void;
   /** Moves to another free seat; null: becomes a spectator. */
-  sit(seat: number | null): void;
+  changeSeat(seat: number | null): void;
   calibrate(calibration: Calibration): void;
   readonly voices: VoiceChannel;
   /** Changes the avatar. Sent again after every reconnection. */
-  wear(avatar: AvatarRef): void;
+  setAvatar(avatar: AvatarRef): void;
   /** Returns the transform from a seat's floor to the arena. */
   arenaFromFloor(seat: number): Transform<'arena', 'floor'>;
   /** Gives up the seat and ends the connection. */

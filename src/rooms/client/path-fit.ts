@@ -18,7 +18,7 @@ const leastTrust = 1e-4;
 /** Regularisation of slope and curvature, where the samples do not determine them [share of the sum of weights]. */
 const stiffness = 1e-9;
 /** The most samples of one fit. */
-const most = 24;
+const maxSamples = 24;
 
 /**
  * Computes the weights of a path's samples for a point on it, by local quadratic regression (Cleveland, Robust Locally
@@ -30,17 +30,17 @@ export class PathFit {
   first = 0;
   count = 0;
   /** The weights of the samples from `first` on; their sum is 1, and some may be negative. */
-  readonly shares = new Float64Array(most);
+  readonly weights = new Float64Array(maxSamples);
 
   /**
    * Fits samples[from] to samples[to] at the time `at` of the sender's clock [s]; beyond the last sample along the
    * tangent there. `now`: the page's clock [s].
    */
   solve(samples: readonly PathSample[], from: number, to: number, at: number, now: number): void {
-    const { shares } = this;
+    const { weights } = this;
     const centre = Math.min(at, samples[to]!.time);
     let first = to;
-    while (first > from && to - first < most - 1 && centre - samples[first - 1]!.time < furthest) first -= 1;
+    while (first > from && to - first < maxSamples - 1 && centre - samples[first - 1]!.time < furthest) first -= 1;
     this.first = first;
     this.count = to - first + 1;
     let m0 = 0;
@@ -53,7 +53,7 @@ export class PathFit {
       const s = (time - centre) / width;
       const trust = Math.max(leastTrust, smoothstep(0, trustSeconds, now - arrivedAt));
       const weight = trust * Math.exp((-s * s) / 2);
-      shares[i] = weight;
+      weights[i] = weight;
       m0 += weight;
       m1 += weight * s;
       m2 += weight * s * s;
@@ -76,7 +76,7 @@ export class PathFit {
     const g2 = (c02 + ahead * c12) / determinant;
     for (let i = 0; i < this.count; i++) {
       const s = (samples[first + i]!.time - centre) / width;
-      shares[i] = shares[i]! * (g0 + g1 * s + g2 * s * s);
+      weights[i] = weights[i]! * (g0 + g1 * s + g2 * s * s);
     }
   }
 }

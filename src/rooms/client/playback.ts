@@ -2,13 +2,13 @@ import { clamp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper'
 import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PosePacket } from '../protocol/pose-packet';
 import { PathFit, type PathSample } from './path-fit';
-import { ShownPlayer } from './shown-player';
+import { PoseBuffer } from './pose-buffer';
 import { TransitWindow } from './transit-window';
 
 /** Measurements of one player's playback. */
 export interface PlaybackReport {
   /** The playout offset [s]: how far the drawn pose lies behind the newest one. */
-  readonly delay: number;
+  readonly playoutOffset: number;
   /** The drawn time of the sender's clock [s, unwrapped]; NaN: nothing is drawn. */
   readonly shownTime: number;
   /** The number of stalls of more than 250 ms, and their total [s]. */
@@ -20,7 +20,7 @@ export interface PlaybackReport {
  * The first, shortest and longest playout offset [s]; between the limits the network's jitter decides. At 30 packets a
  * second without jitter it is 45 ms: the next packet has just arrived when playback reaches the one before.
  */
-export const firstDelay = 0.1;
+export const initialPlayoutOffset = 0.1;
 const shortestDelay = 0.04;
 const longestDelay = 0.2;
 /** A pose is extrapolated at most this far beyond the newest packet [s]. */
@@ -58,7 +58,7 @@ function intervalOf(samples: readonly PathSample[]): number {
 }
 
 /** Returns whether a path leads from this sample to the next. */
-function leadsOn(samples: readonly PathSample[], i: number): boolean {
+function isContinuous(samples: readonly PathSample[], i: number): boolean {
   const next = samples[i + 1];
   return next !== undefined && !next.packet.jump && next.time - samples[i]!.time <= longestGap;
 }
@@ -93,15 +93,15 @@ export class Playback {
   private resumed = false;
   /** The page's clock minus the drawn time of the sender's clock [s]. */
   private clockOffset = Number.NaN;
-  private delay = firstDelay;
+  private delay = initialPlayoutOffset;
   private followedAt = Number.NaN;
   /** The drawn pose; the same object in every frame. */
-  readonly shown = new ShownPlayer();
+  readonly shown = new PoseBuffer();
   private readonly fit = new PathFit();
   private isShown = false;
   private shownTime = Number.NaN;
   /** The pose at the last stall, and the time at which playback resumed. */
-  private readonly rejoinFrom = new ShownPlayer();
+  private readonly rejoinFrom = new PoseBuffer();
   private rejoinAt = Number.NaN;
   private stalledAt = Number.NaN;
   private freezes = 0;
@@ -140,7 +140,7 @@ export class Playback {
   /**
    * Writes the pose at this time of the page's clock [s] into `shown` and returns its opacity; null: nothing is drawn.
    */
-  follow(time: number): number | null {
+  advance(time: number): number | null {
     const { samples } = this;
     const silence = time - this.receivedAt;
     if (silence >= hideAfter) {
@@ -165,16 +165,21 @@ export class Playback {
   }
 
   report(): PlaybackReport {
-    return { delay: this.delay, shownTime: this.shownTime, freezes: this.freezes, frozenSeconds: this.frozenSeconds };
+    return {
+      playoutOffset: this.delay,
+      shownTime: this.shownTime,
+      freezes: this.freezes,
+      frozenSeconds: this.frozenSeconds,
+    };
   }
 
   /** Returns the time of the sender's clock to draw now; it never goes back. */
   private playhead(time: number): number {
     const { transits } = this;
-    const wanted = clamp(transits.late + intervalOf(this.samples) + spare, shortestDelay, longestDelay);
+    const wanted = clamp(transits.jitter + intervalOf(this.samples) + spare, shortestDelay, longestDelay);
     const passed = Number.isNaN(this.followedAt) ? 0 : time - this.followedAt;
     this.delay += (wanted - this.delay) * smoothingFactor(delayHalfLife, passed);
-    const goal = transits.least + this.delay;
+    const goal = transits.minimum + this.delay;
     // A larger difference means that a clock was set; otherwise the rate changes by a tenth at most.
     if (Number.isNaN(this.clockOffset) || Math.abs(goal - this.clockOffset) > 0.5) this.clockOffset = goal;
     else this.clockOffset += clamp(goal - this.clockOffset, -0.1 * passed, 0.1 * passed);
@@ -191,8 +196,8 @@ export class Playback {
     // The samples of one path: nothing is interpolated across a re-anchored space or a gap.
     let from = i;
     let to = i;
-    while (from > 0 && leadsOn(samples, from - 1)) from -= 1;
-    while (leadsOn(samples, to)) to += 1;
+    while (from > 0 && isContinuous(samples, from - 1)) from -= 1;
+    while (isContinuous(samples, to)) to += 1;
     const a = samples[i]!;
     if (from === to || at <= a.time) {
       shown.copy(a.packet);
@@ -202,8 +207,8 @@ export class Playback {
     this.shownTime = this.timeOnPath(at, samples[to]!.time, time);
     fit.solve(samples, from, to, this.shownTime, time);
     const b = i < to ? samples[i + 1]! : null;
-    if (b) shown.follow(samples, fit, a.packet, b.packet, (at - a.time) / (b.time - a.time));
-    else shown.follow(samples, fit, a.packet, a.packet, 1);
+    if (b) shown.writeFitted(samples, fit, a.packet, b.packet, (at - a.time) / (b.time - a.time));
+    else shown.writeFitted(samples, fit, a.packet, a.packet, 1);
   }
 
   /**
@@ -240,6 +245,6 @@ export class Playback {
     if (Number.isNaN(this.rejoinAt)) return;
     const share = smoothstep(0, rejoinSeconds, time - this.rejoinAt);
     if (share >= 1 || isAcrossJump(this.samples, at)) this.rejoinAt = Number.NaN;
-    else this.shown.mix(this.rejoinFrom, this.shown, share);
+    else this.shown.interpolate(this.rejoinFrom, this.shown, share);
   }
 }

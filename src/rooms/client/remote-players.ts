@@ -1,6 +1,6 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { PosePacket } from '../protocol/pose-packet';
-import type { ArrivedPose } from './connection';
+import type { ReceivedPose } from './connection';
 import { Playback, type PlaybackReport } from './playback';
 
 /** Another player as drawn in this frame. The same object in every frame: copy what you keep. */
@@ -31,7 +31,7 @@ export class RemotePlayers {
   readonly #drawn: RemotePlayer[] = [];
   #followedAt = 0;
 
-  receive({ seat, packet, arrivedAt }: ArrivedPose): void {
+  receive({ seat, packet, arrivedAt }: ReceivedPose): void {
     const player = this.#players.get(seat) ?? seated(seat);
     this.#players.set(seat, player);
     player.playback.receive(packet, arrivedAt);
@@ -67,7 +67,7 @@ export class RemotePlayers {
   }
 
   readonly #draw = ({ playback, remote }: Seated): void => {
-    const opacity = playback.follow(this.#followedAt);
+    const opacity = playback.advance(this.#followedAt);
     if (opacity === null) return;
     remote.opacity = opacity;
     this.#drawn.push(remote);

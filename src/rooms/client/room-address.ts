@@ -3,7 +3,7 @@ import type { HostedGame } from '../room/match-policy';
 import { type AvatarExchange, createAvatarExchange } from './avatar-exchange';
 import type { ClientPolicy } from './client-policy';
 import type { Connection, LocalClock, Visitor } from './connection';
-import { createRoomPass, type Keep, type RoomPass } from './room-pass';
+import { createRoomPass, type PassStorage, type RoomPass } from './room-pass';
 import { createSocketConnection } from './socket-connection';
 
 export interface RoomAddressOptions {
@@ -14,7 +14,7 @@ export interface RoomAddressOptions {
   /** The terms of the room, if this page is the first in it. */
   readonly terms?: RoomTerms;
   /** Keeps the pass, with which a reload takes the same place again. Absent: a reload is a new person. */
-  readonly storage?: Keep;
+  readonly storage?: PassStorage;
   /** A pass that another service issues. Default: the server issues one. */
   readonly pass?: RoomPass;
   /** Default: `performance.now`, which skips no pauses. */
@@ -47,7 +47,7 @@ export class RoomAddress<Game extends HostedGame> {
     });
   }
 
-  #createPass(storage?: Keep): RoomPass {
+  #createPass(storage?: PassStorage): RoomPass {
     const { url, room, terms } = this.#options;
     return createRoomPass(url, room, this.#game.kind, storage, terms);
   }

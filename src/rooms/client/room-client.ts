@@ -106,7 +106,7 @@ export class RoomClient<Game extends HostedGame> {
   update(time: number): ConnectionUpdate<Game> {
     this.#connection ??= this.#connect(time);
     const update = this.#connection.update(time);
-    if (update.news.includes('resumed')) this.#players.resume();
+    if (update.changes.includes('resumed')) this.#players.resume();
     for (const pose of update.poses) this.#players.receive(pose);
     this.#followSeats();
     this.#place(this.#connection, this.#players.follow(time));

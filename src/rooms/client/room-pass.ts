@@ -10,13 +10,13 @@ export interface RoomPass {
 }
 
 /** Storage for the lifetime of a tab; `sessionStorage` has this shape. */
-export interface Keep {
+export interface PassStorage {
   getItem(key: string): string | null;
   setItem(key: string, value: string): void;
 }
 
 /** Returns the storage of this tab; undefined: there is none, or the browser denies it. */
-export function tabStorage(): Keep | undefined {
+export function tabStorage(): PassStorage | undefined {
   try {
     return globalThis.sessionStorage;
   } catch (error) {
@@ -29,7 +29,13 @@ export function tabStorage(): Keep | undefined {
  * Creates the pass to a room of the relay at `base`. A reload in the same tab keeps the person. `kind`: the name of the
  * game; `terms`: the terms of the room, if this person is the first in it.
  */
-export function createRoomPass(base: string, room: string, kind: string, keep?: Keep, terms: RoomTerms = {}): RoomPass {
+export function createRoomPass(
+  base: string,
+  room: string,
+  kind: string,
+  keep?: PassStorage,
+  terms: RoomTerms = {},
+): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
   let token = keep?.getItem(key) ?? null;
   let verified = false;

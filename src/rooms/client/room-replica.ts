@@ -6,7 +6,7 @@ import type { HostedGame } from '../room/match-policy';
 import type { ClientPolicy } from './client-policy';
 
 /** The state of a Room, as its messages report it. */
-export interface KnownRoom
+export interface RoomState
   extends Pick<Welcome<HostedGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
   readonly seats: readonly (SeatInfo | null)[];
 }
@@ -16,7 +16,7 @@ const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonF
 /** A client's copy of a Room: the confirmed state, and the client's own actions that the Room has not answered yet. */
 export class RoomReplica<Game extends HostedGame> {
   readonly #policy: ClientPolicy<Game>;
-  #known: KnownRoom | null = null;
+  #known: RoomState | null = null;
   #skeletons: (Skeleton | null)[] = [];
   #confirmed: Game['state'] | null = null;
   #pending: Game['action'][] = [];
@@ -27,7 +27,7 @@ export class RoomReplica<Game extends HostedGame> {
   }
 
   /** The state of the room; null before the first welcome. */
-  get known(): KnownRoom | null {
+  get known(): RoomState | null {
     return this.#known;
   }
 
@@ -59,7 +59,7 @@ export class RoomReplica<Game extends HostedGame> {
   }
 
   /** Adds an action to the prediction; returns false if there is no match to act in. */
-  expect(action: Game['action']): boolean {
+  predict(action: Game['action']): boolean {
     if (this.mySeat === null || !this.#confirmed) return false;
     this.#pending.push(action);
     return true;
@@ -116,7 +116,7 @@ export class RoomReplica<Game extends HostedGame> {
     if (seat !== null) this.#pending = this.#pending.filter((action) => !this.#policy.answers(event, seat, action));
   }
 
-  #setSeatInfo(known: KnownRoom, seat: number, info: SeatInfo | null): void {
+  #setSeatInfo(known: RoomState, seat: number, info: SeatInfo | null): void {
     if (seat >= known.seats.length) return;
     const before = known.seats[seat];
     this.#known = { ...known, seats: known.seats.map((other, index) => (index === seat ? info : other)) };

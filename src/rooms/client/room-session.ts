@@ -11,12 +11,12 @@ import type { HostedGame } from '../room/match-policy';
 import type { ClientPolicy } from './client-policy';
 import { ClockSync } from './clock-sync';
 import type {
-  ArrivedPose,
   Connection,
   ConnectionStatus,
   ConnectionUpdate,
+  OutgoingPose,
+  ReceivedPose,
   RoomView,
-  ShownPose,
   Visitor,
   VoiceChannel,
   VoiceListener,
@@ -35,8 +35,8 @@ const longestSlowFrame = 3;
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
   readonly voices: VoiceChannel = {
     setVoice: (voice) => this.#setVoice(voice),
-    signal: (to: string, body: SignalBody) => this.transmit({ type: 'signal', to, body }),
-    listen: (listener) => {
+    sendSignal: (to: string, body: SignalBody) => this.transmit({ type: 'signal', to, body }),
+    setListener: (listener) => {
       this.#voiceListener = listener;
     },
   };
@@ -61,8 +61,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #now = 0;
   #nextPose = Number.NEGATIVE_INFINITY;
   #events: Game['event'][] = [];
-  #poses: ArrivedPose[] = [];
-  #news: ConnectionUpdate<Game>['news'][number][] = [];
+  #poses: ReceivedPose[] = [];
+  #changes: ConnectionUpdate<Game>['changes'][number][] = [];
   #view: RoomView<Game> | null = null;
 
   constructor(policy: ClientPolicy<Game>, visitor: Visitor, knowsClock: boolean) {
@@ -93,16 +93,16 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       spectators: known.spectators,
       rotate: known.rotate,
       match: this.#replica.predicted(this.#now + this.#matchAhead),
-      delay: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
-      matchAhead: this.#matchAhead,
+      responseTime: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
+      matchClockOffset: this.#matchAhead,
       paused: known.paused !== null,
-      welcomes: this.#welcomes,
-      voided: this.#replica.voided,
+      welcomeCount: this.#welcomes,
+      voidedRounds: this.#replica.voided,
     };
     return this.#view;
   }
 
-  sendPose(time: number, shown: ShownPose): void {
+  sendPose(time: number, shown: OutgoingPose): void {
     if (this.#replica.mySeat === null || (time < this.#nextPose && !shown.jump)) return;
     // Frames have their own rate; this keeps an average of 30 packets a second.
     this.#nextPose = Math.max(this.#nextPose + poseSeconds, time + poseSeconds / 2);
@@ -111,30 +111,30 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     if (bytes) this.transmitPose(bytes);
   }
 
-  act(action: Game['action']): void {
-    if (!this.#replica.expect(action)) return;
+  sendAction(action: Game['action']): void {
+    if (!this.#replica.predict(action)) return;
     this.#view = null;
     this.transmit({ type: 'action', action });
   }
 
-  ready(ready: boolean): void {
+  setReady(ready: boolean): void {
     this.#sendOrQueue({ type: 'ready', ready });
   }
 
-  rotate(rotate: boolean): void {
+  setRotation(rotate: boolean): void {
     this.#sendOrQueue({ type: 'rotate', rotate });
   }
 
-  pause(pause: boolean): void {
+  setPaused(pause: boolean): void {
     this.#pauseRequest = pause;
     if (this.#replica.mySeat !== null) this.transmit({ type: 'pause', pause });
   }
 
-  away(away: boolean): void {
+  setAway(away: boolean): void {
     this.#sendOrQueue({ type: 'away', away });
   }
 
-  sit(seat: number | null): void {
+  changeSeat(seat: number | null): void {
     this.#sendOrQueue({ type: 'sit', seat });
   }
 
@@ -144,7 +144,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     if (this.#replica.known) this.transmit({ type: 'calibration', calibration: this.#calibration });
   }
 
-  wear(avatar: AvatarRef): void {
+  setAvatar(avatar: AvatarRef): void {
     if (avatar === this.#avatar) return;
     this.#avatar = avatar;
     if (this.#replica.known) this.transmit({ type: 'wear', avatar });
@@ -191,8 +191,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         this.#voiceListener?.onSignal(message.from, message.body);
         return;
       case 'welcome':
-        if (this.#replica.onWelcome(message)) this.#announce('voided');
-        this.#announce('welcome');
+        if (this.#replica.onWelcome(message)) this.#addChange('voided');
+        this.#addChange('welcome');
         this.#welcomes += 1;
         // After a restart of the server the player requests the same seat.
         if (message.seat !== null) this.#seatRequest = { spectate: false, seat: message.seat };
@@ -223,19 +223,19 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   /** Accounts for a pause that this page's clock skipped [s] and that ended at `now`; the Room's clock ran on. */
   protected leaveOut(seconds: number, now: number): void {
-    if (seconds > longestSlowFrame) this.#announce('resumed');
-    this.#clock.paused(seconds, now);
+    if (seconds > longestSlowFrame) this.#addChange('resumed');
+    this.#clock.addPause(seconds, now);
   }
 
   /** Returns what has arrived since the last call, and requests the Room's time when that is due. */
   protected takeUpdate(time: number, connected: boolean): ConnectionUpdate<Game> {
     this.#now = time;
     this.#view = null;
-    if (connected && !this.#knowsClock && this.#clock.due(time)) this.transmit({ type: 'ping', sent: time });
-    const update = { events: this.#events, poses: this.#poses, news: this.#news };
+    if (connected && !this.#knowsClock && this.#clock.isDue(time)) this.transmit({ type: 'ping', sent: time });
+    const update = { events: this.#events, poses: this.#poses, changes: this.#changes };
     this.#events = [];
     this.#poses = [];
-    this.#news = [];
+    this.#changes = [];
     return update;
   }
 
@@ -247,17 +247,17 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #afterChange(message: RoomMessage<Game>): void {
     switch (message.type) {
       case 'seat':
-        this.#announce('seats');
+        this.#addChange('seats');
         this.#voiceListener?.onSeatsChanged();
         return;
       case 'seated':
         this.#seatRequest = { spectate: message.seat === null, seat: message.seat };
-        this.#announce('seats');
+        this.#addChange('seats');
         if (this.#pauseRequest && message.seat !== null) this.transmit({ type: 'pause', pause: true });
         this.#voiceListener?.onSeatsChanged();
         return;
       case 'match':
-        this.#announce('match');
+        this.#addChange('match');
         return;
       case 'events':
         this.#events.push(...message.events);
@@ -265,8 +265,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     }
   }
 
-  #announce(word: ConnectionUpdate<Game>['news'][number]): void {
-    if (!this.#news.includes(word)) this.#news.push(word);
+  #addChange(word: ConnectionUpdate<Game>['changes'][number]): void {
+    if (!this.#changes.includes(word)) this.#changes.push(word);
   }
 
   /** The Room's clock minus the page's clock [s]. */

@@ -11,7 +11,7 @@ import type { AvatarExchange } from './avatar-exchange';
 import type { RoomView } from './connection';
 
 /** The avatar that a person shows to the others: a built-in one, or a file. */
-export type WornAvatar =
+export type OwnAvatar =
   | BuiltInAvatar
   | {
       readonly name: string;
@@ -27,7 +27,7 @@ export interface SharedAvatarOptions {
    * Returns the avatar to show to others: the same object for as long as it is worn; null: the user does not share it.
    * Called in every frame.
    */
-  wear(): WornAvatar | null;
+  wear(): OwnAvatar | null;
   /** Sends the reference of the user's avatar to the room. */
   send(avatar: AvatarRef): void;
   notify(level: 'info' | 'warning', text: string): void;
@@ -51,7 +51,7 @@ async function upload(exchange: AvatarExchange, hash: AvatarHash, file: Blob): P
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
   /** The avatar that was sent last, and the stay in the room in which it was sent. */
-  #wear: WornAvatar | null = null;
+  #wear: OwnAvatar | null = null;
   #welcomes = 0;
   #turn = 0;
 
@@ -63,17 +63,17 @@ export class SharedAvatar {
   update(room: RoomView<HostedGame> | null): void {
     if (!room || room.mySeat === null) return;
     const wear = this.#options.wear();
-    if (wear === this.#wear && room.welcomes === this.#welcomes) return;
+    if (wear === this.#wear && room.welcomeCount === this.#welcomes) return;
     const returned = wear === this.#wear && this.#welcomes > 0;
     this.#wear = wear;
-    this.#welcomes = room.welcomes;
+    this.#welcomes = room.welcomeCount;
     this.#turn += 1;
     if (wear === null || typeof wear === 'string') this.#options.send(wear ?? plainAvatar);
     else void this.#share(wear, this.#turn, returned);
   }
 
   /** Never rejects. `quiet`: the user was notified before. */
-  async #share({ name, file, hash }: Exclude<WornAvatar, string>, turn: number, quiet: boolean): Promise<void> {
+  async #share({ name, file, hash }: Exclude<OwnAvatar, string>, turn: number, quiet: boolean): Promise<void> {
     const { exchange, send, notify } = this.#options;
     if (!exchange) return;
     const isNewest = () => turn === this.#turn;

@@ -23,7 +23,7 @@ export interface SocketConnectionOptions {
   readonly onStatus?: () => void;
 }
 
-const runningTime: LocalClock = { now: () => performance.now() / 1000, leftOut: 0 };
+const runningTime: LocalClock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
 
 /** Timeout of an attempt [ms]. */
 const timeoutMs = 4000;
@@ -62,7 +62,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     this.#policy = policy;
     this.#pass = pass;
     this.#clock = clock;
-    this.#leftOut = clock.leftOut;
+    this.#leftOut = clock.skippedSeconds;
     this.#onStatus = onStatus;
     this.#backOff = new BackOff(chance);
     const { origin, pathname } = new URL(url);
@@ -90,9 +90,9 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   }
 
   update(time: number): ConnectionUpdate<Game> {
-    const { leftOut } = this.#clock;
-    if (leftOut > this.#leftOut) this.leaveOut(leftOut - this.#leftOut, time);
-    this.#leftOut = leftOut;
+    const { skippedSeconds } = this.#clock;
+    if (skippedSeconds > this.#leftOut) this.leaveOut(skippedSeconds - this.#leftOut, time);
+    this.#leftOut = skippedSeconds;
     return this.takeUpdate(time, this.#isJoined);
   }
 
@@ -162,7 +162,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
     this.#reason = null;
     this.#joinedOnce = true;
     this.#refusals = 0;
-    this.#backOff.succeeded();
+    this.#backOff.reset();
   }
 
   #attempt(): void {

@@ -31,13 +31,13 @@ export class TransitWindow {
   }
 
   /** The shortest transit [s]; 0 before the first packet. */
-  get least(): number {
+  get minimum(): number {
     return this.count > 0 ? this.sorted[0]! : 0;
   }
 
   /** The 95th percentile of the transit times above the shortest [s]. */
-  get late(): number {
-    return this.count > 0 ? this.sorted[Math.floor(this.count * 0.95)]! - this.least : 0;
+  get jitter(): number {
+    return this.count > 0 ? this.sorted[Math.floor(this.count * 0.95)]! - this.minimum : 0;
   }
 
   /** Returns the number of shorter transit times. */

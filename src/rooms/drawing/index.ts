@@ -3,7 +3,7 @@ export type { ClientPolicy } from '../client/client-policy';
 export type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from '../client/connection';
 export { RoomAddress, type RoomAddressOptions } from '../client/room-address';
 export { type RemotePerson, RoomClient } from '../client/room-client';
-export type { Keep } from '../client/room-pass';
+export type { PassStorage } from '../client/room-pass';
 export type { AvatarLoader } from './drawn-bodies';
 export type { JoinedRoom, JoinRoomOptions, RoomBody, RoomPerson } from './join-room';
 export { joinRoom } from './join-room';

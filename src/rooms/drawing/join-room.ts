@@ -7,12 +7,12 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
 import type { ClientPolicy } from '../client/client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from '../client/connection';
-import { peopleClientPolicy } from '../client/people-client';
+import { peopleClientPolicy } from '../client/people-client-policy';
 import { RoomAddress } from '../client/room-address';
 import { RoomClient } from '../client/room-client';
-import { type Keep, tabStorage } from '../client/room-pass';
-import type { WornAvatar } from '../client/shared-avatar';
-import type { SentBody } from '../peers/pose-sender';
+import { type PassStorage, tabStorage } from '../client/room-pass';
+import type { OwnAvatar } from '../client/shared-avatar';
+import type { PoseSource } from '../peers/pose-sender';
 import type { SeatInfo } from '../protocol/messages';
 import { headBits } from '../protocol/pose-steps';
 import { mostSteps, placeUnit } from '../protocol/quantise';
@@ -23,7 +23,7 @@ import { RoomBodies } from './room-bodies';
 import { relativeTransform } from './world-transform';
 
 /** The wearer's body: a `BodyTracker` of threepoint is one. */
-export interface RoomBody extends SentBody {
+export interface RoomBody extends PoseSource {
   /** Its object lies where the floor is. Absent: at the origin of `others.object`. */
   readonly avatar?: { readonly object: Object3D };
   addEventListener?(type: 'discontinuity', listener: () => void): void;
@@ -47,7 +47,7 @@ export interface JoinRoomOptions<Game extends HostedGame = People> {
    */
   readonly avatar?: (reference: AvatarRef) => Promise<Avatar>;
   /** Keeps the pass, with which a reload takes the same place again. Default: the storage of the tab. */
-  readonly storage?: Keep | null;
+  readonly storage?: PassStorage | null;
 }
 
 /** Another person in a room. */
@@ -83,7 +83,7 @@ export interface JoinedRoom<Game extends HostedGame = People> {
 /** How often a room is tried before `joinRoom` gives up. */
 const mostAttempts = 3;
 /** The measures of a page that watches; no page draws them. */
-const standIn: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+const spectatorCalibration: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 /** The farthest that a packet states a head [m], along x and z. */
 const farthest = mostSteps(headBits) * placeUnit;
 
@@ -110,25 +110,25 @@ export async function joinRoom<Game extends HostedGame = People>(
   const game = options.game ?? (peopleClientPolicy as unknown as ClientPolicy<Game>);
   const base = new URL(url, globalThis.location?.href).href.replace(/\/$/, '');
   const address = new RoomAddress(game, { url: base, room, ...(storage && { storage }) });
-  const visitor = { name, calibration: body?.calibration ?? standIn, spectate: body === null };
-  const worn = avatarFile ? await wornFile(avatarFile) : plainAvatar;
+  const visitor = { name, calibration: body?.calibration ?? spectatorCalibration, spectate: body === null };
+  const worn = avatarFile ? await ownAvatarFrom(avatarFile) : plainAvatar;
   // A frame cannot report that the default body is missing.
   const ready = options.avatar ? [] : [await loadMannequin()];
   const loadBuiltIn = async () => ready.pop() ?? loadMannequin();
-  const connection = await connected(address, visitor).catch((error: unknown) => {
+  const connection = await connect(address, visitor).catch((error: unknown) => {
     throw new Error(`The room ${JSON.stringify(room)} at ${base} cannot be joined: ${reasonOf(error)}`);
   });
-  return new LiveRoom(connection, address, options, { worn, loadBuiltIn });
+  return new JoinedRoomImplementation(connection, address, options, { worn, loadBuiltIn });
 }
 
-const wornFile = async (file: Blob): Promise<WornAvatar> => ({
+const ownAvatarFrom = async (file: Blob): Promise<OwnAvatar> => ({
   name: 'your avatar',
   file,
   hash: await hashOf(await file.arrayBuffer()),
 });
 
 /** Resolves to a connection that has joined; rejects, after ending it, when it cannot. */
-async function connected<Game extends HostedGame>(
+async function connect<Game extends HostedGame>(
   address: RoomAddress<Game>,
   visitor: Visitor,
 ): Promise<Connection<Game>> {
@@ -163,7 +163,7 @@ const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   'old-page': 'the server has another version of threepoint-rooms',
 };
 
-class LiveRoom<Game extends HostedGame> implements JoinedRoom<Game> {
+class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Game> {
   readonly client: RoomClient<Game>;
   readonly others: JoinedRoom['others'];
   readonly #body: RoomBody | null;
@@ -176,7 +176,7 @@ class LiveRoom<Game extends HostedGame> implements JoinedRoom<Game> {
     connection: Connection<Game>,
     address: RoomAddress<Game>,
     { body, avatar: load }: JoinRoomOptions<Game>,
-    { worn, loadBuiltIn }: { readonly worn: WornAvatar; loadBuiltIn(): Promise<Avatar> },
+    { worn, loadBuiltIn }: { readonly worn: OwnAvatar; loadBuiltIn(): Promise<Avatar> },
   ) {
     const client = new RoomClient(connection);
     const people = new OtherPeople();
@@ -186,7 +186,7 @@ class LiveRoom<Game extends HostedGame> implements JoinedRoom<Game> {
     this.#bodies = new RoomBodies({
       exchange: address.avatars,
       room: () => connection.room,
-      send: (avatar) => connection.wear(avatar),
+      send: (avatar) => connection.setAvatar(avatar),
       wear: () => worn,
       notify: (level, text) => level === 'warning' && console.warn(`threepoint-rooms: ${text}`),
       onRefused: (text) => console.warn(`threepoint-rooms: ${text}`),
@@ -254,7 +254,7 @@ class LiveRoom<Game extends HostedGame> implements JoinedRoom<Game> {
 
   readonly #onDiscontinuity = (): void => this.client.discontinuity();
 
-  readonly #onVisibility = (): void => this.client.connection?.away(document.hidden);
+  readonly #onVisibility = (): void => this.client.connection?.setAway(document.hidden);
 }
 
 /** The list of the other people, which is the same until a seat changes. */

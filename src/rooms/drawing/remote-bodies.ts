@@ -30,14 +30,14 @@ export class RemoteBodies {
   readonly #poses: RemotePoses;
   readonly #drawn: DrawnBodies;
 
-  constructor({ avatar, onForgotten, ...options }: RemoteBodiesOptions = {}) {
+  constructor({ avatar, onPeerTimeout, ...options }: RemoteBodiesOptions = {}) {
     const drawn = new DrawnBodies(avatar);
     this.#drawn = drawn;
     this.#poses = new RemotePoses({
       ...options,
-      onForgotten(peer) {
+      onPeerTimeout(peer) {
         drawn.remove(peer);
-        onForgotten?.(peer);
+        onPeerTimeout?.(peer);
       },
     });
   }

@@ -6,17 +6,17 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { Avatar } from 'threepoint/three';
 import type { RoomView } from '../client/connection';
 import type { RemotePerson } from '../client/room-client';
-import { SharedAvatar, type WornAvatar } from '../client/shared-avatar';
+import { type OwnAvatar, SharedAvatar } from '../client/shared-avatar';
 import type { HostedGame } from '../room/match-policy';
-import { SeenAvatars, type SeenAvatarsOptions } from './seen-avatars';
+import { RoomAvatarLoader, type RoomAvatarLoaderOptions } from './room-avatar-loader';
 
-export interface RoomBodiesOptions extends SeenAvatarsOptions {
+export interface RoomBodiesOptions extends RoomAvatarLoaderOptions {
   /** Returns the room; null before the first welcome. */
   room(): RoomView<HostedGame> | null;
   /** Sends the reference of the own avatar to the room. */
   send(avatar: AvatarRef): void;
   /** Returns the own avatar: the same object for as long as it is worn; null: it is not shared. Read in every frame. */
-  wear(): WornAvatar | null;
+  wear(): OwnAvatar | null;
   /** Receives sentences about the own avatar. */
   notify(level: 'info' | 'warning', text: string): void;
   /** Receives a sentence about each avatar of another person that cannot be shown. */
@@ -38,13 +38,13 @@ export interface RoomBodiesOptions extends SeenAvatarsOptions {
 export class RoomBodies {
   readonly #options: RoomBodiesOptions;
   readonly #drawn: RemoteAvatars;
-  readonly #seen: SeenAvatars;
+  readonly #seen: RoomAvatarLoader;
   readonly #shared: SharedAvatar;
 
   constructor(options: RoomBodiesOptions) {
     const { exchange, wear, send, notify, plain = () => false, mouthOf = () => 0, shadows = false } = options;
     this.#options = options;
-    this.#seen = new SeenAvatars(options);
+    this.#seen = new RoomAvatarLoader(options);
     const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
     const notifyRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRefused(avatar, reason);
     this.#drawn = new RemoteAvatars({ load, plain, mouthOf, onRefused: notifyRefused, shadows });
@@ -77,7 +77,7 @@ export class RoomBodies {
   }
 
   dispose(): void {
-    this.#seen.leave();
+    this.#seen.dispose();
     this.#drawn.dispose();
   }
 

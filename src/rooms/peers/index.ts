@@ -1,8 +1,8 @@
 // "threepoint-rooms": bodies over any transport, without three.js and without a socket.
 export type { PlaybackReport } from '../client/playback';
 export type { FloorPlacement } from '../protocol/pose-packet';
-export { longestAvatarReference, longestPeerPacket, peerVersion } from './peer-packet';
-export type { PoseSenderOptions, SentBody, SentFrame } from './pose-sender';
+export { maxAvatarReferenceLength, maxPeerPacketBytes, peerPacketVersion } from './peer-packet';
+export type { PoseSenderOptions, PoseSendOptions, PoseSource } from './pose-sender';
 export { PoseSender } from './pose-sender';
 export type { RemotePose, RemotePosesOptions } from './remote-poses';
 export { RemotePoses } from './remote-poses';

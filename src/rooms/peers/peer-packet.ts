@@ -1,14 +1,14 @@
-import { type Calibration, calibrationComplaint } from 'threepoint/core/body/calibration';
+import { type Calibration, calibrationProblem } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
 import { toMillimetres } from '../protocol/messages';
-import { cleanName } from '../protocol/names';
-import { type FloorPlacement, longestPose, poseVersion } from '../protocol/pose-packet';
+import { cleanName } from '../protocol/player-name';
+import { type FloorPlacement, maxPosePacketBytes, poseVersion } from '../protocol/pose-packet';
 
 /**
  * The first byte of a peer packet: the version of the pose packet, and of the layout around it. Rises with every
  * incompatible change; other versions are refused.
  */
-export const peerVersion = poseVersion * 16 + 1;
+export const peerPacketVersion = poseVersion * 16 + 1;
 
 /** The second byte: what follows. */
 const kinds = { profile: 0, pose: 1, placedPose: 2 } as const;
@@ -21,10 +21,10 @@ const placementBytes = 16;
 const longestProfile = 512;
 
 /** The longest reference to an avatar [characters]: an address, a hash or a name that the pages agree on. */
-export const longestAvatarReference = 200;
+export const maxAvatarReferenceLength = 200;
 
 /** The longest peer packet [bytes]. */
-export const longestPeerPacket = 2 + longestProfile;
+export const maxPeerPacketBytes = 2 + longestProfile;
 
 /** What others must know of a person before they can draw a pose. */
 export interface PeerProfile {
@@ -55,10 +55,10 @@ const profile = v.pipe(
   v.strictObject({
     name: v.pipe(v.string(), v.maxLength(200), v.transform(cleanName)),
     calibration: v.strictObject({ eyeHeight: measure, armSpan: measure, forearm: v.exactOptional(measure) }),
-    avatar: v.nullable(v.pipe(v.string(), v.maxLength(longestAvatarReference))),
+    avatar: v.nullable(v.pipe(v.string(), v.maxLength(maxAvatarReferenceLength))),
     visible: v.boolean(),
   }),
-  v.check(({ calibration }) => calibrationComplaint(calibration) === null),
+  v.check(({ calibration }) => calibrationProblem(calibration) === null),
 );
 
 const encoder = new TextEncoder();
@@ -66,9 +66,9 @@ const decoder = new TextDecoder('utf-8', { fatal: true });
 
 /** Returns the packet of a profile, with lengths rounded to millimetres. Throws a RangeError if it is too long. */
 export function encodeProfile({ name, calibration, avatar, visible }: PeerProfile): Uint8Array<ArrayBuffer> {
-  if (avatar !== null && avatar.length > longestAvatarReference) {
+  if (avatar !== null && avatar.length > maxAvatarReferenceLength) {
     throw new RangeError(
-      `The reference to an avatar has ${avatar.length} characters. At most ${longestAvatarReference} are sent.`,
+      `The reference to an avatar has ${avatar.length} characters. At most ${maxAvatarReferenceLength} are sent.`,
     );
   }
   const text = { name: cleanName(name), calibration: toMillimetres(calibration), avatar, visible };
@@ -77,7 +77,7 @@ export function encodeProfile({ name, calibration, avatar, visible }: PeerProfil
     throw new RangeError(`A profile of ${json.length} bytes is too long. Shorten the reference to the avatar.`);
   }
   const bytes = new Uint8Array(2 + json.length);
-  bytes[0] = peerVersion;
+  bytes[0] = peerPacketVersion;
   bytes[1] = kinds.profile;
   bytes.set(json, 2);
   return bytes;
@@ -87,7 +87,7 @@ export function encodeProfile({ name, calibration, avatar, visible }: PeerProfil
 export function encodePeerPose(pose: Uint8Array, mouth: number, placement: FloorPlacement | null) {
   const start = poseHeader + (placement ? placementBytes : 0);
   const bytes = new Uint8Array(start + pose.length);
-  bytes[0] = peerVersion;
+  bytes[0] = peerPacketVersion;
   bytes[1] = placement ? kinds.placedPose : kinds.pose;
   bytes[2] = Math.round(Math.min(Math.max(mouth, 0), 1) * 255);
   if (placement) {
@@ -106,10 +106,10 @@ export function encodePeerPose(pose: Uint8Array, mouth: number, placement: Floor
 export function readPeerPacket(bytes: Uint8Array): PeerPacket | string {
   const version = bytes[0];
   if (version === undefined) return 'it is empty';
-  if (version !== peerVersion) {
-    return `it has version ${version}, and this page reads version ${peerVersion}: use the same release of threepoint-rooms in both`;
+  if (version !== peerPacketVersion) {
+    return `it has version ${version}, and this page reads version ${peerPacketVersion}: use the same release of threepoint-rooms in both`;
   }
-  if (bytes.length > longestPeerPacket) return `it has ${bytes.length} bytes, more than ${longestPeerPacket}`;
+  if (bytes.length > maxPeerPacketBytes) return `it has ${bytes.length} bytes, more than ${maxPeerPacketBytes}`;
   switch (bytes[1]) {
     case kinds.profile:
       return readProfile(bytes);
@@ -145,6 +145,6 @@ function readPlacement(bytes: Uint8Array): FloorPlacement | string {
 
 function readPose(bytes: Uint8Array, placement: FloorPlacement | null): PeerPacket | string {
   const start = poseHeader + (placement ? placementBytes : 0);
-  if (bytes.length > start + longestPose) return 'its pose is too long';
+  if (bytes.length > start + maxPosePacketBytes) return 'its pose is too long';
   return { kind: 'pose', mouth: bytes[2]! / 255, placement, pose: bytes.subarray(start) };
 }

@@ -1,5 +1,5 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type Calibration, demandPerson, sameMeasures } from 'threepoint/core/body/calibration';
+import { assertCalibration, type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { toMillimetres } from '../protocol/messages';
@@ -8,14 +8,14 @@ import type { FloorPlacement } from '../protocol/pose-packet';
 import { encodePeerPose, encodeProfile } from './peer-packet';
 
 /** The person whose body is sent: a `BodyTracker` or `BodySolver` of threepoint is one. */
-export interface SentBody {
+export interface PoseSource {
   /** The pose of the newest frame with its fingers, floor frame [m]; null: there is none, and others hide the body. */
   readonly pose: AvatarPose | null;
   readonly calibration: Calibration;
 }
 
 /** What a packet has beyond the body. */
-export interface SentFrame {
+export interface PoseSendOptions {
   /** The opening of the mouth, 0 to 1. Default: 0. */
   readonly mouth?: number;
   /** The place of the floor in the scene. Default: at its origin. */
@@ -28,7 +28,7 @@ export interface PoseSenderOptions {
   /** A reference that the other pages turn into an avatar, at most 200 characters. Default: null, theirs. */
   readonly avatar?: string | null;
   /** Poses a second, 1 to 60. Default: 30. */
-  readonly rate?: number;
+  readonly rateHz?: number;
 }
 
 /** The profile is sent again this often [ms], for peers that have joined since or have missed it. */
@@ -36,7 +36,7 @@ const profileMs = 1000;
 
 /**
  * Makes the packets of one person's body for any transport: a WebSocket, a data channel, the state of another
- * multiplayer framework. Packets may be lost or change their order; none is longer than `longestPeerPacket`, and most
+ * multiplayer framework. Packets may be lost or change their order; none is longer than `maxPeerPacketBytes`, and most
  * have 70 bytes or less.
  *
  * @example
@@ -61,25 +61,25 @@ export class PoseSender {
   /**
    * `send` passes the bytes of a packet on; the array is its own. Throws a RangeError for a rate outside 1 to 60.
    */
-  constructor(send: (bytes: Uint8Array<ArrayBuffer>) => void, { name, avatar = null, rate = 30 }: PoseSenderOptions) {
-    if (!(rate >= 1 && rate <= 60)) throw new RangeError(`A rate of ${rate} poses a second is outside 1 to 60.`);
+  constructor(send: (bytes: Uint8Array<ArrayBuffer>) => void, { name, avatar = null, rateHz = 30 }: PoseSenderOptions) {
+    if (!(rateHz >= 1 && rateHz <= 60)) throw new RangeError(`A rate of ${rateHz} poses a second is outside 1 to 60.`);
     this.#send = send;
-    this.#intervalMs = 1000 / rate;
+    this.#intervalMs = 1000 / rateHz;
     this.#name = name;
     this.#avatar = avatar;
     // Throws here, rather than in the first frame.
-    demandSendable(avatar);
+    assertAvatarReference(avatar);
   }
 
   /**
    * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it
    * sends once a second that the person is not visible. Throws a RangeError where the measures are not human.
    */
-  update(timeMs: number, { pose, calibration }: SentBody, frame: SentFrame = {}): void {
+  update(timeMs: number, { pose, calibration }: PoseSource, frame: PoseSendOptions = {}): void {
     this.#setCalibration(calibration);
-    if (this.#visible !== (pose !== null)) this.introduce();
+    if (this.#visible !== (pose !== null)) this.sendProfile();
     this.#visible = pose !== null;
-    if (timeMs >= this.#nextProfileMs) this.#sendProfile(timeMs);
+    if (timeMs >= this.#nextProfileMs) this.#transmitProfile(timeMs);
     if (!pose || (timeMs < this.#nextPoseMs && !this.#jump)) return;
     // Frames have their own rate; this keeps the average.
     this.#nextPoseMs = Math.max(this.#nextPoseMs + this.#intervalMs, timeMs + this.#intervalMs / 2);
@@ -93,7 +93,7 @@ export class PoseSender {
   }
 
   /** Sends the profile with the next `update`, for a peer who has just joined; otherwise that takes up to a second. */
-  introduce(): void {
+  sendProfile(): void {
     this.#nextProfileMs = Number.NEGATIVE_INFINITY;
   }
 
@@ -103,28 +103,28 @@ export class PoseSender {
   }
 
   /** Changes the name. */
-  rename(name: string): void {
+  setName(name: string): void {
     this.#name = name;
-    this.introduce();
+    this.sendProfile();
   }
 
   /** Changes the reference to the avatar. Throws a RangeError if it is too long. */
-  wear(avatar: string | null): void {
-    demandSendable(avatar);
+  setAvatar(avatar: string | null): void {
+    assertAvatarReference(avatar);
     this.#avatar = avatar;
-    this.introduce();
+    this.sendProfile();
   }
 
   #setCalibration(calibration: Calibration): void {
     if (this.#calibration && sameMeasures(calibration, this.#calibration)) return;
-    demandPerson(calibration);
+    assertCalibration(calibration);
     this.#calibration = calibration;
     // The others know the measures rounded to millimetres.
     this.#skeleton = skeletonFromCalibration(toMillimetres(calibration));
-    this.introduce();
+    this.sendProfile();
   }
 
-  #sendProfile(timeMs: number): void {
+  #transmitProfile(timeMs: number): void {
     this.#nextProfileMs = timeMs + profileMs;
     const profile = { name: this.#name, calibration: this.#calibration!, avatar: this.#avatar, visible: this.#visible };
     this.#send(encodeProfile(profile));
@@ -132,6 +132,6 @@ export class PoseSender {
 }
 
 /** Throws a RangeError where no profile can have this reference to an avatar. */
-function demandSendable(avatar: string | null): void {
+function assertAvatarReference(avatar: string | null): void {
   encodeProfile({ name: '', avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
 }

@@ -1,13 +1,13 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
-import { forwardKinematics, type JointPoses, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics, type JointPoses } from 'threepoint/core/body/forward-kinematics';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
 import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
-import { withFingers } from './posed-fingers';
+import { withFingers } from './with-fingers';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {
@@ -35,9 +35,9 @@ export interface RemotePosesOptions {
    */
   readonly onRefused?: (peer: string, reason: string) => void;
   /** Called with a peer that was removed because it has sent nothing for 30 s. */
-  readonly onForgotten?: (peer: string) => void;
+  readonly onPeerTimeout?: (peer: string) => void;
   /** The most peers at a time; further ones are refused. Default: 64. */
-  readonly mostPeers?: number;
+  readonly maxPeers?: number;
 }
 
 /** Packets of a peer: three times what a `PoseSender` of 30 Hz sends, and a second of them at once. */
@@ -57,14 +57,14 @@ export class RemotePoses {
   readonly #peers = new Map<string, Peer>();
   readonly #drawn: RemotePose[] = [];
   readonly #onRefused: (peer: string, reason: string) => void;
-  readonly #onForgotten: ((peer: string) => void) | undefined;
-  readonly #mostPeers: number;
+  readonly #onPeerTimeout: ((peer: string) => void) | undefined;
+  readonly #maxPeers: number;
   readonly #warned = new Set<string>();
 
-  constructor({ onRefused, onForgotten, mostPeers = 64 }: RemotePosesOptions = {}) {
+  constructor({ onRefused, onPeerTimeout, maxPeers = 64 }: RemotePosesOptions = {}) {
     this.#onRefused = onRefused ?? ((peer, reason) => this.#warnOnce(peer, reason));
-    this.#onForgotten = onForgotten;
-    this.#mostPeers = mostPeers;
+    this.#onPeerTimeout = onPeerTimeout;
+    this.#maxPeers = maxPeers;
   }
 
   /**
@@ -74,13 +74,13 @@ export class RemotePoses {
    */
   receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
     const known = this.#peers.get(peer);
-    if (!known && this.#peers.size >= this.#mostPeers) {
-      return this.#refuse(peer, `there are ${this.#mostPeers} peers, as many as may be`);
+    if (!known && this.#peers.size >= this.#maxPeers) {
+      return this.#refuse(peer, `there are ${this.#maxPeers} peers, as many as may be`);
     }
     const person = known ?? new Peer(peer, timeMs / 1000);
     // Also where its first packet is refused: a flood of bad packets is counted too.
     this.#peers.set(peer, person);
-    if (!person.takesPacket(timeMs / 1000)) return this.#refuse(peer, 'it sends too many packets');
+    if (!person.acceptsPacket(timeMs / 1000)) return this.#refuse(peer, 'it sends too many packets');
     const packet = readPeerPacket(bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes));
     if (typeof packet === 'string') return this.#refuse(peer, packet);
     const refusal = person.receive(packet, timeMs / 1000);
@@ -95,9 +95,9 @@ export class RemotePoses {
     const time = timeMs / 1000;
     this.#drawn.length = 0;
     for (const peer of this.#peers.values()) {
-      if (peer.isForgotten(time)) {
+      if (peer.isTimedOut(time)) {
         this.remove(peer.peer);
-        this.#onForgotten?.(peer.peer);
+        this.#onPeerTimeout?.(peer.peer);
       } else if (peer.follow(time)) this.#drawn.push(peer);
     }
     return this.#drawn;
@@ -121,7 +121,7 @@ export class RemotePoses {
 
   #warnOnce(peer: string, reason: string): void {
     // A stranger cannot fill the memory with names.
-    if (this.#warned.has(peer) || this.#warned.size >= this.#mostPeers) return;
+    if (this.#warned.has(peer) || this.#warned.size >= this.#maxPeers) return;
     this.#warned.add(peer);
     console.warn(`threepoint-rooms: a packet of ${JSON.stringify(peer)} was refused: ${reason}.`);
   }
@@ -132,7 +132,7 @@ class Peer implements RemotePose {
   readonly #bucket = new TokenBucket(packetsPerSecond);
   readonly #playback = new Playback();
   readonly pose: AvatarPose = withFingers(this.#playback.shown);
-  readonly #joints = makeJointPoses();
+  readonly #joints = createJointPoses();
   #profile: PeerProfile | null = null;
   #skeleton: Skeleton | null = null;
   #lastPacketAt: number;
@@ -168,11 +168,11 @@ class Peer implements RemotePose {
     return body && forwardKinematics(this.#skeleton!, body, this.#joints);
   }
 
-  takesPacket(time: number): boolean {
+  acceptsPacket(time: number): boolean {
     return this.#bucket.take(time);
   }
 
-  isForgotten(time: number): boolean {
+  isTimedOut(time: number): boolean {
     return time - this.#lastPacketAt > forgetAfter;
   }
 
@@ -196,7 +196,7 @@ class Peer implements RemotePose {
   /** Writes the pose of this time [s]; returns whether there is one to draw. */
   follow(time: number): boolean {
     if (!this.#hasPose) return false;
-    const opacity = this.#playback.follow(time);
+    const opacity = this.#playback.advance(time);
     this.opacity = opacity ?? 0;
     return opacity !== null;
   }

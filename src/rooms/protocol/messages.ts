@@ -1,7 +1,7 @@
 import { type AvatarRef, avatarHash, type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
-import { cleanName } from './names';
+import { cleanName } from './player-name';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
 
 /**
@@ -11,18 +11,18 @@ import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, 
 export const protocolVersion = 10;
 
 /** The longest control message [bytes of UTF-8]; a snapshot takes at most half of it. */
-export const longestMessage = 4096;
+export const maxMessageBytes = 4096;
 
 /** Returns the schema of a finite number in [−limit, limit]. */
 export const finiteWithin = (limit: number) => v.pipe(v.number(), v.finite(), v.minValue(-limit), v.maxValue(limit));
 /** Returns the schema of an integer in [min, max]. */
-export const wholeFrom = (min: number, max: number) =>
+export const integerWithin = (min: number, max: number) =>
   v.pipe(v.number(), v.integer(), v.minValue(min), v.maxValue(max));
 /** The schema of a time [s] by any clock. */
 export const seconds = finiteWithin(5e9);
 /** The most seats of a room. */
-export const mostSeats = 16;
-const seat = wholeFrom(0, mostSeats - 1);
+export const maxSeats = 16;
+const seat = integerWithin(0, maxSeats - 1);
 
 const calibration = v.strictObject({
   eyeHeight: v.pipe(finiteWithin(3), v.minValue(0.5)),
@@ -121,8 +121,8 @@ const packedSeatInfo = v.nullable(
     finiteWithin(3),
     finiteWithin(3),
     v.nullable(finiteWithin(1)),
-    wholeFrom(0, presences.length - 1),
-    wholeFrom(0, 1),
+    integerWithin(0, presences.length - 1),
+    integerWithin(0, 1),
     avatar,
     packedVoice,
   ]),
@@ -176,7 +176,7 @@ const controlMessage = v.variant('type', [
   v.strictObject({ type: v.literal('seat'), seat, info: packedSeatInfo }),
   /** The receiver's new seat; null: a spectator. */
   v.strictObject({ type: v.literal('seated'), seat: v.nullable(seat) }),
-  v.strictObject({ type: v.literal('about'), spectators: wholeFrom(0, 10_000), rotate: v.boolean() }),
+  v.strictObject({ type: v.literal('about'), spectators: integerWithin(0, 10_000), rotate: v.boolean() }),
   /** The second at which the match clock is paused; null: it runs again, with another start. */
   v.strictObject({ type: v.literal('paused'), at: v.nullable(seconds), matchStart: seconds }),
   /** The match has another start, because its host was suspended. */
@@ -197,8 +197,8 @@ const welcome = v.strictObject({
   kind: v.string(),
   /** The receiver's seat; null: a spectator. */
   seat: v.nullable(seat),
-  seats: v.pipe(v.array(packedSeatInfo), v.maxLength(mostSeats)),
-  spectators: wholeFrom(0, 10_000),
+  seats: v.pipe(v.array(packedSeatInfo), v.maxLength(maxSeats)),
+  spectators: integerWithin(0, 10_000),
   rotate: v.boolean(),
   /** Room time at which the match clock is 0 [s]. */
   matchStart: seconds,

@@ -1,5 +1,5 @@
 import type { AvatarPose, TrackedFeet, UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { isFiniteHand } from 'threepoint/core/body/hand-shape';
 import { jointNames } from 'threepoint/core/body/joints';
 import { type Skeleton, wristFromHandBone } from 'threepoint/core/body/skeleton';
@@ -24,7 +24,7 @@ import { placeBody } from './rebuild-body';
 
 // Buffers of one call; results are new objects.
 const steps = makePacketSteps();
-const joints = makeJointPoses();
+const joints = createJointPoses();
 const headAsSent = makePose<'floor'>();
 const handsAsSent = { left: makePose<'floor'>(), right: makePose<'floor'>() };
 const bodyWrist = makePose<'floor'>();
@@ -48,7 +48,7 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body, feet }: AvatarPose): 
   (!feet || (isFinitePose(feet.left) && isFinitePose(feet.right)));
 
 /**
- * Returns the packet's bytes, `longestPose` at most; null if head, a hand, the body or a foot is not finite. The
+ * Returns the packet's bytes, `maxPosePacketBytes` at most; null if head, a hand, the body or a foot is not finite. The
  * skeleton is the sender's own; the body's head must be where the pose's head is, as with every estimator. Feet are
  * sent with a body. Positions beyond the ranges of `writePacket` are clamped.
  */

@@ -3,7 +3,7 @@ import { poseVersion } from './pose-packet';
 
 /** A pose packet and its seat. */
 export interface SeatPose {
-  /** The seat, below `mostSeats`: it fits into four bits. */
+  /** The seat, below `maxSeats`: it fits into four bits. */
   readonly seat: number;
   readonly bytes: Uint8Array;
 }

@@ -1,8 +1,7 @@
 import { type Side, sides } from 'threepoint/core/math/side';
-import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
+import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bit-stream';
 import { fingerFields } from './finger-steps';
-import { readHandPlace, writeHandPlace } from './hand-place';
-import { longestPose, poseVersion } from './pose-packet';
+import { maxPosePacketBytes, poseVersion } from './pose-packet';
 import {
   type BodySteps,
   bodyBitsFor,
@@ -22,6 +21,7 @@ import {
   twistBits,
 } from './pose-steps';
 import { readDirection, readQuat, readStep, writeDirection, writeQuat, writeStep } from './quantise';
+import { readRelativePosition, writeRelativePosition } from './relative-position';
 
 /** The state of a hand, by its three bits. A lost hand has no fingers, nor has one at which its arm does not end. */
 interface HandState {
@@ -61,7 +61,7 @@ const readFlag = (): boolean => reader.read(1) === 1;
  * | 1, 1, 1 | only then: the back is bent; the left, the right foot is pinned |
  * | 16, 14, 16 | head x, y, z: 0.25 mm; x, z ±8.19 m, y −1 to 3.095 m |
  * | 35 | head orientation: two bits name the largest of x, y, z, w (made positive), 11 bits for each other one |
- * | 40 + 35 | each hand that has a place: `writeHandPlace`, orientation. A lost hand with a body: the body's wrist |
+ * | 40 + 35 | each hand that has a place: `writeRelativePosition`, orientation. A lost hand with a body: the body's wrist |
  * | 33 | each hand with fingers: `fingerFields` |
  * | 3 × 32 | with a body: hips, upper chest, neck against the floor, smallest three of 10 bits |
  * | 6 + 6 | twist of the spine against the hips, of the chest against the upper chest, ±90° |
@@ -70,7 +70,7 @@ const readFlag = (): boolean => reader.read(1) === 1;
  * | 11, 6 | swivel of the elbow from down and back, ±180°; twist of the forearm, ±90° |
  * | 4 | stretch: the wrist is this far beyond the hand, ±1.4 mm; only if the arm is not free |
  * | 19 + 7 + 20 | a free arm: direction of the wrist from the shoulder, flexion of the elbow, hand orientation |
- * | 40 + 35 | each pinned foot: the ankle from the hips as `writeHandPlace`, orientation |
+ * | 40 + 35 | each pinned foot: the ankle from the hips as `writeRelativePosition`, orientation |
  *
  * An arm is free while its wrist is not at its hand. With one free arm the trunk has 9 bits a component; with both it
  * has 8, and the clavicles too.
@@ -109,7 +109,7 @@ export function writePacket(packet: PacketSteps): Uint8Array {
 }
 
 function writeRelativePose({ place, orientation }: RelativePoseSteps): void {
-  writeHandPlace(writer, place);
+  writeRelativePosition(writer, place);
   writeQuat(writer, orientation, trackedBits);
 }
 
@@ -191,7 +191,7 @@ function writeBody(to: BitWriter, { bits, trunk, arms }: BodySteps): void {
 
 /** Reads a packet. Returns false for anything that `encodePose` never writes. */
 export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
-  if (bytes.length > longestPose) return false;
+  if (bytes.length > maxPosePacketBytes) return false;
   reader.open(bytes);
   if (reader.read(4) !== poseVersion) return false;
   const { fingers, body, feet } = packet;
@@ -228,7 +228,7 @@ function readHead({ head: { position, orientation } }: PacketSteps): boolean {
 const readHand = ({ placed, at }: PacketSteps['hands'][Side]): boolean => !placed || readRelativePose(at);
 
 const readRelativePose = ({ place, orientation }: RelativePoseSteps): boolean =>
-  readHandPlace(reader, place) && readQuat(reader, trackedBits, orientation) !== null;
+  readRelativePosition(reader, place) && readQuat(reader, trackedBits, orientation) !== null;
 
 function readBody(from: BitReader, body: BodySteps): boolean {
   const { trunk, arms } = body;

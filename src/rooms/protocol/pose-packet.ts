@@ -9,7 +9,7 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 export const poseVersion = 5;
 
 /** The longest packet [bytes]: fingers of both hands, a bent back and both feet. Without trackers it has 64 at most. */
-export const longestPose = 87;
+export const maxPosePacketBytes = 87;
 
 /** The place of the sender's floor in the scene, to which the page has moved its wearer. */
 export interface FloorPlacement {

@@ -3,7 +3,6 @@ import type { MutablePose, Pose, TrackedPose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { type FingerSteps, makeFingerSteps } from './finger-steps';
-import { fromHandPlace, type HandPlaceSteps, makeHandPlaceSteps, toHandPlace } from './hand-place';
 import {
   type DirectionSteps,
   fromQuatSteps,
@@ -16,6 +15,12 @@ import {
   toQuatSteps,
   type VecSteps,
 } from './quantise';
+import {
+  fromRelativePosition,
+  makeRelativePositionSteps,
+  type RelativePositionSteps,
+  toRelativePosition,
+} from './relative-position';
 
 /** Bits of the head's x and z: ±8.19 m in the floor frame, clamped beyond. Headsets allow 15 m at most. */
 export const headBits = 16;
@@ -55,7 +60,7 @@ interface HeadSteps {
 
 /** The pose of a hand relative to the head, or of an ankle relative to the hips. */
 export interface RelativePoseSteps {
-  readonly place: HandPlaceSteps;
+  readonly place: RelativePositionSteps;
   readonly orientation: QuatSteps;
 }
 
@@ -135,7 +140,10 @@ interface FootSteps {
   readonly at: RelativePoseSteps;
 }
 
-const makeRelativePose = (): RelativePoseSteps => ({ place: makeHandPlaceSteps(), orientation: makeQuatSteps() });
+const makeRelativePose = (): RelativePoseSteps => ({
+  place: makeRelativePositionSteps(),
+  orientation: makeQuatSteps(),
+});
 
 const makeHandSteps = (): HandSteps => ({
   tracking: 'lost',
@@ -203,14 +211,14 @@ export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>,
 
 /**
  * Writes the nearest steps of a hand or ankle, floor frame, relative to the head or hips as the receiver decodes them
- * [m]; see `toHandPlace` for the range.
+ * [m]; see `toRelativePosition` for the range.
  */
 export function toRelativePose(
   origin: Vec3,
   { position, orientation }: Pose<'floor'>,
   target: RelativePoseSteps,
 ): RelativePoseSteps {
-  toHandPlace(origin, position, target.place);
+  toRelativePosition(origin, position, target.place);
   toQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }
@@ -221,7 +229,7 @@ export function fromRelativePose(
   { place, orientation }: RelativePoseSteps,
   target: MutablePose<'floor'>,
 ): MutablePose<'floor'> {
-  fromHandPlace(origin, place, target.position);
+  fromRelativePosition(origin, place, target.position);
   fromQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }

@@ -1,7 +1,7 @@
 import * as v from 'valibot';
 
 /** The most seats of a room with voices: each page connects to every other one. */
-export const mostVoices = 6;
+export const maxVoiceSeats = 6;
 
 /** Identifies one page's voice session; a new id after a reload, or when all peer connections restart. */
 const session = v.pipe(v.string(), v.regex(/^[\w-]{8,16}$/));
@@ -21,8 +21,8 @@ export const unpackVoice = (packed: PackedVoice): Voice | null =>
 /**
  * The longest description [characters], and the most candidates in one message, so that it fits into a control message.
  */
-export const longestDescription = 3200;
-export const mostCandidates = 8;
+export const maxDescriptionLength = 3200;
+export const maxCandidates = 8;
 
 /** Text of a signal: one line, or several. */
 const line = /^[\x20-\x7e]*$/;
@@ -53,10 +53,10 @@ const signalBody = v.union([
   v.strictObject({
     description: v.strictObject({
       type: v.picklist(['offer', 'answer']),
-      sdp: v.pipe(v.string(), v.maxLength(longestDescription), v.regex(lines), v.check(isOneVoice)),
+      sdp: v.pipe(v.string(), v.maxLength(maxDescriptionLength), v.regex(lines), v.check(isOneVoice)),
     }),
   }),
-  v.strictObject({ candidates: v.pipe(v.array(candidate), v.minLength(1), v.maxLength(mostCandidates)) }),
+  v.strictObject({ candidates: v.pipe(v.array(candidate), v.minLength(1), v.maxLength(maxCandidates)) }),
 ]);
 export type SignalBody = v.InferOutput<typeof signalBody>;
 

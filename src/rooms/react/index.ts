@@ -4,10 +4,10 @@ import { createElement, type ReactElement, type Ref, useEffect, useImperativeHan
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from '../drawing/join-room';
 
 /**
- * Props of `Others`: the options of `joinRoom` and the server's address. Another `url`, `room`, `name` or `body` leaves
+ * Props of `RoomAvatars`: the options of `joinRoom` and the server's address. Another `url`, `room`, `name` or `body` leaves
  * the room and joins again; the other options are read on joining.
  */
-export interface OthersProps extends JoinRoomOptions {
+export interface RoomAvatarsProps extends JoinRoomOptions {
   /** The server's address, with the path of `attachRooms` if it has one. */
   readonly url: string | URL;
   /** Receives the room once it is joined; null before and afterwards. */
@@ -23,11 +23,11 @@ export interface OthersProps extends JoinRoomOptions {
  * return (
  *   <Canvas>
  *     <SelfAvatar avatar="/avatars/me.vrm" ref={setTracker} />
- *     {tracker && <Others url="https://example.org" name="Ada" body={tracker} />}
+ *     {tracker && <RoomAvatars url="https://example.org" name="Ada" body={tracker} />}
  *   </Canvas>
  * );
  */
-export function Others(props: OthersProps): ReactElement | null {
+export function RoomAvatars(props: RoomAvatarsProps): ReactElement | null {
   const { room, name, body } = props;
   const url = String(props.url);
   const [joined, setJoined] = useState<JoinedRoom | null>(null);

@@ -1,6 +1,6 @@
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
-import { mostSeats } from '../protocol/messages';
+import { maxSeats } from '../protocol/messages';
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy, MatchState } from './match-policy';
 
 /** A room without a game: people who see each other. It has no actions and no events. */
@@ -30,7 +30,7 @@ class NoMatch implements HostedMatch<People> {
 }
 
 /** The policy of a room without a game, with so many seats (16 at most). */
-export const peoplePolicy = (seats: number = mostSeats): MatchPolicy<People> => ({
+export const peoplePolicy = (seats: number = maxSeats): MatchPolicy<People> => ({
   kind: peopleKind,
   seats,
   tickSeconds: 1,

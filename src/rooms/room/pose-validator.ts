@@ -4,9 +4,9 @@ import type { PointsPacket } from '../protocol/pose-packet';
 import { TokenBucket } from './token-bucket';
 
 /** A player's pose is deleted this long after it was sent [s], because movements identify people: 2 s less a tick. */
-export const poseMemory = 1.9;
+export const poseRetentionSeconds = 1.9;
 /** A head moves at most this fast [m/s], unless the packet says that its space was re-anchored. */
-export const fastestHead = 20;
+export const maxHeadSpeed = 20;
 /** A head may be moved this far [m] by rounding and by a hiccup of its device. */
 const headTolerance = 0.1;
 /** The most packets of a seat that wait to be forwarded: more arrive together only after the host was blocked. */
@@ -71,7 +71,7 @@ export class PoseValidator {
     if (time - this.#lastSeenAt <= speedCheckSeconds && this.#packetTime !== null) {
       const elapsed = packetTime - this.#packetTime;
       if (elapsed <= 0) return 'old';
-      const reachable = headTolerance + fastestHead * elapsed;
+      const reachable = headTolerance + maxHeadSpeed * elapsed;
       const leaps = this.#isHeadKnown && distance(position, this.#head) > reachable;
       if (leaps && !(packet.jump && this.#jumps.take(time))) return 'too-fast';
     }
@@ -97,9 +97,9 @@ export class PoseValidator {
     return this.#posedAt !== null;
   }
 
-  /** Deletes a pose that is older than `poseMemory`; returns whether it did. */
+  /** Deletes a pose that is older than `poseRetentionSeconds`; returns whether it did. */
   forgetExpired(time: number): boolean {
-    if (this.#posedAt === null || time - this.#posedAt <= poseMemory) return false;
+    if (this.#posedAt === null || time - this.#posedAt <= poseRetentionSeconds) return false;
     this.#posedAt = null;
     this.#isHeadKnown = false;
     setVec3(this.#head, 0, 0, 0);

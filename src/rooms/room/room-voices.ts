@@ -1,5 +1,5 @@
 import type { ClientMessage } from '../protocol/messages';
-import { mostVoices, type Voice } from '../protocol/voice-messages';
+import { maxVoiceSeats, type Voice } from '../protocol/voice-messages';
 import type { HostedGame } from './match-policy';
 import type { RefusalReason, RoomHost } from './room-host';
 import type { Member, Seats } from './seats';
@@ -18,7 +18,7 @@ export class RoomVoices {
   /** `wanted`: the room's host allows voices; a room with more than `mostVoices` seats has none even then. */
   constructor(seats: Seats, wanted: boolean, host: Pick<RoomHost<HostedGame>, 'send'>) {
     this.#seats = seats;
-    this.#enabled = wanted && seats.count <= mostVoices;
+    this.#enabled = wanted && seats.count <= maxVoiceSeats;
     this.#host = host;
   }
 

@@ -10,7 +10,7 @@ import { TokenBucket } from './token-bucket';
 /** A seat is held this long after its connection is lost [s]. */
 export const seatHoldSeconds = 30;
 /** A player who is silent or disconnected for this long [s] is away; a disconnected one also leaves the match. */
-export const awayAfter = 2.5;
+export const awayAfterSeconds = 2.5;
 
 /**
  * The most changes of seat by a client, per second on average and at once: each removes a player from the match and
@@ -237,7 +237,7 @@ export class Seats {
   setPresence(index: number, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
-    const silent = time - seat.poses.lastSeenAt > awayAfter;
+    const silent = time - seat.poses.lastSeenAt > awayAfterSeconds;
     const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
     if (presence === seat.presence) return;
     seat.presence = presence;
@@ -256,7 +256,7 @@ export class Seats {
     this.setPresence(index, time);
     if (seat.poses.forgetExpired(time)) this.#listener.act({ type: 'silent', player: index });
     if (seat.disconnectedAt === null) return;
-    if (seat.playing && time - seat.disconnectedAt > awayAfter) {
+    if (seat.playing && time - seat.disconnectedAt > awayAfterSeconds) {
       seat.playing = false;
       this.#listener.act({ type: 'leave', player: index });
     }

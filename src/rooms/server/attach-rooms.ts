@@ -1,11 +1,11 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
-import { sendAnswer } from 'threepoint-http/answer';
+import { parseRequestTarget } from 'threepoint-http/request-target';
+import { sendResponse } from 'threepoint-http/response';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
-import { targetOf } from 'threepoint-http/target';
-import { guarded, refusesUpgrade } from 'threepoint-http/web-server';
+import { refusesUpgrade, withHostCheck } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { ConnectionCounts } from './connection-counts';
 import type { RoomKinds } from './hosting/room-kinds';
@@ -24,7 +24,7 @@ export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'se
   /** Further names of the server; requests with another Host are refused. Default: the Host is not checked. */
   readonly hosts?: readonly string[];
   /** Whether the rooms also answer `/healthz` and `/metrics`. Default: false. */
-  readonly operations?: boolean;
+  readonly monitoring?: boolean;
   /** Counts of the server's connections, for `/healthz` and `/metrics`. Default: zeros. */
   readonly connections?: ConnectionCounts;
 }
@@ -49,7 +49,7 @@ type Listener = (...event: unknown[]) => void;
  * Replaces all listeners of an event by one, which may pass the event on to them: `passOn` returns whether there are
  * others. Returns what undoes it.
  */
-function intercept(
+function interceptEvent(
   server: Server,
   event: 'request' | 'upgrade',
   listener: (passOn: (...event: unknown[]) => boolean) => Listener,
@@ -78,7 +78,7 @@ function intercept(
  * server.listen(8080);
  */
 export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}): AttachedRooms {
-  const { secret = randomBytes(32).toString('base64url'), path = '', seats, games, operations, ...settings } = options;
+  const { secret = randomBytes(32).toString('base64url'), path = '', seats, games, monitoring, ...settings } = options;
   const { connections = { open: 0, refused: 0 } } = settings;
   if (secret.length < 32) throw new RangeError(`A secret needs at least 32 characters; this one has ${secret.length}.`);
   if (!/^(\/[\w-]+)*$/.test(path))
@@ -88,30 +88,30 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const relay = createRelay(configuration, secret, connections, kinds);
   const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
-  const answer = guarded((request, response) => {
+  const answer = withHostCheck((request, response) => {
     if (allowOrigin(request, response, site)) router(request, response);
   });
 
   /** Returns whether the address is the rooms', and takes the path off it. */
-  function takesUrl(request: IncomingMessage): boolean {
-    const target = targetOf(request.url);
+  function takeOwnUrl(request: IncomingMessage): boolean {
+    const target = parseRequestTarget(request.url);
     if (!target?.path.startsWith(path)) return false;
     const own = target.path.slice(path.length);
-    if (!roomAddresses.test(own) && !(operations && operationAddresses.test(own))) return false;
+    if (!roomAddresses.test(own) && !(monitoring && operationAddresses.test(own))) return false;
     if (path !== '') request.url = target.query.size > 0 ? `${own}?${target.query}` : own;
     return true;
   }
 
   const restore = [
     // The server's own listener would answer 404: it receives the other requests alone.
-    intercept(httpServer, 'request', (passOn) => (request, response) => {
-      if (takesUrl(request as IncomingMessage)) answer(request as IncomingMessage, response as ServerResponse);
+    interceptEvent(httpServer, 'request', (passOn) => (request, response) => {
+      if (takeOwnUrl(request as IncomingMessage)) answer(request as IncomingMessage, response as ServerResponse);
       else passOn(request, response);
     }),
-    intercept(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
+    interceptEvent(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
       const [asked, connection] = [request as IncomingMessage, socket as Duplex];
       const { url } = asked;
-      if (takesUrl(asked)) {
+      if (takeOwnUrl(asked)) {
         connection.on('error', () => connection.destroy());
         if (refusesUpgrade(asked, connection) || relay.upgrade(asked, connection, head as Buffer)) return;
         asked.url = url;
@@ -135,7 +135,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
 /** The names of the server are its owner's business; the origins of pages are checked. */
 const originsOnly = ({ origins, trustProxy }: RelayConfiguration): SitePolicy => ({
   ...createSitePolicy({ origins, hosts: [], trustProxy }),
-  refusalOfHost: () => null,
+  checkHost: () => null,
 });
 
 /**
@@ -144,15 +144,15 @@ const originsOnly = ({ origins, trustProxy }: RelayConfiguration): SitePolicy =>
  */
 function allowOrigin(request: IncomingMessage, response: ServerResponse, site: SitePolicy): boolean {
   const { origin } = request.headers;
-  if (origin === undefined || site.refusalOfOrigin(request) !== null) return true;
+  if (origin === undefined || site.checkOrigin(request) !== null) return true;
   response.setHeader('access-control-allow-origin', origin);
   response.setHeader('vary', 'origin');
-  if (request.method !== 'OPTIONS' || site.refusalOfHost(request) !== null) return true;
+  if (request.method !== 'OPTIONS' || site.checkHost(request) !== null) return true;
   const headers = {
     'access-control-allow-methods': 'GET, POST, PUT',
     'access-control-allow-headers': 'content-type, authorization',
     'access-control-max-age': '600',
   };
-  sendAnswer(request, response, { status: 204, headers });
+  sendResponse(request, response, { status: 204, headers });
   return false;
 }

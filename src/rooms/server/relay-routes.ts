@@ -4,8 +4,8 @@ import type { Redis } from 'ioredis';
 import type { Logger } from 'pino';
 import { checked } from 'threepoint/core/validation/validation';
 import { AdminGuard } from 'threepoint-http/admin-guard';
-import { type Answer, HttpError, json } from 'threepoint-http/answer';
 import { clientAddressOf } from 'threepoint-http/client-address';
+import { HttpError, type HttpResponse, jsonResponse } from 'threepoint-http/response';
 import { type Call, jsonOf, type Route, type Service } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { roomTerms } from '../protocol/messages';
@@ -115,21 +115,21 @@ export class RelayRoutes implements Service<RelayAccess> {
     this.#joins = new JoinLimits(options);
     this.#admin = new AdminGuard(options.configuration, options.log);
     this.routes = [
-      get('/healthz', 'anyone', () => json({ status: 'ok', ...options.census() })),
+      get('/healthz', 'anyone', () => jsonResponse({ status: 'ok', ...options.census() })),
       get('/metrics', 'this-machine', () => this.#metrics()),
       get(relayPath, 'anyone', () => {
         throw new HttpError(426, 'this address serves WebSockets only', { headers: { upgrade: 'websocket' } });
       }),
-      get('/api/rooms', 'anyone', async () => json(await options.lobby.list())),
+      get('/api/rooms', 'anyone', async () => jsonResponse(await options.lobby.list())),
       post('/api/rooms/match', 'anyone', (call) => this.#match(call)),
       post('/api/rooms/new', 'anyone', (call) => {
         checked(this.#requests.kind, jsonOf(call));
-        return json({ room: newRoomName() });
+        return jsonResponse({ room: newRoomName() });
       }),
       post('/api/rooms/end', 'admin', (call) => {
         const ended = checked(endRequest, jsonOf(call));
         options.endRoom(ended.room);
-        return json(ended);
+        return jsonResponse(ended);
       }),
       post('/api/rooms/token', 'anyone', (call) => this.#token(call)),
       ...options.avatars.routes,
@@ -154,29 +154,29 @@ export class RelayRoutes implements Service<RelayAccess> {
     this.#options.log.error({ error: String(error) }, 'request failed');
   }
 
-  async #metrics(): Promise<Answer> {
+  async #metrics(): Promise<HttpResponse> {
     const { registry } = this.#options.metrics;
     return { status: 200, headers: { 'content-type': registry.contentType }, body: await registry.metrics() };
   }
 
-  async #token(call: Call): Promise<Answer> {
+  async #token(call: Call): Promise<HttpResponse> {
     const { tokens } = this.#options;
     const request = checked(this.#requests.token, jsonOf(call));
     const before = request.token === undefined ? null : await tokens.verifyRenewable(request.token);
     if (before && before.room === request.room && before.kind === request.kind) {
-      return json({ token: await tokens.sign({ ...before, terms: request.terms ?? before.terms }) });
+      return jsonResponse({ token: await tokens.sign({ ...before, terms: request.terms ?? before.terms }) });
     }
     await this.#joins.spend(call.request);
-    return json({ token: await tokens.issue(request.room, request.kind, request.terms) });
+    return jsonResponse({ token: await tokens.issue(request.room, request.kind, request.terms) });
   }
 
   /** Answers with the best room that has people and a free seat; otherwise with the name of a new one. */
-  async #match(call: Call): Promise<Answer> {
+  async #match(call: Call): Promise<HttpResponse> {
     const { kind } = checked(this.#requests.kind, jsonOf(call));
     const { rooms } = await this.#options.lobby.list();
     const [best] = rooms
       .filter((listed) => listed.kind === kind && listed.free > 0 && listed.players > 0)
       .sort(byPreference);
-    return json({ room: best?.room ?? newRoomName(), found: best !== undefined });
+    return jsonResponse({ room: best?.room ?? newRoomName(), found: best !== undefined });
   }
 }

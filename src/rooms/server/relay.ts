@@ -79,7 +79,7 @@ export function createRelay(
   const transport = createRelayTransport(configuration, { log, metrics, now });
   const host = createSocketHost(transport, { configuration, kinds, tokens, log, metrics, now });
   const avatarOf = (room: string, identity: string) => host.room(room)?.avatarOf(identity) ?? null;
-  const avatars = new AvatarStore({ mostBytes: configuration.avatarMegabytes * 2 ** 20, avatarOf, now });
+  const avatars = new AvatarStore({ maxBytes: configuration.avatarMegabytes * 2 ** 20, avatarOf, now });
   const sweeping = setInterval(() => avatars.sweep(), sweepMs).unref();
   const fleet = connectFleet(configuration, log);
   const lobby = fleet ? createRedisLobby(fleet.own, node, log) : createOwnLobby();

@@ -27,7 +27,7 @@ export class VoiceMesh {
   }
 
   /** Connects the page of session `own` to exactly these others; null: closes all connections. */
-  follow(own: string | null, others: readonly string[]): void {
+  connectTo(own: string | null, others: readonly string[]): void {
     for (const session of this.#peers.keys()) {
       if (own === null || !others.includes(session)) this.#drop(session);
     }
@@ -49,8 +49,8 @@ export class VoiceMesh {
   }
 
   /** Restarts lost connections at this time [s]. `reachable`: whether the room receives signals. */
-  watch(now: number, reachable: boolean): void {
-    for (const peer of this.#peers.values()) peer.watch(now, reachable);
+  restartLost(now: number, reachable: boolean): void {
+    for (const peer of this.#peers.values()) peer.restartIfLost(now, reachable);
   }
 
   /** Returns the state of the connection to a session; null: there is none. */
@@ -59,7 +59,7 @@ export class VoiceMesh {
   }
 
   close(): void {
-    this.follow(null, []);
+    this.connectTo(null, []);
   }
 
   #connect(own: string, session: string): VoicePeer {

@@ -1,4 +1,4 @@
-import { longestDescription, mostCandidates, type SignalBody } from '../protocol/voice-messages';
+import { maxCandidates, maxDescriptionLength, type SignalBody } from '../protocol/voice-messages';
 
 export interface VoicePeerOptions {
   /** Whether this side yields when both make an offer; the other side makes the first offer. */
@@ -29,7 +29,7 @@ const closingMs = 250;
  * separately.
  */
 const shortened = (sdp: string): string =>
-  sdp.length <= longestDescription ? sdp : sdp.replace(/^a=(candidate|end-of-candidates).*\r\n/gm, '');
+  sdp.length <= maxDescriptionLength ? sdp : sdp.replace(/^a=(candidate|end-of-candidates).*\r\n/gm, '');
 
 /** Restricts a transceiver to Opus, which all browsers support: an offer with all codecs is three times as long. */
 function opusAlone(transceiver: RTCRtpTransceiver): void {
@@ -94,7 +94,7 @@ export class VoicePeer {
   }
 
   /** Restarts a lost connection at this time [s]. `reachable`: whether the room receives signals. */
-  watch(now: number, reachable: boolean): void {
+  restartIfLost(now: number, reachable: boolean): void {
     if (!reachable) return;
     const { signalingState, connectionState } = this.#pc;
     if (signalingState === 'have-local-offer') {
@@ -180,7 +180,7 @@ export class VoicePeer {
     this.#gathering ??= setTimeout(() => {
       this.#gathering = null;
       while (this.#candidates.length > 0) {
-        this.#options.signal({ candidates: this.#candidates.splice(0, mostCandidates) });
+        this.#options.signal({ candidates: this.#candidates.splice(0, maxCandidates) });
       }
     }, gatherMs);
   }

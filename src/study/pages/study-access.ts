@@ -35,7 +35,7 @@ export class StudyAccess {
 
   /** Signs in with the token of this tab, if there is one. */
   async resume(): Promise<void> {
-    void this.#server.known().then((state) => {
+    void this.#server.whenKnown().then((state) => {
       if (state === 'none') this.#onChange();
     });
     const token = keptToken();
@@ -62,7 +62,7 @@ export class StudyAccess {
   /** Returns the form for the token, or a message on a host without a server. */
   form(): HTMLElement {
     if (this.#server.state !== 'none') return signInForm((token) => this.#signIn(token));
-    const ask = button('Ask again', () => void this.#server.ask().then(() => this.#onChange()));
+    const ask = button('Ask again', () => void this.#server.refresh().then(() => this.#onChange()));
     return element('div', { class: 'bar' }, element('p', { role: 'status' }, noStudiesHere), ask);
   }
 

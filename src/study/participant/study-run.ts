@@ -2,7 +2,7 @@ import 'threepoint-ui/styles/study.css';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import { rotate } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
-import { neverBack } from 'threepoint/core/tracking/page-clock';
+import { monotonic } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createParticipantClient } from '../client/study-client';
@@ -36,7 +36,7 @@ export interface StudyProbe extends VisitState {
 }
 
 /** Seconds since 1970, monotonic even if the system's clock is set back. */
-const nowSeconds = neverBack(() => Date.now() / 1000);
+const nowSeconds = monotonic(() => Date.now() / 1000);
 
 const after: After = (delayMs, act) => {
   const timer = window.setTimeout(act, delayMs);

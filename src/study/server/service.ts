@@ -1,9 +1,9 @@
 import type { IncomingMessage } from 'node:http';
 import type { Worker } from 'node:worker_threads';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type Answer, HttpError } from 'threepoint-http/answer';
 import { findClientAddress } from 'threepoint-http/client-address';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { HttpError, type HttpResponse } from 'threepoint-http/response';
 import type { Call, Route, Service } from 'threepoint-http/router';
 import { shortageOf, startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
 import type { StudyDispatcher, StudyOutcome } from './routes/dispatcher';
@@ -31,7 +31,7 @@ export interface StudyService {
 }
 
 /** Enough for the requests of two hundred participants while the disk hangs, with recordings of a few of them. */
-const limits = { mostCalls: 1024, mostBytes: 64 * 2 ** 20, deadlineMs: 10_000 } as const;
+const limits = { maxCalls: 1024, maxBytes: 64 * 2 ** 20, deadlineMs: 10_000 } as const;
 /** The shortest interval between two starts of the thread [ms]. */
 const restartMs = 1000;
 /** How long closing the server waits for a disk [ms]. */
@@ -140,7 +140,7 @@ async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Prom
 }
 
 /** Returns the answer of an outcome; throws a refusal or a fault. */
-function answerOf(outcome: StudyOutcome): Answer {
+function answerOf(outcome: StudyOutcome): HttpResponse {
   if ('answer' in outcome) return outcome.answer;
   if ('fault' in outcome) throw new Error(outcome.fault);
   const { status, message, ...rest } = outcome.refused;

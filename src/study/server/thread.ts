@@ -1,7 +1,7 @@
 import { join } from 'node:path';
 import type { MessagePort } from 'node:worker_threads';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { WrongGuess } from 'threepoint-http/auth-throttle';
+import type { FailedAttempt } from 'threepoint-http/auth-throttle';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
 import { createExporter } from './export/exporter';
@@ -42,7 +42,7 @@ export type StudyThreadApi = {
 /** The interval at which failed overwriting of deleted data is repeated [ms]. */
 const forgetMs = 1000;
 
-const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
+const wrongGuess = ({ what, of, address, failures }: FailedAttempt): string =>
   `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
 
 type Log = (line: string) => void;

@@ -3,7 +3,7 @@ export interface AfterFrame {
   /**
    * Runs the task once the browser has finished this animation frame, before timers and mostly before the next frame.
    */
-  afterwards(task: () => void): void;
+  schedule(task: () => void): void;
   /** Drops pending tasks and closes the port: an open port keeps a Node process running. */
   close(): void;
 }
@@ -14,7 +14,7 @@ export function createAfterFrame(): AfterFrame {
   const waiting: (() => void)[] = [];
   port1.onmessage = () => waiting.shift()?.();
   return {
-    afterwards(task) {
+    schedule(task) {
       waiting.push(task);
       port2.postMessage(null);
     },

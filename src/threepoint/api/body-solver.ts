@@ -1,5 +1,5 @@
 import type { AvatarPose } from '../core/body/avatar-pose';
-import { type Calibration, defaultCalibration, demandPerson, sameCalibration } from '../core/body/calibration';
+import { assertCalibration, type Calibration, defaultCalibration, sameCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { Pinning } from '../core/estimation/pinning';
@@ -8,10 +8,10 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
-import { demandOptions, optionNames, warnOfDisposed } from './demand-options';
-import { EstimatorChoice } from './estimator-choice';
-import { HeightPolicy } from './height-policy';
-import { type InferenceProfiler, profiled } from './inference-profiler';
+import { assertOptions, optionNames, warnAfterDispose } from './assert-options';
+import { EstimatorSelector } from './estimator-selector';
+import { HeightEstimator } from './height-estimator';
+import { type InferenceProfiler, withProfiler } from './inference-profiler';
 
 export type { TrackedPoint } from '../core/tracking/tracking-validator';
 
@@ -38,8 +38,8 @@ export interface BodyEvents {
    * inverse kinematics draws instead.
    */
   fallback?(estimator: EstimatorName, reason: string): void;
-  /** `estimator`, `provider` or `unavailable` has changed. */
-  changed?(): void;
+  /** `estimator`, `provider` or `unavailableEstimators` has changed. */
+  estimatorchange?(): void;
   /** The body was reset and continues elsewhere: nothing may be drawn, sent or scored on the way there. */
   discontinuity?(): void;
   /**
@@ -95,7 +95,7 @@ const eventNames = optionNames<BodyEvents>({
   calibrated: true,
   heightmismatch: true,
   fallback: true,
-  changed: true,
+  estimatorchange: true,
   discontinuity: true,
   trackinglost: true,
   trackingfound: true,
@@ -114,8 +114,8 @@ const eventNames = optionNames<BodyEvents>({
  * const pose = body.update({ time, head, leftHand, rightHand: null });
  */
 export class BodySolver {
-  readonly #choice: EstimatorChoice;
-  readonly #height: HeightPolicy;
+  readonly #choice: EstimatorSelector;
+  readonly #height: HeightEstimator;
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
@@ -129,13 +129,13 @@ export class BodySolver {
   #wearer: Calibration;
   #given: boolean;
   /** Whether a stand-in moved the body in the newest frame. */
-  #standsIn = false;
+  #hasStandIn = false;
   #pose: AvatarPose | null = null;
   #inSession = false;
   #disposed = false;
   /** The newest frame's request to a network that answers later. */
   #request: InferenceRequest | null = null;
-  readonly #askNow = () => {
+  readonly #sendRequest = () => {
     const request = this.#request;
     this.#request = null;
     if (!request) return;
@@ -148,8 +148,8 @@ export class BodySolver {
    * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
    */
   constructor(options: BodySolverOptions) {
-    demandOptions('Body', options, bodyOptions);
-    demandOptions('the events of Body', options.events ?? {}, eventNames);
+    assertOptions('Body', options, bodyOptions);
+    assertOptions('the events of Body', options.events ?? {}, eventNames);
     const { estimator = 'learned', calibration = 'auto', networks, profiler = null, pinning } = options;
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
@@ -158,19 +158,19 @@ export class BodySolver {
     this.#given = calibration !== 'auto';
     this.#wearer = calibration === 'auto' ? defaultCalibration : this.#copyChecked(calibration);
     this.#calibration = this.#wearer;
-    this.#choice = new EstimatorChoice({
+    this.#choice = new EstimatorSelector({
       estimator,
       calibration: this.#calibration,
       create: (name, body, regressor) => createEstimator(name, body, regressor, { pinning }),
-      load: profiler ? async (name) => profiled(await networks(name), profiler) : networks,
-      onChange: () => this.#events.changed?.(),
-      onFault: (name, reason) => this.#events.fallback?.(name, reason),
+      load: profiler ? async (name) => withProfiler(await networks(name), profiler) : networks,
+      onChange: () => this.#events.estimatorchange?.(),
+      onUnavailable: (name, reason) => this.#events.fallback?.(name, reason),
     });
-    this.#height = new HeightPolicy({
+    this.#height = new HeightEstimator({
       calibration: () => this.#wearer,
-      calibrated: () => this.#given,
+      isCalibrated: () => this.#given,
       autoGrow: options.autoGrow ?? true,
-      onMeasured: (measured, source) => this.#measure(measured, source),
+      onMeasured: (measured, source) => this.#setUserCalibration(measured, source),
       onMismatch: (difference) => this.#events.heightmismatch?.(difference),
     });
   }
@@ -189,7 +189,7 @@ export class BodySolver {
   }
 
   /** The wearer's measures, also while a stand-in moves the body. */
-  get wearerCalibration(): Calibration {
+  get userCalibration(): Calibration {
     return this.#wearer;
   }
 
@@ -199,12 +199,12 @@ export class BodySolver {
   }
 
   /** The selected estimator, which may still be loading. */
-  get wanted(): EstimatorName {
-    return this.#choice.wanted;
+  get selectedEstimator(): EstimatorName {
+    return this.#choice.selected;
   }
 
   /** The estimators that are unavailable, each with the reason. */
-  get unavailable(): Partial<Readonly<Record<EstimatorName, string>>> {
+  get unavailableEstimators(): Partial<Readonly<Record<EstimatorName, string>>> {
     return this.#choice.unavailable;
   }
 
@@ -230,7 +230,7 @@ export class BodySolver {
     const measures = given ? this.#own(calibration) : defaultCalibration;
     this.#given = given;
     if (!given) this.#height.startSession();
-    this.#measure(measures, given ? 'given' : 'default');
+    this.#setUserCalibration(measures, given ? 'given' : 'default');
   }
 
   /** Starts a session: a headset was put on, and the wearer's height is estimated again. */
@@ -285,19 +285,19 @@ export class BodySolver {
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     if (this.#disposed) {
-      warnOfDisposed(this, 'Body');
+      warnAfterDispose(this, 'Body');
       return null;
     }
     const frame = this.#validator.validate(tracked);
     if (frame === null) {
-      this.#height.lose();
+      this.#height.onHeadLost();
       return this.#pose;
     }
-    if (!this.#isMovedBy(standIn)) this.#handOver(standIn && this.#own(standIn));
+    if (!this.#isDrivenBy(standIn)) this.#changeDriver(standIn && this.#own(standIn));
     if (standIn === null) this.#height.observe(frame);
     const { pose, request } = this.#choice.current.update(frame);
     this.#pose = pose;
-    if (request) this.#askLater(request);
+    if (request) this.#scheduleRequest(request);
     this.#choice.check();
     return pose;
   }
@@ -334,34 +334,34 @@ export class BodySolver {
 
   /** Returns a copy that the page cannot change. Throws a RangeError where the measures are not human. */
   #copyChecked(calibration: Calibration): Calibration {
-    demandPerson(calibration);
-    this.#pinning?.demandOffsets(calibration);
+    assertCalibration(calibration);
+    this.#pinning?.assertOffsets(calibration);
     return { ...calibration };
   }
 
   /**
    * Returns whether the same person moved the body in the frame before; a page may pass equal measures as a new object.
    */
-  #isMovedBy(standIn: Calibration | null): boolean {
-    if (standIn === null) return !this.#standsIn;
-    return this.#standsIn && sameCalibration(standIn, this.#calibration);
+  #isDrivenBy(standIn: Calibration | null): boolean {
+    if (standIn === null) return !this.#hasStandIn;
+    return this.#hasStandIn && sameCalibration(standIn, this.#calibration);
   }
 
   /** Lets a stand-in, or the wearer again, move the body from this frame on. */
-  #handOver(standIn: Calibration | null): void {
-    this.#standsIn = standIn !== null;
+  #changeDriver(standIn: Calibration | null): void {
+    this.#hasStandIn = standIn !== null;
     this.discontinuity();
-    this.#fit(standIn ?? this.#wearer, 'stand-in');
+    this.#applyCalibration(standIn ?? this.#wearer, 'stand-in');
   }
 
   /** Sets the wearer's measures; they come into force when no stand-in moves the body. */
-  #measure(calibration: Calibration, source: CalibrationSource): void {
+  #setUserCalibration(calibration: Calibration, source: CalibrationSource): void {
     const inForce = this.#calibration === this.#wearer;
     this.#wearer = calibration;
-    if (inForce) this.#fit(calibration, source);
+    if (inForce) this.#applyCalibration(calibration, source);
   }
 
-  #fit(calibration: Calibration, source: CalibrationSource): void {
+  #applyCalibration(calibration: Calibration, source: CalibrationSource): void {
     if (calibration === this.#calibration) return;
     this.#calibration = calibration;
     this.#choice.calibrate(calibration);
@@ -369,11 +369,11 @@ export class BodySolver {
   }
 
   /** Sends the request to the network after the frame; a newer request replaces a pending one. */
-  #askLater(request: InferenceRequest): void {
+  #scheduleRequest(request: InferenceRequest): void {
     const waits = this.#request !== null;
     this.#request = request;
     if (waits) return;
     this.#afterFrame ??= createAfterFrame();
-    this.#afterFrame.afterwards(this.#askNow);
+    this.#afterFrame.schedule(this.#sendRequest);
   }
 }

@@ -2,7 +2,7 @@ import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { BodySolver, type BodySolverOptions } from './body-solver';
-import { learnedAlone } from './load-learned';
+import { loadWithoutRuntime } from './load-learned';
 
 export interface BodyOptions extends Partial<BodySolverOptions> {
   /**
@@ -38,6 +38,6 @@ export class Body extends BodySolver {
       fallback: (estimator: EstimatorName, reason: string) => warnOfFallback(estimator, reason),
       ...options.events,
     };
-    super({ ...options, events, networks: options.networks ?? learnedAlone });
+    super({ ...options, events, networks: options.networks ?? loadWithoutRuntime });
   }
 }

@@ -1,12 +1,12 @@
 import type { Recording } from '../core/tracking/recording';
-import { demandOptions, optionNames } from './demand-options';
-import { learnedAlone } from './load-learned';
-import type { MotionExportOptions, MotionFile } from './motion-export';
+import { assertOptions, optionNames } from './assert-options';
+import { loadWithoutRuntime } from './load-learned';
+import type { MotionFile, MotionFileOptions } from './motion-file';
 
-export type ExportOptions = Omit<MotionExportOptions, 'networks'> & Partial<Pick<MotionExportOptions, 'networks'>>;
+export type ExportMotionOptions = Omit<MotionFileOptions, 'networks'> & Partial<Pick<MotionFileOptions, 'networks'>>;
 
-const exportOptions = optionNames<ExportOptions>({
-  to: true,
+const exportOptions = optionNames<ExportMotionOptions>({
+  format: true,
   estimator: true,
   networks: true,
   calibration: true,
@@ -22,12 +22,12 @@ const exportOptions = optionNames<ExportOptions>({
  * loaded; with the signal's reason where it is cancelled.
  *
  * @example
- * const { parts, type, extension } = await exportMotion(recording, { to: 'bvh' });
+ * const { parts, type, extension } = await exportMotion(recording, { format: 'bvh' });
  * const file = new File(parts, `motion.${extension}`, { type });
  */
-export async function exportMotion(recording: Recording, options: ExportOptions): Promise<MotionFile> {
-  demandOptions('exportMotion', options, exportOptions);
+export async function exportMotion(recording: Recording, options: ExportMotionOptions): Promise<MotionFile> {
+  assertOptions('exportMotion', options, exportOptions);
   // Pages that export nothing load none of it.
-  const { exportMotionWith: exportMotionBare } = await import('./motion-export');
-  return exportMotionBare(recording, { ...options, networks: options.networks ?? learnedAlone });
+  const { writeMotionFile: exportMotionBare } = await import('./motion-file');
+  return exportMotionBare(recording, { ...options, networks: options.networks ?? loadWithoutRuntime });
 }

@@ -4,13 +4,13 @@ export { copyAvatarPose } from '../core/body/avatar-pose';
 export type { Calibration } from '../core/body/calibration';
 export {
   armSpanFromFingertipSpan,
-  calibrationComplaint,
+  calibrationFromHeadHeight,
+  calibrationProblem,
   defaultCalibration,
   eyeHeightFromStature,
-  provisionalCalibration,
 } from '../core/body/calibration';
 export type { JointPoses } from '../core/body/forward-kinematics';
-export { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+export { createJointPoses, forwardKinematics } from '../core/body/forward-kinematics';
 export type { FingerBend, FingerName, Fingers, HandShape } from '../core/body/hand-shape';
 export type { JointName } from '../core/body/joints';
 export { jointNames } from '../core/body/joints';
@@ -27,7 +27,7 @@ export type { Vec3 } from '../core/math/vec3';
 export type { DeviceBody } from '../core/tracking/device-body';
 export { deviceJointNames } from '../core/tracking/device-body';
 export type { GuidedCalibration } from '../core/tracking/guided-calibration';
-export { startGuidedCalibration, stepGuidedCalibration } from '../core/tracking/guided-calibration';
+export { initialGuidedCalibration, stepGuidedCalibration } from '../core/tracking/guided-calibration';
 export type { PageClock } from '../core/tracking/page-clock';
 export { createPageClock } from '../core/tracking/page-clock';
 export type { Recording } from '../core/tracking/recording';
@@ -37,7 +37,7 @@ export type { BodyOptions } from './body';
 export { Body } from './body';
 export type { BodyEvents, BodySolverOptions, CalibrationSource, TrackedPoint } from './body-solver';
 export { BodySolver } from './body-solver';
-export { createEstimator, skeletonFromCalibration } from './checked-person';
+export { createEstimator, skeletonFromCalibration } from './checked-calibration';
 export type { InferenceProfiler } from './inference-profiler';
-export type { LearnedOptions } from './load-learned';
+export type { LoadLearnedOptions } from './load-learned';
 export { loadLearned } from './load-learned';

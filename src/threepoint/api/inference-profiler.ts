@@ -15,7 +15,7 @@ export interface InferenceProfiler {
 }
 
 /** Returns the regressor with profiled runs. A run within a frame belongs to that frame and is not profiled. */
-export function profiled(regressor: PoseRegressor, profiler: InferenceProfiler): PoseRegressor {
+export function withProfiler(regressor: PoseRegressor, profiler: InferenceProfiler): PoseRegressor {
   return {
     contract: regressor.contract,
     // The provider changes when a graphics device is lost.

@@ -2,10 +2,10 @@ import contract from '../../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import { demandOptions } from './demand-options';
-import { readOwnWeights } from './own-weights';
+import { assertOptions } from './assert-options';
+import { readBundledWeights } from './bundled-weights';
 
-export interface LearnedOptions {
+export interface LoadLearnedOptions {
   /**
    * The address of another contract (.json), with its weights in the same folder; in Node also a file (`file:`).
    * Default: the network that the package brings.
@@ -22,8 +22,8 @@ export interface LearnedOptions {
  * @example
  * const body = new Body({ networks: () => loadLearned({ onProgress: (share) => bar.set(share) }) });
  */
-export async function loadLearned(options: LearnedOptions = {}): Promise<PoseRegressor> {
-  demandOptions('loadLearned', options, ['modelUrl', 'onProgress']);
+export async function loadLearned(options: LoadLearnedOptions = {}): Promise<PoseRegressor> {
+  assertOptions('loadLearned', options, ['modelUrl', 'onProgress']);
   const { modelUrl, onProgress } = options;
   const progress = onProgress ? { onProgress } : {};
   if (modelUrl !== undefined) {
@@ -31,11 +31,11 @@ export async function loadLearned(options: LearnedOptions = {}): Promise<PoseReg
     return loadPlainRegressor(String(modelUrl), progress);
   }
   const own = contract as unknown as ModelContract;
-  return createPlainRegressor(own, await readOwnWeights(weightsOf(own), onProgress));
+  return createPlainRegressor(own, await readBundledWeights(weightsOf(own), onProgress));
 }
 
 /** Loads the networks that need no runtime. */
-export function learnedAlone(name: NetworkName): Promise<PoseRegressor> {
+export function loadWithoutRuntime(name: NetworkName): Promise<PoseRegressor> {
   if (name === 'learned') return loadLearned();
   return Promise.reject(
     new Error('the paper’s network needs a runtime: pass networks: onnxNetworks() of threepoint/onnx'),

@@ -3,11 +3,11 @@ import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { loadRegressor } from '../onnx/load-regressor';
 import type { ExecutionProvider, WasmPaths } from '../onnx/session';
-import { demandOptions, optionNames } from './demand-options';
+import { assertOptions, optionNames } from './assert-options';
 
 export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
-export interface OnnxOptions {
+export interface OnnxNetworksOptions {
   /**
    * Returns the address of a network's contract (.json), with its .onnx file beside it: the package's folder models/,
    * served by the page.
@@ -31,7 +31,7 @@ export interface OnnxOptions {
   readonly onProviderFallback?: (reason: string) => void;
 }
 
-const onnxOptions = optionNames<OnnxOptions>({
+const onnxOptions = optionNames<OnnxNetworksOptions>({
   modelUrl: true,
   provider: true,
   wasmPaths: true,
@@ -48,8 +48,8 @@ const onnxOptions = optionNames<OnnxOptions>({
  * const networks = onnxNetworks({ modelUrl: (name) => `/models/${name}.json`, wasmPaths: '/ort/' });
  * const body = new Body({ estimator: 'paper', networks });
  */
-export function onnxNetworks(options: OnnxOptions): (name: NetworkName) => Promise<PoseRegressor> {
-  demandOptions('onnxNetworks', options, onnxOptions);
+export function onnxNetworks(options: OnnxNetworksOptions): (name: NetworkName) => Promise<PoseRegressor> {
+  assertOptions('onnxNetworks', options, onnxOptions);
   const { modelUrl, ...others } = options;
   if (typeof modelUrl !== 'function') {
     throw new TypeError(

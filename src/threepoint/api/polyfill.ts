@@ -5,16 +5,16 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { copyPose, invertTransform, makePose, type Pose, type Transform, transformPose } from '../core/math/pose';
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
+import { assertOptions } from './assert-options';
 import { Body, type BodyOptions, warnOfFallback } from './body';
 import { bodyOptions as solverOptions } from './body-solver';
-import { demandOptions } from './demand-options';
 
-export interface BodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
+export interface InstallBodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
   /**
    * Called with the reason when a session has no body: it has no floor, or the estimator is unavailable (inverse
    * kinematics draws then). Default: a warning of the console.
    */
-  readonly onFault?: (reason: string) => void;
+  readonly onWarning?: (reason: string) => void;
 }
 
 /**
@@ -297,13 +297,13 @@ function patchClock(bodies: WeakMap<XRSession, SessionBody>): () => void {
   });
 }
 
-/** Warns that joints have no pose, for a page that does not handle `onFault`. */
+/** Warns that joints have no pose, for a page that does not handle `onWarning`. */
 function warnOfMissingBody(reason: string): void {
-  console.warn(`threepoint: the session has no body: ${reason}. Handle “onFault” to report it yourself.`);
+  console.warn(`threepoint: the session has no body: ${reason}. Handle “onWarning” to report it yourself.`);
 }
 
 /** The names of the options that are passed on to the body. */
-const trackingOptions = ['onFault', ...solverOptions.filter((name) => name !== 'events' && name !== 'clock')];
+const trackingOptions = ['onWarning', ...solverOptions.filter((name) => name !== 'events' && name !== 'clock')];
 
 /**
  * Adds `frame.body` to every session that requests the feature “body-tracking”: the device's own body, else one that is
@@ -313,21 +313,21 @@ const trackingOptions = ['onFault', ...solverOptions.filter((name) => name !== '
  * TypeError where an option is unknown.
  *
  * @example
- * const uninstall = installBodyTracking({ onFault: console.warn });
+ * const uninstall = installBodyTracking({ onWarning: console.warn });
  */
-export function installBodyTracking(options: BodyTrackingOptions = {}): () => void {
+export function installBodyTracking(options: InstallBodyTrackingOptions = {}): () => void {
   const xr = globalThis.navigator?.xr;
   if (!xr) {
     throw new Error(
       'installBodyTracking: there is no navigator.xr here. Call it in a browser with WebXR, on a page of https: or localhost.',
     );
   }
-  demandOptions('installBodyTracking', options, trackingOptions);
-  const { onFault, ...bodyOptions } = options;
+  assertOptions('installBodyTracking', options, trackingOptions);
+  const { onWarning, ...bodyOptions } = options;
   const fallback = (estimator: EstimatorName, reason: string): void =>
-    onFault ? onFault(reason) : warnOfFallback(estimator, reason, 'onFault');
+    onWarning ? onWarning(reason) : warnOfFallback(estimator, reason, 'onWarning');
   const body = new Body({ ...bodyOptions, events: { fallback } });
-  const reportFault = onFault ?? warnOfMissingBody;
+  const warn = onWarning ?? warnOfMissingBody;
   const jointNames = [...new XRBodyPoser(body.calibration).names];
   const bodies = new WeakMap<XRSession, SessionBody>();
   const { getPose, fillPoses } = XRFrame.prototype as XRFrame & { readonly fillPoses?: FillPoses };
@@ -347,7 +347,7 @@ export function installBodyTracking(options: BodyTrackingOptions = {}): () => vo
         replace(session, 'enabledFeatures', { value: [...new Set([...enabled, feature])] });
         emulated
           .begin()
-          .catch((error: unknown) => reportFault(`the session has no floor-level reference space: ${reasonOf(error)}`));
+          .catch((error: unknown) => warn(`the session has no floor-level reference space: ${reasonOf(error)}`));
         return session;
       },
     }),

@@ -22,7 +22,7 @@ const callbackNames = {
   calibrated: 'onCalibrated',
   heightmismatch: 'onHeightMismatch',
   fallback: 'onFallback',
-  changed: 'onChanged',
+  estimatorchange: 'onEstimatorChange',
   discontinuity: 'onDiscontinuity',
   trackinglost: 'onTrackingLost',
   trackingfound: 'onTrackingFound',
@@ -165,7 +165,7 @@ export function SelfAvatar(props: SelfAvatarProps): ReactElement | null {
   const measures = JSON.stringify(calibration);
   useEffect(() => {
     const current = tracker && live.current;
-    if (current && current.body.wanted !== estimator) current.setEstimator(estimator).catch(fail);
+    if (current && current.body.selectedEstimator !== estimator) current.setEstimator(estimator).catch(fail);
   }, [tracker, live, fail, estimator]);
   const given = useRef(measures);
   // biome-ignore lint/correctness/useExhaustiveDependencies: reason: `measures` stands for the calibration

@@ -5,7 +5,7 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import type { BodySolver } from './body-solver';
 
 /** A replay that may move a body. */
-export interface MovingReplay {
+export interface ReplayState {
   readonly mode: 'idle' | 'recording' | 'replaying';
   /** Whether the replay is paused. */
   readonly paused: boolean;
@@ -16,15 +16,15 @@ export interface MovingReplay {
 }
 
 /** The time [s] before a moment for which a body is warmed up. */
-const leadSeconds = 5;
+const warmUpSeconds = 5;
 /** The highest frame rate of the warm-up [Hz], whichever one a recording has. */
-const mostHz = 60;
+const maxWarmUpHz = 60;
 
 /** Yields the frames of a recording up to a second of it, which gets the time `time` [s]. */
-export function* leadUpTo(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
+export function* warmUpFrames(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
   const first = recording.frames.at(0)!.time;
-  const rateHz = Math.min(recording.rateHz, mostHz);
-  for (let left = Math.floor(Math.min(leadSeconds, seconds) * rateHz); left >= 0; left--) {
+  const rateHz = Math.min(recording.rateHz, maxWarmUpHz);
+  for (let left = Math.floor(Math.min(warmUpSeconds, seconds) * rateHz); left >= 0; left--) {
     const before = left / rateHz;
     yield { ...sampleRecording(recording, first + seconds - before), time: time - before };
   }
@@ -36,13 +36,13 @@ export function* leadUpTo(recording: Replayable, seconds: number, time: number):
  */
 export class ReplayedBody {
   readonly #body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
-  readonly #replay: MovingReplay;
+  readonly #replay: ReplayState;
   /** The time for which replays were paused since the last one began [s]. */
   #pausedSeconds = 0;
   /** The time of the newest frame, by the page's clock [s]. */
   #time = Number.NaN;
   /** The moment and the method that are drawn. */
-  readonly #moment: { recording: Replayable | null; seconds: number; method: string } = {
+  readonly #drawn: { recording: Replayable | null; seconds: number; method: string } = {
     recording: null,
     seconds: 0,
     method: '',
@@ -50,7 +50,7 @@ export class ReplayedBody {
 
   constructor(
     body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>,
-    replay: MovingReplay,
+    replay: ReplayState,
   ) {
     this.#body = body;
     this.#replay = replay;
@@ -63,45 +63,45 @@ export class ReplayedBody {
       this.stop();
       return this.#body.update(frame, standIn);
     }
-    if (paused) return this.#stand(frame, standIn);
+    if (paused) return this.#updatePaused(frame, standIn);
     this.#time = frame.time;
-    if (this.#beginsAnew()) this.#body.discontinuity();
-    const pose = this.#body.update(this.#dated(frame), standIn);
-    this.#arrive();
+    if (this.#hasRestarted()) this.#body.discontinuity();
+    const pose = this.#body.update(this.#withBodyTime(frame), standIn);
+    this.#updateDrawn();
     return pose;
   }
 
   /** Forgets the replay that moved the body. */
   stop(): void {
     this.#pausedSeconds = 0;
-    this.#moment.recording = null;
+    this.#drawn.recording = null;
   }
 
-  #stand(frame: TrackingFrame, standIn: Calibration | null): AvatarPose | null {
-    if (this.#moment.recording) this.#pausedSeconds += frame.time - this.#time;
+  #updatePaused(frame: TrackingFrame, standIn: Calibration | null): AvatarPose | null {
+    if (this.#drawn.recording) this.#pausedSeconds += frame.time - this.#time;
     this.#time = frame.time;
-    if (!this.#arrive()) return this.#body.pose;
-    const dated = this.#dated(frame);
+    if (!this.#updateDrawn()) return this.#body.pose;
+    const dated = this.#withBodyTime(frame);
     this.#body.update(dated, standIn);
     const { recording, seconds } = this.#replay;
-    if (recording) void this.#body.warmUp(leadUpTo(recording, seconds, dated.time));
+    if (recording) void this.#body.warmUp(warmUpFrames(recording, seconds, dated.time));
     return this.#body.pose;
   }
 
   /** Returns whether the same recording went back: nothing may be drawn on the way from its end. */
-  #beginsAnew(): boolean {
+  #hasRestarted(): boolean {
     const { recording, seconds } = this.#replay;
-    return recording === this.#moment.recording && seconds < this.#moment.seconds;
+    return recording === this.#drawn.recording && seconds < this.#drawn.seconds;
   }
 
   /** Returns the frame with its time by the body's clock. */
-  #dated(frame: TrackingFrame): TrackingFrame {
+  #withBodyTime(frame: TrackingFrame): TrackingFrame {
     return this.#pausedSeconds === 0 ? frame : { ...frame, time: frame.time - this.#pausedSeconds };
   }
 
   /** Stores the replay's moment and the method; returns whether either has changed. */
-  #arrive(): boolean {
-    const moment = this.#moment;
+  #updateDrawn(): boolean {
+    const moment = this.#drawn;
     const { recording, seconds } = this.#replay;
     const { estimator } = this.#body;
     if (moment.recording === recording && moment.seconds === seconds && moment.method === estimator) return false;

@@ -3,7 +3,7 @@ import { runInTurns, secondsLeft, type Work, type WorkHost } from '../core/motio
 /** The progress of long work. */
 export interface WorkProgress {
   /** The share [0, 1] that is done. */
-  readonly share: number;
+  readonly fraction: number;
   /** The estimated time left [s]; null: too little is done for an estimate. */
   readonly secondsLeft: number | null;
 }
@@ -36,14 +36,14 @@ export async function runWork<Result>(work: Work<Result>, { onProgress, signal }
   signal?.throwIfAborted();
   const begun = host.now();
   let reportedAt = Number.NEGATIVE_INFINITY;
-  const result = await runInTurns(work, host, (share) => {
+  const result = await runInTurns(work, host, (fraction) => {
     signal?.throwIfAborted();
     const now = host.now();
     if (now - reportedAt < reportEveryMs) return;
     reportedAt = now;
-    onProgress?.({ share, secondsLeft: secondsLeft(share, (now - begun) / 1000) });
+    onProgress?.({ fraction, secondsLeft: secondsLeft(fraction, (now - begun) / 1000) });
   });
   signal?.throwIfAborted();
-  onProgress?.({ share: 1, secondsLeft: 0 });
+  onProgress?.({ fraction: 1, secondsLeft: 0 });
   return result;
 }

@@ -2,25 +2,25 @@
 
 import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
-import { workerCheck } from '../avatar/file/worker-check';
+import { workerCheck } from '../avatar/file/avatar-check-client';
 import { parseAvatar } from '../avatar/load-avatar';
-import { loadSeenAvatar } from '../avatar/load-seen-avatar';
+import { loadSeenAvatar } from '../avatar/load-untrusted-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { nameOfAddress } from '../core/files';
 import type { BoneMap } from '../core/humanoid/bones';
-import { type BodyTrackers, demandPinning, type TrackingFrame } from '../core/tracking/tracking-frame';
+import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
+import { assertOptions, warnAfterDispose } from './assert-options';
 import { Body, type BodyOptions, warnOfFallback } from './body';
 import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
-import { demandOptions, warnOfDisposed } from './demand-options';
+import { readBundledMannequin } from './bundled-mannequin';
+import { startValidator } from './bundled-validator';
 import { loadLearned } from './load-learned';
-import type { MotionWriter } from './motion-export';
-import { readOwnMannequin } from './own-mannequin';
-import { startValidator } from './own-validator';
+import type { MotionWriter } from './motion-file';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../core/humanoid/bones';
@@ -50,7 +50,7 @@ export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
  * const avatar = await loadAvatar('/avatars/robot.glb', { bones: { hips: 'Hips', head: 'Head' } });
  */
 export async function loadAvatar(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<Avatar> {
-  demandOptions('loadAvatar', options, ['bones', 'untrusted']);
+  assertOptions('loadAvatar', options, ['bones', 'untrusted']);
   const { bones, untrusted = false } = options;
   const { name, bytes } = await read(source);
   if (!untrusted) return createAvatar(await parseAvatar(bytes, name, { bones }));
@@ -70,23 +70,23 @@ const checkUntrusted = workerCheck(startValidator, async (...file) => {
  * const tracker = new BodyTracker(renderer, { avatar: await loadMannequin() });
  */
 export async function loadMannequin(): Promise<Avatar> {
-  return createAvatar(await parseAvatar(await readOwnMannequin(), 'mannequin.vrm', {}));
+  return createAvatar(await parseAvatar(await readBundledMannequin(), 'mannequin.vrm', {}));
 }
 
 /**
- * Returns a writer of animated GLB files for `to` of `exportMotion`. The avatar's file is kept, its bones turn as the
+ * Returns a writer of animated GLB files for `format` of `exportMotion`. The avatar's file is kept, its bones turn as the
  * person's, and its steps fit the length of its legs. Rejects as `loadAvatar` does.
  *
  * @example
- * const { parts, type } = await exportMotion(recording, { to: await avatarMotion('/avatars/me.vrm') });
+ * const { parts, type } = await exportMotion(recording, { format: await avatarMotionWriter('/avatars/me.vrm') });
  */
-export async function avatarMotion(
+export async function avatarMotionWriter(
   source: AvatarSource,
   options: Pick<LoadAvatarOptions, 'bones'> = {},
 ): Promise<MotionWriter> {
-  demandOptions('avatarMotion', options, ['bones']);
+  assertOptions('avatarMotionWriter', options, ['bones']);
   const { bones } = options;
-  const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);
+  const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-motion-writer'), read(source)]);
   return avatarClip(bytes, name, { bones });
 }
 
@@ -135,7 +135,7 @@ export interface BodyTrackerEvents {
   readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
   readonly heightmismatch: { readonly difference: number };
   readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
-  readonly changed: object;
+  readonly estimatorchange: object;
   readonly discontinuity: object;
   readonly trackinglost: { readonly point: TrackedPoint };
   readonly trackingfound: { readonly point: TrackedPoint };
@@ -154,13 +154,13 @@ const trackerOptions = [
 /** The avatars that trackers draw, or have disposed of. */
 const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
 
-function demandRenderer(renderer: WebGLRenderer | undefined): void {
+function assertRenderer(renderer: WebGLRenderer | undefined): void {
   if (renderer) return;
   throw new TypeError('renderer is missing. Pass the one that draws: new BodyTracker(renderer, { avatar }).');
 }
 
 /** Throws a sentence where `avatar` is no avatar, or is one of another tracker. */
-function demandAvatar(avatar: unknown): asserts avatar is Avatar {
+function assertAvatar(avatar: unknown): asserts avatar is Avatar {
   const load = "avatar: await loadAvatar('/avatars/me.vrm')";
   if (avatar === undefined || avatar === null) throw new TypeError(`avatar is missing. Load one: ${load}.`);
   if (typeof avatar === 'string' || avatar instanceof URL) {
@@ -216,11 +216,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    */
   constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
     super();
-    demandOptions('BodyTracker', options, trackerOptions);
+    assertOptions('BodyTracker', options, trackerOptions);
     const { avatar, modelUrl, deviceBody = false, trackers, ...bodyOptions } = options;
-    demandRenderer(renderer);
-    demandAvatar(avatar);
-    demandPinning(trackers, bodyOptions.pinning);
+    assertRenderer(renderer);
+    assertAvatar(avatar);
+    assertPinning(trackers, bodyOptions.pinning);
     this.avatar = avatar;
     this.#deviceBody = deviceBody;
     this.#trackers = trackers;
@@ -228,7 +228,10 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     const networks =
       modelUrl === undefined
         ? {}
-        : { networks: (name: string) => (name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noWeights)) };
+        : {
+            networks: (name: string) =>
+              name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noRuntimeError),
+          };
     this.body = new Body({
       ...networks,
       ...bodyOptions,
@@ -238,7 +241,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
           this.dispatchEvent({ type: 'calibrated', calibration, source });
         },
         heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
-        changed: () => this.dispatchEvent({ type: 'changed' }),
+        estimatorchange: () => this.dispatchEvent({ type: 'estimatorchange' }),
         discontinuity: () => this.dispatchEvent({ type: 'discontinuity' }),
         fallback: (estimator, reason) => {
           if (this.#fallbackListeners.size > 0) this.dispatchEvent({ type: 'fallback', estimator, reason });
@@ -316,7 +319,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     if (this.#isDisposed()) return;
     const time = this.body.tick(timeMs);
-    this.#attend();
+    this.#followSession();
     const session = this.#tracked;
     // The renderer may still have the space of the session before: the first frame starts the tracking.
     if (!session || !frame || !session.start()) return;
@@ -325,17 +328,17 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.avatar.object.position.copy(position);
     this.avatar.object.quaternion.copy(orientation);
     const trackers = this.#trackers?.();
-    this.#apply(tracked && trackers ? { ...tracked, trackers } : tracked, null);
+    this.#draw(tracked && trackers ? { ...tracked, trackers } : tracked, null);
   }
 
   /**
    * Solves and draws a tracking frame of the page, floor frame [m, s]: from another device of the wearer, or from a
    * stand-in with these measures (an actor, a recording).
    */
-  updateFrom(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
+  updateFromFrame(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
     if (this.#isDisposed()) return;
-    this.#attend();
-    this.#apply(frame, standIn);
+    this.#followSession();
+    this.#draw(frame, standIn);
   }
 
   /**
@@ -353,7 +356,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    */
   dispose(): Promise<void> {
     this.#disposed = true;
-    this.#leave();
+    this.#endTracking();
     this.#object.removeFromParent();
     this.avatar.dispose();
     ownedAvatars.set(this.avatar, 'disposed');
@@ -362,11 +365,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   /** Returns whether the tracker was disposed of, and warns once of a page that still updates it. */
   #isDisposed(): boolean {
-    if (this.#disposed) warnOfDisposed(this, 'BodyTracker');
+    if (this.#disposed) warnAfterDispose(this, 'BodyTracker');
     return this.#disposed;
   }
 
-  #apply(tracked: TrackingFrame | null, standIn: Calibration | null): void {
+  #draw(tracked: TrackingFrame | null, standIn: Calibration | null): void {
     const pose = this.body.update(tracked, standIn);
     this.#setFirstPerson(this.#session !== null && standIn === null);
     if (!tracked || !pose) return;
@@ -375,10 +378,10 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /** Follows the renderer's session and ends the tracking of the one before. */
-  #attend(): void {
+  #followSession(): void {
     const session = this.#renderer.xr.getSession();
     if (session === this.#session) return;
-    this.#leave();
+    this.#endTracking();
     this.#session = session;
     this.#tracked =
       session &&
@@ -388,11 +391,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         bodyReader: this.#deviceBody ? new DeviceBodyReader() : null,
         onStart: () => this.body.startSession(),
         onDiscontinuity: () => this.body.discontinuity(),
-        onEnd: () => this.#leave(),
+        onEnd: () => this.#endTracking(),
       });
   }
 
-  #leave(): void {
+  #endTracking(): void {
     if (!this.#session) return;
     this.#tracked?.dispose();
     this.#tracked = null;
@@ -412,6 +415,6 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 }
 
-const noWeights = new Error(
+const noRuntimeError = new Error(
   'modelUrl: only the learned network runs without a runtime. Pass networks: onnxNetworks() of threepoint/onnx for the others.',
 );

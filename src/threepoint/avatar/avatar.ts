@@ -4,7 +4,7 @@ import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { SkinTone } from '../core/body/avatar-ref';
 import type { Calibration } from '../core/body/calibration';
-import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
@@ -16,19 +16,19 @@ import { type Side, sides } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { finishWork } from '../core/motion/work';
 import { type Mutable, recordOf } from '../core/records';
+import { betweenFrames, type Steps } from './between-frames';
 import { Face } from './face';
 import { HandFingers } from './hands/hand-fingers';
-import { betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
-import { meshesOf } from './meshes-of';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { tieLooseParts } from './rig/loose-parts';
-import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
-import { spreadLimbs } from './rig/spread-weights';
+import { OwnTrunk } from './rig/rig-trunk';
+import { spreadLimbs } from './rig/spread-limb-weights';
 import { Springs } from './rig/springs';
+import { meshesOf } from './scene-meshes';
 
 /**
  * A drawn body. Poses are in the floor frame; `object` stays at the floor's origin.
@@ -144,7 +144,7 @@ class VrmAvatar implements Avatar {
   private skeleton: Skeleton = skeletonFromCalibration(averageBody);
   private scale = 1;
   private lastTime: number | null = null;
-  private readonly joints = makeJointPoses();
+  private readonly joints = createJointPoses();
   /** The points of a pose that the legs follow. */
   private readonly points: Mutable<GaitPoints> = {
     hips: this.joints.hips,

@@ -3,18 +3,18 @@ import type { Object3D } from 'three';
 import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
 import type { BoneMap } from '../core/humanoid/bones';
+import { betweenFrames } from './between-frames';
+import { viewsOfFile } from './file/blob-buffer-views';
 import type { CheckedAvatar } from './file/check-avatar';
+import { glbOfFile } from './file/convert-to-glb';
 import { validExpressionBinds } from './file/expression-binds';
 import { chunksOf } from './file/glb-chunks';
-import { glbOfFile } from './file/glb-of-file';
 import { inspectAvatar } from './file/inspect-avatar';
 import { makeGeometryPlain } from './file/plain-geometry';
-import { viewsOfFile } from './file/views-of-file';
 import { restoreBindPose } from './humanoid/bind-pose';
-import { setVrmBones } from './humanoid/name-bones';
 import { boneNode, demandBones } from './humanoid/needed-bones';
 import { settleRest } from './humanoid/rest-pose';
-import { betweenFrames } from './in-steps';
+import { setVrmBones } from './humanoid/write-bone-names';
 
 /** A loaded body (VRM 0.x or 1.0, or another humanoid), ready to be fitted, and its name. */
 export interface LoadedAvatar {
@@ -52,7 +52,7 @@ export async function parseAvatar(
 export async function parseChecked(checked: ReadableAvatar, name: string, options: ParseOptions = {}) {
   const { gltf, own } = await readScene(checked, name, options);
   // Files without a humanoid of their own need the matcher, which others do not load.
-  const vrm = own ?? (await import('./humanoid/humanoid-of-scene')).humanoidOf(gltf.scene, name, options.bones);
+  const vrm = own ?? (await import('./humanoid/create-humanoid')).humanoidOf(gltf.scene, name, options.bones);
   settleRest(vrm, name);
   return { name, vrm, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
 }

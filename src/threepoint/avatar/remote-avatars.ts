@@ -10,13 +10,13 @@ import {
 } from '../core/body/avatar-ref';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
-import { PassingFault } from '../core/errors/passing-fault';
+import { TransientError } from '../core/errors/transient-error';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
-import { meshesOf } from './meshes-of';
+import { meshesOf } from './scene-meshes';
 
 /** Another person to draw in this frame. */
 export interface SeenPerson {
@@ -38,7 +38,7 @@ export interface SeenPerson {
 export interface RemoteAvatarsOptions {
   /**
    * Loads the body of an avatar: once for a file, and for each needed copy of a built-in body. Rejects
-   * where it is unavailable; after a PassingFault it is called again some seconds later.
+   * where it is unavailable; after a TransientError it is called again some seconds later.
    */
   load(avatar: AvatarRef): Promise<Avatar>;
   /** Returns whether everybody is drawn as the plain body; called in every frame. */
@@ -226,7 +226,7 @@ export class RemoteAvatars {
 
   #refuse(avatar: AvatarRef, error: unknown): void {
     const before = this.#refused.get(avatar);
-    const passes = error instanceof PassingFault;
+    const passes = error instanceof TransientError;
     const attempts = (before?.attempts ?? 0) + 1;
     const reports = !before?.reported && (!passes || attempts >= patientAttempts);
     const again = passes ? this.#now + againSeconds : Number.POSITIVE_INFINITY;

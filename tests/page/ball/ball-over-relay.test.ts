@@ -141,5 +141,5 @@ test('the relay dies in the middle of a match and comes back: the same page is i
     20,
     'a new round',
   );
-  expect(ann.play.room?.voided).toBe(1);
+  expect(ann.play.room?.voidedRounds).toBe(1);
 }, 120_000);

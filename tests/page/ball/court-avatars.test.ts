@@ -1,4 +1,4 @@
-import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { TransientError } from 'threepoint/core/errors/transient-error';
 import { BuiltInBodies } from 'threepoint-page/ball/court-avatars';
 import { expect, test } from 'vitest';
 
@@ -6,7 +6,7 @@ test('a built-in body whose download failed is fetched again when it is needed a
   let asked = 0;
   const bodies = new BuiltInBodies(new ArrayBuffer(0), () => {
     asked += 1;
-    return Promise.reject(new PassingFault('the network is gone'));
+    return Promise.reject(new TransientError('the network is gone'));
   });
   for (const attempt of [1, 2]) {
     await expect(bodies.load('woman')).rejects.toThrow('the network is gone');

@@ -1,5 +1,5 @@
 import { BodySolver } from 'threepoint/api/body-solver';
-import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { deviceBodySize, deviceJointNames } from 'threepoint/core/tracking/device-body';
@@ -34,7 +34,7 @@ const deviceNames = {
 
 test('a device whose elbows lie 3 cm from ours differs by 3 cm there and by nothing elsewhere', () => {
   const { body, measurements } = wornBody();
-  const joints = makeJointPoses();
+  const joints = createJointPoses();
   for (let row = 0; row < 200; row++) {
     const tracked: TrackingFrame = actorFrame(row / 60, calibration);
     const pose = body.update(tracked)!;

@@ -86,7 +86,7 @@ function page(listed: readonly Activity[] = registered) {
     recorder,
     activities,
     study,
-    body: { wearerCalibration: defaultCalibration },
+    body: { userCalibration: defaultCalibration },
     actor: createActor(),
     pointers: noPointers,
   });
@@ -444,7 +444,7 @@ describe('a third activity', () => {
         {
           activities,
           settings,
-          body: { estimator: 'ik', unavailable: {} },
+          body: { estimator: 'ik', unavailableEstimators: {} },
           measuring: { step: null },
           notices: { current: () => [] },
           headset: { passthrough: null, passthroughOffered: false },

@@ -66,7 +66,7 @@ function headset() {
     rays,
     pointers,
     notices: { show: () => undefined, current: () => [] },
-    body: { estimator: 'ik', unavailable: {}, calibration: { ...defaultCalibration, eyeHeight: 1.6 } },
+    body: { estimator: 'ik', unavailableEstimators: {}, calibration: { ...defaultCalibration, eyeHeight: 1.6 } },
     headset: {
       passthrough: null,
       passthroughOffered: false,

@@ -53,7 +53,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const recorder = new Recorder();
   const settings = { actor };
   const headset = { worn: false, emulator, tracking: null };
-  const body = { wearerCalibration: defaultCalibration };
+  const body = { userCalibration: defaultCalibration };
   const measuring = new Measuring({
     settings,
     headset,

@@ -39,7 +39,7 @@ function handless(act: (time: number) => PlayerInput | null, settings = { gaze: 
     settings: { actor: false },
     headset: { emulator: null, tracking },
     recorder: new Recorder(),
-    body: { wearerCalibration: defaultCalibration },
+    body: { userCalibration: defaultCalibration },
     actor: createActor(),
     activities: { current: null, act },
     study: { idle: false },

@@ -8,7 +8,7 @@ import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
 import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
 import { VrMenu } from 'threepoint-page/shell/vr-menu/vr-menu';
-import { longestName } from 'threepoint-rooms/protocol/names';
+import { maxNameLength } from 'threepoint-rooms/protocol/player-name';
 import { describe, expect, test } from 'vitest';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, paper, studioMenu } from './menu-parts';
@@ -92,7 +92,7 @@ describe('the other players in the headset', () => {
 
   test('are written above their buttons, with role and voice, no wider than the sheet', () => {
     const { context, texts } = paper();
-    const long = player(1, { name: 'W'.repeat(longestName) });
+    const long = player(1, { name: 'W'.repeat(maxNameLength) });
     const state = listing([ben, long]);
     const buttons = menuButtons(state, menuActions);
     drawMenu(context, state, buttons, null);

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { type Material, type Mesh, MeshStandardMaterial, type Object3D, PropertyBinding, Scene, Vector3 } from 'three';
+import type { WorkerAnswer, WorkerQuestion } from 'threepoint/avatar/file/avatar-check-worker';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import type { WorkerAnswer, WorkerQuestion } from 'threepoint/avatar/file/check-worker';
 import { palettes, skinColors } from 'threepoint/avatar/palettes';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';

@@ -48,7 +48,7 @@ test('with the actor off before a real headset is put on, the body stands still'
     settings: { actor: false },
     headset: { emulator: null, tracking: null },
     recorder: new Recorder(),
-    body: { wearerCalibration: defaultCalibration },
+    body: { userCalibration: defaultCalibration },
     actor: createActor(),
     activities: {
       current: null,

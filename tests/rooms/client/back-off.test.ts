@@ -1,5 +1,5 @@
 import { BackOff } from 'threepoint-rooms/client/back-off';
-import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
+import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
 import { describe, expect, test } from 'vitest';
 
 describe('trying again', () => {
@@ -7,7 +7,7 @@ describe('trying again', () => {
     const backOff = new BackOff(() => 0.5);
     expect([1, 2, 3, 4, 5, 6].map(() => backOff.next())).toEqual([0.5, 1, 2, 3, 3, 3]);
     expect(backOff.attempts).toBe(6);
-    backOff.succeeded();
+    backOff.reset();
     expect(backOff.next()).toBe(0.5);
     const late = new BackOff(() => 1 - 1e-9);
     for (let i = 0; i < 10; i++) expect(late.next()).toBeLessThan(4.5);

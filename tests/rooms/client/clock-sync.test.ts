@@ -19,7 +19,7 @@ function follow(
   let settled = start;
   let error = 0;
   for (let now = start; now < start + seconds; now += 1 / 60) {
-    if (sync.due(now)) {
+    if (sync.isDue(now)) {
       const reached = now + there();
       underway.push({ sent: now, told: reached + skew, heard: reached + back() });
     }
@@ -77,7 +77,7 @@ describe('clock sync', () => {
   test('asks five times in the first second and then every two', () => {
     const sync = new ClockSync();
     let asks = 0;
-    for (let now = 0; now < 9; now += 1 / 90) if (sync.due(now)) asks += 1;
+    for (let now = 0; now < 9; now += 1 / 90) if (sync.isDue(now)) asks += 1;
     expect(asks).toBeGreaterThanOrEqual(8);
     expect(asks).toBeLessThanOrEqual(9);
   });
@@ -87,11 +87,11 @@ describe('clock sync', () => {
     const { error } = follow(sync, 5, 10, 3, lan(), lan());
     expect(error).toBeLessThan(0.01);
     // Asked at 14.99, answered by theirs at 17.991; ours stood at 15 for 20 s.
-    sync.paused(20, 15);
+    sync.addPause(20, 15);
     expect(sync.offset).toBeCloseTo(23, 2);
     sync.receive(14.99, 17.991, 15.01);
     expect(sync.offset).toBeCloseTo(23, 2);
-    expect(sync.due(15.01)).toBe(true);
+    expect(sync.isDue(15.01)).toBe(true);
     sync.receive(15.01, 38.012, 15.014);
     expect(sync.offset).toBeCloseTo(23, 2);
   });
@@ -99,7 +99,7 @@ describe('clock sync', () => {
   test('a clock that was set ahead looks like a pause until the first answer', () => {
     const sync = new ClockSync();
     follow(sync, 5, 10, 3, lan(), lan());
-    sync.paused(20, 15);
+    sync.addPause(20, 15);
     sync.receive(15, 18.002, 15.004);
     expect(sync.offset).toBeCloseTo(3, 2);
   });
@@ -110,11 +110,11 @@ describe('clock sync', () => {
     let now = 5;
     for (const trip of [0.02, 0.03, 0.4, 0.025, 0.021]) {
       now += 2.5;
-      expect(sync.due(now)).toBe(true);
+      expect(sync.isDue(now)).toBe(true);
       sync.receive(now, now + trip / 2, now + trip);
     }
     expect(sync.delayAt(now + 0.5)).toBeCloseTo(0.025, 9);
-    expect(sync.due(now + 2.5)).toBe(true);
+    expect(sync.isDue(now + 2.5)).toBe(true);
     expect(sync.delayAt(now + 5.5)).toBeCloseTo(3, 9);
   });
 });

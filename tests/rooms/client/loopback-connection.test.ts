@@ -21,7 +21,7 @@ function threeTogether(options: Partial<BallLoopbackOptions> = {}) {
     for (let i = 0; i < seconds * 72; i++) frame();
   };
   const begin = () => {
-    for (const person of people) person.connection.ready(true);
+    for (const person of people) person.connection.setReady(true);
     pass(0.1);
   };
   return {
@@ -108,8 +108,8 @@ describe('a room in the page', () => {
     begin();
     pass(1.5);
     expect(ann.match.phase).toBe('over');
-    ann.connection.rotate(true);
-    for (const { connection } of people) connection.ready(true);
+    ann.connection.setRotation(true);
+    for (const { connection } of people) connection.setReady(true);
     pass(0.2);
     for (const { match } of people) {
       expect(match.phase).toBe('running');

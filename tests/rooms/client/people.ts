@@ -9,7 +9,7 @@ import type { BallAction, BallEvent } from 'threepoint-games/ball/ball-state';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { gravity } from 'threepoint-games/ballistics';
 import { wristAround } from 'threepoint-games/fist';
-import type { ShownPose, Visitor } from 'threepoint-rooms/client/connection';
+import type { OutgoingPose, Visitor } from 'threepoint-rooms/client/connection';
 
 export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
   name,
@@ -31,7 +31,7 @@ export function shownAt(
   connection: Pick<BallConnection, 'arenaFromFloor'>,
   seat: number,
   wrists: Readonly<Record<Side, Pose<'arena'> | null>>,
-): ShownPose {
+): OutgoingPose {
   const floorFromArena = invertTransform(connection.arenaFromFloor(seat));
   const hand = (side: Side) => {
     const wrist = wrists[side];
@@ -69,14 +69,14 @@ type Unnumbered = BallAction extends infer D ? (D extends BallAction ? Omit<D, '
 /** A person at a connection: does what a page would do every frame, and records what it received. */
 export function createPerson(connection: BallConnection) {
   const events: BallEvent[] = [];
-  const news: BallConnectionUpdate['news'][number][] = [];
+  const news: BallConnectionUpdate['changes'][number][] = [];
   const poses: BallConnectionUpdate['poses'][number][] = [];
   let sequence = 0;
   let wrists: Record<Side, Pose<'arena'> | null> = { left: null, right: null };
   const act = (action: Unnumbered): BallAction => {
     sequence += 1;
     const numbered = { ...action, sequence } as BallAction;
-    connection.act(numbered);
+    connection.sendAction(numbered);
     return numbered;
   };
   return {
@@ -102,7 +102,7 @@ export function createPerson(connection: BallConnection) {
         type: 'throw',
         side,
         ball,
-        at: time + connection.room!.matchAhead,
+        at: time + connection.room!.matchClockOffset,
         position: from,
         velocity: velocityTo(from, to, 1),
       });
@@ -111,7 +111,7 @@ export function createPerson(connection: BallConnection) {
     frame(time: number) {
       const update = connection.update(time);
       events.push(...update.events);
-      news.push(...update.news);
+      news.push(...update.changes);
       poses.push(...update.poses);
       const seat = connection.room?.mySeat ?? null;
       if (seat !== null) connection.sendPose(time, shownAt(connection, seat, wrists));

@@ -5,7 +5,7 @@ import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat
 import { randomNumbers } from 'threepoint/core/math/random';
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { firstDelay, longestExtrapolation, type PlaybackReport } from 'threepoint-rooms/client/playback';
+import { initialPlayoutOffset, longestExtrapolation, type PlaybackReport } from 'threepoint-rooms/client/playback';
 import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
@@ -85,7 +85,7 @@ describe('playback of others', () => {
         before = x;
       },
     );
-    expect(first - 0.02).toBeCloseTo(firstDelay, 1);
+    expect(first - 0.02).toBeCloseTo(initialPlayoutOffset, 1);
     expect(last - 0.02).toBeGreaterThan(0.04);
     expect(last - 0.02).toBeLessThan(0.05);
     // At most a tenth faster or slower than life.

@@ -1,7 +1,7 @@
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
-import { LoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost } from 'threepoint-rooms/client/loopback-host';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
 import { expect, test } from 'vitest';
 import { countingClientPolicy, countingPolicy } from '../room/counting-game';

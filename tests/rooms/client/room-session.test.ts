@@ -90,7 +90,7 @@ const taller = { ...defaultCalibration, eyeHeight: 1.75 };
 function change(client: SlowClient): void {
   client.voices.setVoice({ session: 'annas-page', muted: true });
   client.calibrate(taller);
-  client.wear('man-dark');
+  client.setAvatar('man-dark');
 }
 
 const changed = { voice: { session: 'annas-page', muted: true }, avatar: 'man-dark', height: 1.75 };
@@ -132,23 +132,23 @@ function wanted(client: SlowClient) {
 test('what is pressed while there is no connection, or its welcome is on its way, reaches the room', () => {
   const client = new SlowClient();
   client.connect();
-  client.ready(true);
-  client.away(true);
-  client.rotate(true);
+  client.setReady(true);
+  client.setAway(true);
+  client.setRotation(true);
   client.deliver();
   expect(wanted(client)).toEqual({ seat: 0, isReady: true, presence: 'away', rotate: true });
 
   client.lose();
-  client.ready(true);
-  client.ready(false);
-  client.away(false);
+  client.setReady(true);
+  client.setReady(false);
+  client.setAway(false);
   client.connect();
-  client.rotate(false);
+  client.setRotation(false);
   client.deliver();
   expect(wanted(client)).toEqual({ seat: 0, isReady: false, presence: 'here', rotate: false });
 
   client.lose();
-  client.sit(null);
+  client.changeSeat(null);
   client.connect();
   client.deliver();
   expect(wanted(client).seat).toBeNull();
@@ -157,9 +157,9 @@ test('what is pressed while there is no connection, or its welcome is on its way
 test('what was pressed on one connection is not said again on the next', () => {
   const client = new SlowClient();
   client.connect();
-  client.ready(true);
+  client.setReady(true);
   client.deliver();
-  client.ready(false);
+  client.setReady(false);
   client.deliver();
   client.lose();
   client.connect();

@@ -1,5 +1,5 @@
 import type { Connection } from 'threepoint-rooms/client/connection';
-import { LoopbackHost } from 'threepoint-rooms/client/loopback-connection';
+import { LoopbackHost } from 'threepoint-rooms/client/loopback-host';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { expect, onTestFinished, test } from 'vitest';
@@ -25,15 +25,15 @@ test('a client follows a game that its session does not know: events, refusals, 
     time += 0.1;
     return [ann.update(time), ben.update(time)].map(({ events }) => events);
   };
-  for (const person of [ann, ben]) person.ready(true);
+  for (const person of [ann, ben]) person.setReady(true);
   frame();
   frame();
   expect(host.room.match.phase).toBe('running');
 
-  ann.act({ type: 'count', to: 1 });
+  ann.sendAction({ type: 'count', to: 1 });
   // The Room has not stepped yet: the player sees the own action, the other player does not.
   expect([ann.room?.match?.total, ben.room?.match?.total]).toEqual([1, 0]);
-  ben.act({ type: 'count', to: 7 });
+  ben.sendAction({ type: 'count', to: 7 });
   const heard = [frame(), frame(), frame()];
   expect(heard.flatMap(([, ofBen]) => ofBen)).toContainEqual({ type: 'counted', player: 0, total: 1 });
   expect(heard.flatMap(([, ofBen]) => ofBen)).toContainEqual({ type: 'refused', player: 1, reason: 'not-next' });
@@ -74,12 +74,12 @@ test('a round of it is played to its end over a relay, by the client that plays 
     'both players sit',
     frames(() => people.every(({ connection }) => connection.room?.mySeat != null)),
   );
-  for (const { connection } of people) connection.ready(true);
+  for (const { connection } of people) connection.setReady(true);
   for (const [index, to] of [1, 2, 3].entries()) {
     const { connection } = people[index % 2] as Counter;
     await until(`the number ${to} is counted`, () => {
       // Before the match runs, the Room refuses what a player counts.
-      if (ann.totals.length < to && connection.room?.match?.total !== to) connection.act({ type: 'count', to });
+      if (ann.totals.length < to && connection.room?.match?.total !== to) connection.sendAction({ type: 'count', to });
       return frames(() => people.every(({ totals }) => totals.includes(to)))();
     });
   }

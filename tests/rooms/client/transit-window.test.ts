@@ -4,7 +4,7 @@ import { expect, test } from 'vitest';
 
 test('the transits of the last seconds are ranked as a sort of them would, packet after packet', () => {
   const window = new TransitWindow(5);
-  expect([window.least, window.late]).toEqual([0, 0]);
+  expect([window.minimum, window.jitter]).toEqual([0, 0]);
   let random = { seed: 11 };
   const chance = () => {
     const { value, state } = nextRandom(random);
@@ -20,9 +20,9 @@ test('the transits of the last seconds are ranked as a sort of them would, packe
     window.add(at, transit);
     known = [...known, { at, transit }].filter((one) => at - one.at <= 5);
     const sorted = known.map((one) => one.transit).sort((a, b) => a - b);
-    expect(window.least).toBe(sorted[0]);
-    expect(window.late).toBeCloseTo(sorted[Math.floor(sorted.length * 0.95)]! - sorted[0]!, 12);
+    expect(window.minimum).toBe(sorted[0]);
+    expect(window.jitter).toBeCloseTo(sorted[Math.floor(sorted.length * 0.95)]! - sorted[0]!, 12);
   }
   window.clear();
-  expect([window.least, window.late]).toEqual([0, 0]);
+  expect([window.minimum, window.jitter]).toEqual([0, 0]);
 });

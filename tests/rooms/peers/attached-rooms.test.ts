@@ -177,7 +177,7 @@ test('a page of a game acts in it and gets its events, and draws the others on t
     const body = solvedActor();
     const room = await joinRoom(url, { name, body, game: countingClientPolicy, storage: null });
     onTestFinished(() => room.leave());
-    room.client.connection?.ready(true);
+    room.client.connection?.setReady(true);
     return { room, body };
   };
   const [ann, ben] = [await joinGame('Ann'), await joinGame('Ben')];
@@ -191,7 +191,7 @@ test('a page of a game acts in it and gets its events, and draws the others on t
     }
     if (now > nextCount) {
       nextCount = now + 300;
-      ben.room.client.connection?.act({ type: 'count', to: 1 });
+      ben.room.client.connection?.sendAction({ type: 'count', to: 1 });
     }
     // A count before the round runs is refused.
     const counted = events.some((event) => (event as { type: string }).type === 'counted');

@@ -3,7 +3,7 @@ import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { distance } from 'threepoint/core/math/vec3';
-import { longestPeerPacket, peerVersion } from 'threepoint-rooms/peers/peer-packet';
+import { maxPeerPacketBytes, peerPacketVersion } from 'threepoint-rooms/peers/peer-packet';
 import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
 import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
@@ -88,10 +88,10 @@ test('thirty packets a second of at most 70 bytes, and a profile a second', () =
   expect(sent.length - profiles.length).toBeLessThanOrEqual(302);
   const total = sent.reduce((sum, { bytes }) => sum + bytes.length, 0);
   expect(total / 10).toBeLessThan(2200);
-  expect(Math.max(...sent.map(({ bytes }) => bytes.length))).toBeLessThanOrEqual(longestPeerPacket);
+  expect(Math.max(...sent.map(({ bytes }) => bytes.length))).toBeLessThanOrEqual(maxPeerPacketBytes);
 });
 
-test('whoever joins later sees the person within a second, or at once after introduce', () => {
+test('whoever joins later sees the person within a second, or at once after sendProfile', () => {
   const { until, sent, sender } = sending();
   until(4500);
   const late = new RemotePoses();
@@ -103,7 +103,7 @@ test('whoever joins later sees the person within a second, or at once after intr
   })?.at;
   expect(shownAt).toBeLessThan(5600);
   const later = new RemotePoses();
-  sender.introduce();
+  sender.sendProfile();
   const again = sent.length;
   until(6100);
   for (const { at, bytes } of sent.slice(again)) later.receive('ada', bytes, at);
@@ -156,7 +156,7 @@ test('a peer with another version is refused with a sentence that names both', (
   expect(others.receive('old', other, 10)).toBe(false);
   expect(warn.mock.calls).toEqual([
     [
-      `threepoint-rooms: a packet of "old" was refused: it has version 17, and this page reads version ${peerVersion}: use the same release of threepoint-rooms in both.`,
+      `threepoint-rooms: a packet of "old" was refused: it has version 17, and this page reads version ${peerPacketVersion}: use the same release of threepoint-rooms in both.`,
     ],
   ]);
 });
@@ -200,7 +200,7 @@ test('so many peers and no more, and one that is silent for 30 s is forgotten', 
   const { until, sent } = sending();
   until(50);
   const refused: string[] = [];
-  const others = new RemotePoses({ mostPeers: 2, onRefused: (peer) => refused.push(peer) });
+  const others = new RemotePoses({ maxPeers: 2, onRefused: (peer) => refused.push(peer) });
   for (const peer of ['ada', 'ben', 'cy']) others.receive(peer, sent[0]!.bytes, 0);
   expect(refused).toEqual(['cy']);
   others.update(31_000);
@@ -209,7 +209,7 @@ test('so many peers and no more, and one that is silent for 30 s is forgotten', 
 
 test('a rate, measures or a reference that cannot be are refused with a sentence', () => {
   const make = (options: object) => () => new PoseSender(() => undefined, { name: 'Ada', ...options });
-  expect(make({ rate: 0 })).toThrow(/0 poses a second/);
+  expect(make({ rateHz: 0 })).toThrow(/0 poses a second/);
   expect(make({ avatar: 'x'.repeat(201) })).toThrow(/201 characters/);
   const sender = make({})();
   expect(() => sender.update(0, { pose: null, calibration: { eyeHeight: 170, armSpan: 150 } })).toThrow(RangeError);
@@ -228,8 +228,8 @@ test('mutated and random packets never throw, and show nobody who is not finite'
     some,
     () => some().map((byte) => (chance() < 0.03 ? below(256) : byte)),
     () => some().slice(0, below(100)),
-    () => Uint8Array.from([...some(), ...some()]).slice(0, below(2 * longestPeerPacket)),
-    () => Uint8Array.from([peerVersion, below(4), ...Array.from({ length: below(90) }, () => below(256))]),
+    () => Uint8Array.from([...some(), ...some()]).slice(0, below(2 * maxPeerPacketBytes)),
+    () => Uint8Array.from([peerPacketVersion, below(4), ...Array.from({ length: below(90) }, () => below(256))]),
   ];
   const reasons = new Map<string, number>();
   const others = new RemotePoses({

@@ -9,7 +9,7 @@ test('the body of a peer who has sent nothing for 30 s is removed, as if the tra
   const avatar = await loadAvatar(await readFile('public/avatars/mannequin.vrm'));
   const dispose = vi.spyOn(avatar, 'dispose');
   const forgotten: string[] = [];
-  const others = new RemoteBodies({ avatar: async () => avatar, onForgotten: (peer) => forgotten.push(peer) });
+  const others = new RemoteBodies({ avatar: async () => avatar, onPeerTimeout: (peer) => forgotten.push(peer) });
   const actor = solvedActor();
   let now = 0;
   const sender = new PoseSender((bytes) => others.receive('ada', bytes, now), { name: 'Ada' });

@@ -2,9 +2,9 @@ import { createHash } from 'node:crypto';
 import { createServer, type RequestListener } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
-import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import { SeenAvatars } from 'threepoint-rooms/drawing/seen-avatars';
+import { RoomAvatarLoader } from 'threepoint-rooms/drawing/room-avatar-loader';
 import { expect, onTestFinished, test } from 'vitest';
 import { collectGarbage } from '../../collect-garbage';
 
@@ -49,7 +49,7 @@ test('a file that never ends is given up with a sentence, and the next place is 
       headers: {},
     })),
   );
-  const seen = new SeenAvatars({ exchange, loadBuiltIn: unused, loadFile: unused, patienceMs: 100 });
+  const seen = new RoomAvatarLoader({ exchange, loadBuiltIn: unused, loadFile: unused, timeoutMs: 100 });
   // Node forgets a timeout that nothing refers to (nodejs/node#57736): the collector must not end the patience.
   const collecting = setInterval(collectGarbage, 20);
   onTestFinished(() => clearInterval(collecting));
@@ -60,7 +60,7 @@ test('a file that never ends is given up with a sentence, and the next place is 
 /** Loads from the store of a room that has the file at this address. */
 const from = (url: string) => {
   const exchange = exchangeAt(async () => [{ url, headers: {} }]);
-  return new SeenAvatars({ exchange, loadBuiltIn: unused, loadFile: unused });
+  return new RoomAvatarLoader({ exchange, loadBuiltIn: unused, loadFile: unused });
 };
 
 test.each<[what: string, answer: RequestListener, passes: boolean]>([
@@ -76,7 +76,7 @@ test.each<[what: string, answer: RequestListener, passes: boolean]>([
     .load(hash)
     .catch((error: unknown) => error);
   expect(fault).toBeInstanceOf(Error);
-  expect(fault instanceof PassingFault).toBe(passes);
+  expect(fault instanceof TransientError).toBe(passes);
 });
 
 test('another file than the announced one is refused before it is read', async () => {

@@ -1,10 +1,10 @@
 import { BodySolver } from 'threepoint/api/body-solver';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { SentBody } from 'threepoint-rooms/peers/pose-sender';
+import type { PoseSource } from 'threepoint-rooms/peers/pose-sender';
 
 /** An actor whose body the library solves by inverse kinematics. */
-export function solvedActor(): SentBody & { moveTo(timeMs: number): void } {
+export function solvedActor(): PoseSource & { moveTo(timeMs: number): void } {
   const body = new BodySolver({
     estimator: 'ik',
     calibration: defaultCalibration,

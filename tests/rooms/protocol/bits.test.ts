@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import { expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
 

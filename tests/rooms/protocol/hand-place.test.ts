@@ -1,28 +1,28 @@
 import fc from 'fast-check';
 import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import {
-  fromHandPlace,
-  makeHandPlaceSteps,
-  readHandPlace,
-  toHandPlace,
-  writeHandPlace,
-} from 'threepoint-rooms/protocol/hand-place';
+  fromRelativePosition,
+  makeRelativePositionSteps,
+  readRelativePosition,
+  toRelativePosition,
+  writeRelativePosition,
+} from 'threepoint-rooms/protocol/relative-position';
 import { expect, test } from 'vitest';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 
 /** What a receiver makes of a hand, in five bytes. */
 function received(head: Vec3, hand: Vec3): Vec3 {
-  const steps = makeHandPlaceSteps();
-  toHandPlace(head, hand, steps);
+  const steps = makeRelativePositionSteps();
+  toRelativePosition(head, hand, steps);
   const writer = createBitWriter();
-  writeHandPlace(writer, steps);
+  writeRelativePosition(writer, steps);
   const bytes = writer.bytes();
   expect(bytes).toHaveLength(5);
-  const read = makeHandPlaceSteps();
-  expect(readHandPlace(createBitReader(bytes), read)).toBe(true);
+  const read = makeRelativePositionSteps();
+  expect(readRelativePosition(createBitReader(bytes), read)).toBe(true);
   expect(read).toEqual(steps);
-  return fromHandPlace(head, read, vec3(0, 0, 0));
+  return fromRelativePosition(head, read, vec3(0, 0, 0));
 }
 
 const axes = ['x', 'y', 'z'] as const;
@@ -59,13 +59,13 @@ test('codes that no hand has are refused: those above all, and coarse places whe
     const writer = createBitWriter();
     writer.write(high, 20);
     writer.write(low, 20);
-    return readHandPlace(createBitReader(writer.bytes()), makeHandPlaceSteps());
+    return readRelativePosition(createBitReader(writer.bytes()), makeRelativePositionSteps());
   };
   expect(read(2 ** 20 - 1, 2 ** 20 - 1)).toBe(false);
   const coarse = (x: number): boolean => {
     const writer = createBitWriter();
-    writeHandPlace(writer, { far: true, x, y: 0, z: 0 });
-    return readHandPlace(createBitReader(writer.bytes()), makeHandPlaceSteps());
+    writeRelativePosition(writer, { far: true, x, y: 0, z: 0 });
+    return readRelativePosition(createBitReader(writer.bytes()), makeRelativePositionSteps());
   };
   expect(coarse(1388)).toBe(false);
   expect(coarse(1389)).toBe(true);

@@ -6,16 +6,16 @@ import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-
 import {
   type ClientMessage,
   clientMessageFrom,
-  longestMessage,
+  maxMessageBytes,
   packSeatInfo,
   protocolVersion,
   unpackSeatInfo,
 } from 'threepoint-rooms/protocol/messages';
-import { cleanName } from 'threepoint-rooms/protocol/names';
+import { cleanName } from 'threepoint-rooms/protocol/player-name';
 import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { poseVersion } from 'threepoint-rooms/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/socket-parsers';
-import { longestDescription, mostCandidates } from 'threepoint-rooms/protocol/voice-messages';
+import { maxCandidates, maxDescriptionLength } from 'threepoint-rooms/protocol/voice-messages';
 import { describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { noPackets } from './no-packets';
@@ -76,14 +76,14 @@ describe('control messages', () => {
 
   test('a signal that is as long as it may be fits into a message', () => {
     const line = 'a=rtpmap:111 opus/48000/2\r\n';
-    const sdp = line.repeat(Math.floor(longestDescription / line.length));
+    const sdp = line.repeat(Math.floor(maxDescriptionLength / line.length));
     const offer = { type: 'signal', to: 'a'.repeat(16), body: { description: { type: 'offer', sdp } } };
     const candidate = `candidate:1 1 udp 2113937151 ${'f'.repeat(36)}.local 53186 typ host generation 0 network-cost 999`;
     const told = { ...address, candidate, usernameFragment: 'abcd' };
-    const addresses = { type: 'signal', to: 'a'.repeat(16), body: { candidates: Array(mostCandidates).fill(told) } };
+    const addresses = { type: 'signal', to: 'a'.repeat(16), body: { candidates: Array(maxCandidates).fill(told) } };
     for (const message of [offer, addresses]) {
       expect(clientMessageFrom(message)).toEqual(message);
-      expect(`2["/",["message",${JSON.stringify(message)}]]`.length).toBeLessThanOrEqual(longestMessage);
+      expect(`2["/",["message",${JSON.stringify(message)}]]`.length).toBeLessThanOrEqual(maxMessageBytes);
     }
   });
 

@@ -12,7 +12,7 @@ import { add, distance, right, vec3 } from 'threepoint/core/math/vec3';
 import { fingerFields } from 'threepoint-rooms/protocol/finger-steps';
 import { decodePoints, decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { packetLengthAt } from 'threepoint-rooms/protocol/pose-layout';
-import { longestPose, type PosePacket, poseVersion } from 'threepoint-rooms/protocol/pose-packet';
+import { maxPosePacketBytes, type PosePacket, poseVersion } from 'threepoint-rooms/protocol/pose-packet';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { cases, isNightly } from '../../nightly';
 import { seed } from '../../threepoint/core/arbitraries';
@@ -124,7 +124,7 @@ describe('a body on the wire', () => {
     const runs = cases(100);
     await measure(worst, pinnedSenders, pinnedPacketOf, runs);
     console.log(`pose codec, pinned, ${runs} bodies, worst: ${worst.told()}`);
-    expect(worst.of('bytes')).toBeLessThanOrEqual(longestPose);
+    expect(worst.of('bytes')).toBeLessThanOrEqual(maxPosePacketBytes);
     expect(worst.of('head and hands [mm]')).toBeLessThan(1);
     expect(worst.of('wrists at their hands [mm]')).toBeLessThan(1);
     expect(worst.of('joints [mm]')).toBeLessThan(10);
@@ -164,9 +164,9 @@ describe('a body on the wire', () => {
           return angleBetween(bone, sent[`${side}Hand`].orientation) < 0.01;
         });
         if (asHeld) unbroken += 1;
-        expect(encodePose(packet, skeleton)!.length).toBeLessThanOrEqual(longestPose);
+        expect(encodePose(packet, skeleton)!.length).toBeLessThanOrEqual(maxPosePacketBytes);
         const fingerless = encodePose({ ...packet, fingers: unknownFingers }, skeleton)!;
-        expect(fingerless.length).toBeLessThanOrEqual(asHeld ? 56 : longestPose);
+        expect(fingerless.length).toBeLessThanOrEqual(asHeld ? 56 : maxPosePacketBytes);
       }),
       { seed, numRuns: 200 },
     );

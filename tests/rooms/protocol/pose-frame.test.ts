@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { mostSeats } from 'threepoint-rooms/protocol/messages';
+import { maxSeats } from 'threepoint-rooms/protocol/messages';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame, encodeFrame, frameLength, type SeatPose, writeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { beforeAll, describe, expect, test } from 'vitest';
@@ -24,7 +24,7 @@ beforeAll(async () => {
   }
 });
 
-const onSeats = fc.array(fc.tuple(fc.nat(mostSeats - 1), fc.nat(389)), { minLength: 1, maxLength: 24 });
+const onSeats = fc.array(fc.tuple(fc.nat(maxSeats - 1), fc.nat(389)), { minLength: 1, maxLength: 24 });
 const posesOf = (choices: readonly (readonly [number, number])[]): SeatPose[] =>
   choices.map(([seat, index]) => ({ seat, bytes: packets[index]! })).sort((a, b) => a.seat - b.seat);
 const plain = (poses: readonly SeatPose[] | null) => poses?.map(({ seat, bytes }) => [seat, [...bytes]]);
@@ -44,7 +44,7 @@ describe('frames of poses', () => {
 
   test('leave one seat out, and begin where they are told to', () => {
     fc.assert(
-      fc.property(onSeats, fc.nat(mostSeats - 1), fc.nat(5), (choices, except, at) => {
+      fc.property(onSeats, fc.nat(maxSeats - 1), fc.nat(5), (choices, except, at) => {
         const poses = posesOf(choices);
         const others = poses.filter(({ seat }) => seat !== except);
         expect(frameLength(poses, except)).toBe(others.reduce((sum, { bytes }) => sum + bytes.length, 0));

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { angleBetween } from 'threepoint/core/math/quat';
 import { dot } from 'threepoint/core/math/vec3';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bits';
+import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import {
   fromDirectionSteps,
   fromQuatSteps,

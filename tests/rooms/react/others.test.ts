@@ -2,7 +2,7 @@ import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { createElement, createRef } from 'react';
 import { type JoinedRoom, joinRoom } from 'threepoint-rooms/drawing/join-room';
-import { Others, type OthersProps } from 'threepoint-rooms/react';
+import { RoomAvatars, type RoomAvatarsProps } from 'threepoint-rooms/react';
 import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { beforeEach, expect, onTestFinished, test } from 'vitest';
 import { openCanvas } from '../../threepoint/api/canvas';
@@ -24,9 +24,9 @@ async function opened() {
   const canvas = await openCanvas();
   const url = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
   const ref = createRef<JoinedRoom>();
-  const options: OthersProps = { url, name: 'Ann', body: solvedActor(), storage: null, ref };
-  const show = (props: Partial<OthersProps> = {}, strict = false) =>
-    canvas.show(createElement(Others, { ...options, ...props }), { strict });
+  const options: RoomAvatarsProps = { url, name: 'Ann', body: solvedActor(), storage: null, ref };
+  const show = (props: Partial<RoomAvatarsProps> = {}, strict = false) =>
+    canvas.show(createElement(RoomAvatars, { ...options, ...props }), { strict });
   return { canvas, rooms, url, ref, show };
 }
 

@@ -7,7 +7,7 @@ import { distance } from 'threepoint/core/math/vec3';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { longestPose } from 'threepoint-rooms/protocol/pose-packet';
+import { maxPosePacketBytes } from 'threepoint-rooms/protocol/pose-packet';
 import { expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
@@ -58,8 +58,8 @@ async function mutations(chance: () => number) {
     () => flipped(some(), () => below(40 * 8)),
     () => flipped(some(), () => below(31)),
     () => some().map((byte) => (chance() < 0.05 ? below(256) : byte)),
-    () => some().slice(0, below(longestPose + 1)),
-    () => Uint8Array.from([...some(), ...some().slice(0, below(40))]).slice(0, longestPose),
+    () => some().slice(0, below(maxPosePacketBytes + 1)),
+    () => Uint8Array.from([...some(), ...some().slice(0, below(40))]).slice(0, maxPosePacketBytes),
   ];
   function flipped(bytes: Uint8Array, bit: () => number): Uint8Array {
     for (let flips = 1 + below(4); flips > 0; flips--) {

@@ -1,5 +1,5 @@
 import { ballMatchTime, ballSecondsLeft } from 'threepoint-games/ball/state-readings';
-import { poseMemory } from 'threepoint-rooms/room/pose-validator';
+import { poseRetentionSeconds } from 'threepoint-rooms/room/pose-validator';
 import { describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { createTestRoom } from './test-room';
@@ -197,7 +197,7 @@ describe('where a player was', () => {
       testRoom.pose('cal', 2, holding(opening));
     }
     expect(testRoom.time - silent).toBeLessThanOrEqual(2);
-    expect(testRoom.time - silent).toBeGreaterThan(poseMemory - 0.1);
+    expect(testRoom.time - silent).toBeGreaterThan(poseRetentionSeconds - 0.1);
     expect(match().players[0]).toMatchObject({ present: true, left: null, right: null });
     expect(match().players[2]?.head).not.toBeNull();
     // Not even the fault that compares with it: a player who comes back may stand anywhere.

@@ -4,7 +4,7 @@ import { addScaled, isFiniteVec3, vec3 } from 'threepoint/core/math/vec3';
 import { ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
 import type { BallAction, BallState } from 'threepoint-games/ball/ball-state';
-import { clientMessageFrom, mostSeats } from 'threepoint-rooms/protocol/messages';
+import { clientMessageFrom, maxSeats } from 'threepoint-rooms/protocol/messages';
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { relayParser } from 'threepoint-rooms/protocol/socket-parsers';
 import { Room } from 'threepoint-rooms/room/room';
@@ -309,7 +309,7 @@ describe('a page that comes at t = 60 s', () => {
   test('and of a room with as many seats as there may be', () => {
     const sent: number[] = [];
     const room = new Room(
-      countingPolicy(mostSeats),
+      countingPolicy(maxSeats),
       { id: 'room', epoch: 'one' },
       {
         send: (_, message) => sent.push(Buffer.byteLength(JSON.stringify(message))),
@@ -319,10 +319,10 @@ describe('a page that comes at t = 60 s', () => {
         refused: () => undefined,
       },
     );
-    for (let i = 0; i < mostSeats; i++)
+    for (let i = 0; i < maxSeats; i++)
       room.join(`c${i}`, `c${i}`, joinRequest({ name: '\u{1f600}'.repeat(10), avatar: 'x'.repeat(43) }), 1000);
     expect(room.census.free).toBe(0);
-    expect(sent).toHaveLength(mostSeats);
+    expect(sent).toHaveLength(maxSeats);
     expect(Math.max(...sent)).toBeLessThanOrEqual(2048);
   });
 });

@@ -43,7 +43,7 @@ async function threePlay(urls: readonly string[], room = 'game') {
   );
   for (const someone of people) {
     someone.place(someone.seat === 2 ? holding(opening) : fists(releaseOf(someone.seat)));
-    someone.connection.ready(true);
+    someone.connection.setReady(true);
   }
   await until('the match running', () => people.every(({ match }) => match.phase === 'running'));
   return people;
@@ -70,7 +70,7 @@ test('the relay is killed in the middle of a game and restarted when all have tr
   printFigures('relay killed', { 'rejoined after [s]': percentile(back, 0.95), port: again.port });
   expect(percentile(back, 0.95)).toBeLessThan(5);
   expect(people.map(({ seat }) => seat)).toEqual(seats);
-  expect(people.map(({ connection }) => connection.room?.voided)).toEqual([1, 1, 1]);
+  expect(people.map(({ connection }) => connection.room?.voidedRounds)).toEqual([1, 1, 1]);
   expect(people.map(({ match }) => match.phase)).toEqual(['ready', 'ready', 'ready']);
 });
 
@@ -123,7 +123,7 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
     'freezes through it': Math.max(...pairs.map((pair) => pair?.counted ?? Number.NaN)),
     'with those of a busy machine': Math.max(...pairs.map((pair) => pair?.freezes ?? Number.NaN)),
     'machine busy [%]': 100 * busy,
-    'delay of playback [ms]': 1000 * (watching[behind]?.report(seatOf(near))?.delay ?? 0),
+    'delay of playback [ms]': 1000 * (watching[behind]?.report(seatOf(near))?.playoutOffset ?? 0),
   });
   // Less than one a minute, and one that a run may end with.
   for (const pair of pairs) expect(pair?.counted).toBeLessThanOrEqual(1 + lasting / 60);
@@ -150,7 +150,7 @@ test('a connection that is gone until its player has left the match comes back t
   expect(ann!.connection.room?.match?.phase).toBe('running');
   await until('the snapshot', () => ann!.news.filter((word) => word === 'welcome').length > welcomes);
   expect(ann!.news.filter((word) => word === 'welcome').length).toBe(welcomes + 1);
-  expect(ann!.connection.room?.voided).toBe(0);
+  expect(ann!.connection.room?.voidedRounds).toBe(0);
 });
 
 test('500 clients reconnect at once', async () => {

@@ -1,7 +1,7 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import type { BallState } from 'threepoint-games/ball/ball-state';
-import { bannerText } from 'threepoint-rooms/client/banner';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
+import { bannerText } from 'threepoint-rooms/client/connection-text';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
@@ -94,12 +94,12 @@ describe('a relay', () => {
         'all seats taken',
         all(({ connection }) => connection.room?.seats.every(Boolean) ?? false),
       );
-      for (const person of people) person.connection.ready(true);
+      for (const person of people) person.connection.setReady(true);
       await until(
         'the match running',
         all(({ match }) => match.phase === 'running'),
       );
-      ann.connection.pause(true);
+      ann.connection.setPaused(true);
       await until(
         'the pause',
         all(({ connection }) => connection.room?.paused ?? false),
@@ -112,7 +112,7 @@ describe('a relay', () => {
       );
       expect(server.relay.host.room('study')?.match.tick).toBe(stands);
       expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
-      ann.connection.pause(false);
+      ann.connection.setPaused(false);
       await until(
         'the match going on',
         all(({ match, connection }) => !connection.room?.paused && match.tick > stands),
@@ -133,7 +133,7 @@ describe('a relay', () => {
       for (const person of people) {
         if (person.seat === 2) person.place(holding(opening));
         else person.place(fists(releaseOf(person.seat)));
-        person.connection.ready(true);
+        person.connection.setReady(true);
       }
       await until('the match running', () => people.every(({ match }) => match.phase === 'running'));
       const thrower = people.find(({ seat }) => seat === 0)!;

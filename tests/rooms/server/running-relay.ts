@@ -13,7 +13,7 @@ import { serve } from 'threepoint-http/web-server';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
-import { mostSeats, protocolVersion, type RoomTerms } from 'threepoint-rooms/protocol/messages';
+import { maxSeats, protocolVersion, type RoomTerms } from 'threepoint-rooms/protocol/messages';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { messageEvent, pageParser } from 'threepoint-rooms/protocol/socket-parsers';
 import { createRelay } from 'threepoint-rooms/server/relay';
@@ -34,7 +34,7 @@ export async function startRelay(environment: Record<string, string> = {}, port 
     perAddress: configuration.connectionsPerAddress,
     behindProxy: configuration.trustProxy,
   });
-  const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(mostSeats)]]);
+  const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(maxSeats)]]);
   const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);
   const server = await serve(createRouter([relay.service], noPage), {
     host: '127.0.0.1',
@@ -81,7 +81,7 @@ export function arrive(
     room,
     visitor: visitor(name, more),
     pass,
-    clock: { now, leftOut: 0 },
+    clock: { now, skippedSeconds: 0 },
   });
   const person = createPerson(connection);
   let frames: ((time: number) => void) | null = null;

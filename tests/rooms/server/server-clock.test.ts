@@ -24,7 +24,7 @@ test('a match goes on when the server’s clock goes an hour ahead and an hour b
   await until('all seated', () => people.every(({ connection }) => connection.room?.seats.every(Boolean)));
   for (const person of people) {
     person.place(person.seat === 2 ? holding(opening) : fists(releaseOf(person.seat)));
-    person.connection.ready(true);
+    person.connection.setReady(true);
   }
   await until('the match running', () => people.every(({ match }) => match.phase === 'running'));
   const { seat } = ann;
@@ -43,10 +43,10 @@ test('a match goes on when the server’s clock goes an hour ahead and an hour b
   }
   expect(joined()).toBe(3);
   expect(people.map(({ match }) => match.phase)).toEqual(['running', 'running', 'running']);
-  expect(ann.connection.room?.voided).toBe(0);
+  expect(ann.connection.room?.voidedRounds).toBe(0);
   reportFigures('server-clock', {
     'players gone': people.length - joined(),
-    'rounds void': ann.connection.room?.voided ?? 1,
+    'rounds void': ann.connection.room?.voidedRounds ?? 1,
   });
 });
 

@@ -13,7 +13,7 @@ const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 function talker(url: string, room: string, name: string) {
   const person = arrive(url, room, name);
   const heard: { readonly from: string; readonly body: SignalBody }[] = [];
-  person.connection.voices.listen({
+  person.connection.voices.setListener({
     onSeatsChanged: () => undefined,
     onSignal: (from, body) => heard.push({ from, body }),
   });
@@ -70,9 +70,9 @@ describe('the voices of a room', () => {
     await until('cal in', () => cal.connection.room !== null);
     cal.connection.voices.setVoice({ session: 'cals-page', muted: true });
     await until('cal known', () => Boolean(ann.voiceOf(2)));
-    ann.connection.voices.signal('bens-page', offer);
+    ann.connection.voices.sendSignal('bens-page', offer);
     await until('ben to hear', () => ben.heard.length > 0);
-    ben.connection.voices.signal('annas-page', { description: { type: 'answer', sdp: 'v=0\r\n' } });
+    ben.connection.voices.sendSignal('annas-page', { description: { type: 'answer', sdp: 'v=0\r\n' } });
     await until('ann to hear', () => ann.heard.length > 0);
     expect(ben.heard).toEqual([{ from: 'annas-page', body: offer }]);
     expect(ann.heard).toEqual([{ from: 'bens-page', body: { description: { type: 'answer', sdp: 'v=0\r\n' } } }]);
@@ -102,10 +102,10 @@ describe('the voices of a room', () => {
     await until('dot in', () => dot.connection.room !== null);
     const before = await refusals(server.url, 'no-receiver');
     // Ben is called so in both rooms.
-    other.connection.voices.signal('bens-page', offer);
-    ann.connection.voices.signal('annas-page', offer);
-    ann.connection.voices.signal('dots-page', offer);
-    dot.connection.voices.signal('bens-page', offer);
+    other.connection.voices.sendSignal('bens-page', offer);
+    ann.connection.voices.sendSignal('annas-page', offer);
+    ann.connection.voices.sendSignal('dots-page', offer);
+    dot.connection.voices.sendSignal('bens-page', offer);
     await expect.poll(() => refusals(server.url, 'no-receiver')).toBe(before + 3);
     expect([...dot.heard, ...ann.heard]).toEqual([]);
   });
@@ -146,7 +146,7 @@ describe('the voices of a room', () => {
 
   test('a page that connects to five others at once is within its budget', async () => {
     const { ann, ben } = await twoTalkers('busy');
-    for (let i = 0; i < 70; i++) ann.connection.voices.signal('bens-page', offer);
+    for (let i = 0; i < 70; i++) ann.connection.voices.sendSignal('bens-page', offer);
     await until('all of them', () => ben.heard.length === 70);
   });
 });

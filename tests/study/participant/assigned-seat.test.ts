@@ -5,7 +5,7 @@ import { createExperimenterClient, createParticipantClient } from 'threepoint-st
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { startServer } from '../../../server/start';
+import { startServer } from '../../../server/start-server';
 import { visitor } from '../../rooms/client/people';
 import { testSecret, until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';
@@ -13,7 +13,7 @@ import { paperPlan } from '../model/studies';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const trial = { step: 'ball/1/trial-1', run: 1 };
-const clock = { now: () => performance.now() / 1000, leftOut: 0 };
+const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
 
 /** The server as it is started, and what brings each of the first group to the court. */
 async function invited() {
@@ -77,11 +77,11 @@ test('a match of a group waits for all of it: one whose connection is lost is no
       return connection.room?.match;
     });
   await until('two seated', () => there.every(({ room }) => room !== null));
-  for (const connection of there) connection.ready(true);
+  for (const connection of there) connection.setReady(true);
   await until('two ready', () => matches().every((match) => match?.players.filter(({ ready }) => ready).length === 2));
   expect(matches().map((match) => match?.phase)).toEqual(['ready', 'ready']);
   const third = await come(late);
   await until('the third seated', () => third.room !== null);
-  third.ready(true);
+  third.setReady(true);
   await until('begun', () => matches().every((match) => match?.phase === 'running'));
 });

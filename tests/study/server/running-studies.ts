@@ -1,5 +1,5 @@
 import { join } from 'node:path';
-import type { WrongGuess } from 'threepoint-http/auth-throttle';
+import type { FailedAttempt } from 'threepoint-http/auth-throttle';
 import { GroupCommit } from 'threepoint-http/group-commit';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
@@ -39,7 +39,7 @@ interface InThisThread {
   readonly trustProxy?: boolean;
   /** Receives the lines of the log. */
   readonly log?: (line: string) => void;
-  readonly onWrongGuess?: (guess: WrongGuess) => void;
+  readonly onWrongGuess?: (guess: FailedAttempt) => void;
 }
 
 /** The studies' part of a server in the thread of the test, which shares its store. */
@@ -81,7 +81,7 @@ export interface ServedOptions {
   /** The disk under the store: resolves when what was written is on it. */
   readonly flush?: () => Promise<void>;
   /** How long nothing may move on a connection [ms]. */
-  readonly silenceMs?: number;
+  readonly idleTimeoutMs?: number;
 }
 
 /** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
@@ -90,19 +90,19 @@ export async function servedStudies({
   experimenterToken = experimenter,
   maxBytes = 2 ** 30,
   flush,
-  silenceMs = 30_000,
+  idleTimeoutMs = 30_000,
 }: ServedOptions = {}) {
   const opened = openStudyStore(file, { maxBytes });
   const commits = flush && new GroupCommit(flush);
-  const store = commits ? { ...opened, flushed: () => commits.flushed() } : opened;
+  const store = commits ? { ...opened, flushed: () => commits.flush() } : opened;
   const faults: string[] = [];
-  const wrongGuesses: WrongGuess[] = [];
+  const wrongGuesses: FailedAttempt[] = [];
   const service = studiesInThisThread({
     ...{ store, file, experimenterToken },
     onWrongGuess: (guess) => wrongGuesses.push(guess),
     log: (line) => faults.push(line),
   });
-  const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, silenceMs });
+  const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, idleTimeoutMs });
   onTestFinished(async () => {
     await server.close();
     store.close();

@@ -135,7 +135,7 @@ describe('the experimenter', () => {
   });
 
   test('exports for longer than a connection may be silent, several at once', async () => {
-    const { ask, store } = await servedPaperStudy({}, { silenceMs: 1000 });
+    const { ask, store } = await servedPaperStudy({}, { idleTimeoutMs: 1000 });
     const people = ['P01', 'P02'];
     for (const participant of people) store.records.store('paper', participant, completed(participant), now);
     const exported = people.map(async (participant) => {

@@ -4,10 +4,10 @@ import { openPorts } from './open-ports';
 
 test('what a frame leaves for later is done after it, in order', async () => {
   const done: string[] = [];
-  const { afterwards, close } = createAfterFrame();
+  const { schedule, close } = createAfterFrame();
   const tasks = new Promise<void>((resolve) => {
-    afterwards(() => done.push('first'));
-    afterwards(() => {
+    schedule(() => done.push('first'));
+    schedule(() => {
       done.push('second');
       resolve();
     });
@@ -21,12 +21,12 @@ test('what a frame leaves for later is done after it, in order', async () => {
 });
 
 test('a task may leave another for after the next frame', async () => {
-  const { afterwards, close } = createAfterFrame();
+  const { schedule, close } = createAfterFrame();
   const done: number[] = [];
   await new Promise<void>((resolve) =>
-    afterwards(() => {
+    schedule(() => {
       done.push(1);
-      afterwards(() => {
+      schedule(() => {
         done.push(2);
         resolve();
       });
@@ -39,12 +39,12 @@ test('a task may leave another for after the next frame', async () => {
 test('closed it does nothing that still waits, and keeps no process running', async () => {
   const open = openPorts();
   const done: string[] = [];
-  const { afterwards, close } = createAfterFrame();
+  const { schedule, close } = createAfterFrame();
   const other = createAfterFrame();
-  afterwards(() => done.push('late'));
+  schedule(() => done.push('late'));
   expect(openPorts()).toBeGreaterThan(open);
   close();
-  await new Promise<void>((resolve) => other.afterwards(resolve));
+  await new Promise<void>((resolve) => other.schedule(resolve));
   other.close();
   await expect.poll(openPorts).toBe(open);
   expect(done).toEqual([]);

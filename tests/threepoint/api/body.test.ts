@@ -174,7 +174,7 @@ describe('a body', () => {
     body.update(at(1 / 60), person);
     body.update(at(2 / 60), person);
     expect(told).toEqual([1.7, 1.8]);
-    expect(body.wearerCalibration).toEqual(calibration);
+    expect(body.userCalibration).toEqual(calibration);
   });
 
   test('with autoGrow off does not grow, and reports nothing', async () => {
@@ -233,7 +233,10 @@ describe('a body', () => {
       networks() {
         throw new Error('no networks here');
       },
-      events: { changed: () => told.push('changed'), fallback: (name, reason) => told.push(`${name}: ${reason}`) },
+      events: {
+        estimatorchange: () => told.push('changed'),
+        fallback: (name, reason) => told.push(`${name}: ${reason}`),
+      },
     });
     expect(told).toEqual([]);
     await body.setEstimator(estimator);
@@ -288,7 +291,7 @@ describe('a body that another moves', () => {
     const { body, told } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 120; frame++) body.update(standing(frame / 60, 1.7), other);
     expect(body.calibration).toEqual(other);
-    expect(body.wearerCalibration).toBe(defaultCalibration);
+    expect(body.userCalibration).toBe(defaultCalibration);
     for (let frame = 120; frame < 200; frame++) body.update(standing(frame / 60, 1.62));
     expect(told).toEqual([
       'found head',
@@ -342,7 +345,7 @@ describe('measures of a stand-in', () => {
 
   test('that are the wearer’s own go on while the wearer is given others', () => {
     const body = new Body({ estimator: 'ik', calibration });
-    body.update(at(0), body.wearerCalibration);
+    body.update(at(0), body.userCalibration);
     const person = { ...calibration };
     body.update(at(1 / 60), person);
     body.calibrate({ eyeHeight: 1.7, armSpan: 1.6 });

@@ -1,4 +1,4 @@
-import { EstimatorChoice } from 'threepoint/api/estimator-choice';
+import { EstimatorSelector } from 'threepoint/api/estimator-selector';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
@@ -37,7 +37,7 @@ function networkOn(provider: string): PoseRegressor {
 function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>, onChange = () => undefined) {
   const faults: string[] = [];
   const changes: string[] = [];
-  const choice = new EstimatorChoice({
+  const choice = new EstimatorSelector({
     estimator: 'ik',
     calibration: { eyeHeight: 1.6, armSpan: 1.4 },
     create: estimatorOf,
@@ -46,7 +46,7 @@ function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>,
       changes.push(`${choice.current.name} ${choice.regressor?.provider ?? 'alone'}`);
       onChange();
     },
-    onFault: (name, reason) => faults.push(`${name}: ${reason}`),
+    onUnavailable: (name, reason) => faults.push(`${name}: ${reason}`),
   });
   return { choice, faults, changes };
 }
@@ -56,7 +56,7 @@ describe('which estimator draws', () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice, faults } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
     const chosen = choice.setEstimator('learned');
-    expect([choice.wanted, choice.current.name]).toEqual(['learned', 'ik']);
+    expect([choice.selected, choice.current.name]).toEqual(['learned', 'ik']);
     arrive(networkOn('wasm'));
     await chosen;
     expect(choice.current.name).toBe('learned');
@@ -81,7 +81,7 @@ describe('which estimator draws', () => {
       throw new Error('learned.onnx: 404');
     });
     await choice.setEstimator('learned');
-    expect([choice.wanted, choice.current.name]).toEqual(['ik', 'ik']);
+    expect([choice.selected, choice.current.name]).toEqual(['ik', 'ik']);
     expect(choice.unavailable.learned).toBe('learned.onnx: 404');
     expect(faults).toEqual(['learned: learned.onnx: 404']);
   });
@@ -93,7 +93,7 @@ describe('which estimator draws', () => {
     });
     await choice.setEstimator('learned');
     await choice.setEstimator('paper');
-    expect([choice.wanted, choice.current.name, choice.regressor]).toEqual(['ik', 'ik', null]);
+    expect([choice.selected, choice.current.name, choice.regressor]).toEqual(['ik', 'ik', null]);
     expect(changes).toEqual(['learned wasm', 'ik alone']);
   });
 
@@ -102,17 +102,17 @@ describe('which estimator draws', () => {
     const other =
       name === 'paper' ? network : { ...network, contract: { ...network.contract, name: 'paper' as const } };
     const faults: string[] = [];
-    const choice = new EstimatorChoice({
+    const choice = new EstimatorSelector({
       estimator: 'ik',
       calibration: defaultCalibration,
       create: createEstimator,
       load: async () => other,
       onChange: () => undefined,
-      onFault: (network, reason) => faults.push(`${network}: ${reason}`),
+      onUnavailable: (network, reason) => faults.push(`${network}: ${reason}`),
     });
     await choice.setEstimator(name);
     const needed = networkOf(name);
-    expect([choice.wanted, choice.current.name]).toEqual(name === 'paper' ? ['ik', 'ik'] : ['device', 'device']);
+    expect([choice.selected, choice.current.name]).toEqual(name === 'paper' ? ['ik', 'ik'] : ['device', 'device']);
     expect(faults).toEqual([`${needed}: estimator “${needed}” needs the regressor of the same name`]);
   });
 
@@ -123,7 +123,7 @@ describe('which estimator draws', () => {
     await expect(choice.setEstimator(lerned)).rejects.toThrow(
       '“lerned” is not an estimator. Use one of hands-only, ik',
     );
-    expect([choice.wanted, choice.current.name]).toEqual(['learned', 'learned']);
+    expect([choice.selected, choice.current.name]).toEqual(['learned', 'learned']);
     expect(changes).toHaveLength(1);
   });
 
@@ -153,7 +153,7 @@ describe('which estimator draws', () => {
     await choice.setEstimator('device');
     choice.check();
     choice.check();
-    expect([choice.wanted, choice.current.name, choice.regressor]).toEqual(['device', 'device', null]);
+    expect([choice.selected, choice.current.name, choice.regressor]).toEqual(['device', 'device', null]);
     expect(choice.unavailable).toEqual({ learned: reason });
     expect(faults).toEqual([`learned: ${reason}`]);
     await choice.setEstimator('ik');
@@ -171,7 +171,7 @@ describe('which estimator draws', () => {
       },
     );
     await expect(choice.setEstimator('learned')).rejects.toThrow('a bug of the page');
-    expect([choice.wanted, choice.current.name, choice.regressor?.provider]).toEqual(['learned', 'learned', 'wasm']);
+    expect([choice.selected, choice.current.name, choice.regressor?.provider]).toEqual(['learned', 'learned', 'wasm']);
     expect([choice.unavailable, faults]).toEqual([{}, []]);
   });
 

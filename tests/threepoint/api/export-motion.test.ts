@@ -6,7 +6,7 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator, needsRegressor } from 'threepoint/core/estimation/estimators';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { distance } from 'threepoint/core/math/vec3';
-import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { createJointPoses } from 'threepoint/core/motion/file-motion';
 import { poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
 import { turnPoint } from 'threepoint/core/motion/skeleton';
 import { finishWork } from 'threepoint/core/motion/work';
@@ -34,10 +34,10 @@ const textOf = (parts: readonly unknown[]): string => parts.join('');
 
 describe('a recording', () => {
   test.each(['ik', 'learned', 'paper'] as const)('becomes the BVH of what %s draws live, within 1 mm', async (name) => {
-    const { parts, extension } = await exportMotion(recording, { to: 'bvh', estimator: name, networks });
+    const { parts, extension } = await exportMotion(recording, { format: 'bvh', estimator: name, networks });
     expect(extension).toBe('bvh');
     const file = finishWork(readBvh(textOf(parts)));
-    const pose = makeJointPoses(file.joints.length);
+    const pose = createJointPoses(file.joints.length);
     const regressor = needsRegressor(name) ? await networks(name) : null;
     const live = createEstimator(name, defaultCalibration, regressor);
     const skeleton = skeletonFromCalibration(defaultCalibration);
@@ -53,25 +53,27 @@ describe('a recording', () => {
     await regressor?.dispose();
   });
 
-  test.each(['csv', 'vrma'] as const)('becomes a file of kind %s', async (to) => {
-    const { parts, extension, type } = await exportMotion(recording, { to, estimator: 'ik' });
-    expect(extension).toBe(to);
+  test.each(['csv', 'vrma'] as const)('becomes a file of kind %s', async (format) => {
+    const { parts, extension, type } = await exportMotion(recording, { format, estimator: 'ik' });
+    expect(extension).toBe(format);
     expect(new Blob([...parts], { type }).size).toBeGreaterThan(10_000);
   });
 
   test('is refused in a sentence where the device’s body is asked for and no frame has one', async () => {
-    await expect(exportMotion(recording, { to: 'csv', estimator: 'device', networks })).rejects.toThrow(
+    await expect(exportMotion(recording, { format: 'csv', estimator: 'device', networks })).rejects.toThrow(
       'The recording has no device body. Choose another method.',
     );
     const seen = { ...recording.frames[3]!, deviceBody: new Float32Array(deviceBodySize) };
     const some = { ...recording, frames: recording.frames.with(3, seen) };
-    expect((await exportMotion(some, { to: 'csv', estimator: 'device', networks })).extension).toBe('csv');
+    expect((await exportMotion(some, { format: 'csv', estimator: 'device', networks })).extension).toBe('csv');
   });
 
   test('is refused in a sentence where the method draws no body', async () => {
-    await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/estimates no body/);
-    await expect(exportMotion(recording, { to: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
-    await expect(exportMotion(recording, { to: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
+    await expect(exportMotion(recording, { format: 'bvh', estimator: 'hands-only' })).rejects.toThrow(
+      /estimates no body/,
+    );
+    await expect(exportMotion(recording, { format: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
+    await expect(exportMotion(recording, { format: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
       /“fbx” is not a motion format/,
     );
   });
@@ -86,7 +88,7 @@ describe('a recording', () => {
     ] as const;
     const frames = recording.frames.with(5, slips[0]).with(9, slips[1]).with(12, slips[2]);
     for (const calibration of [defaultCalibration, null]) {
-      const { parts } = await exportMotion({ ...recording, calibration, frames }, { to: 'csv', estimator: 'ik' });
+      const { parts } = await exportMotion({ ...recording, calibration, frames }, { format: 'csv', estimator: 'ik' });
       const rows = textOf(parts).trimEnd().split('\n').slice(1);
       expect(rows).toHaveLength(recording.frames.length - 1);
       expect(rows.flatMap((row) => row.split(',').map(Number)).every(Number.isFinite)).toBe(true);
@@ -96,28 +98,28 @@ describe('a recording', () => {
   test.each<[string, () => Promise<unknown>, RegExp]>([
     [
       'of a person of centimetres',
-      () => exportMotion(recording, { to: 'csv', estimator: 'ik', calibration: { eyeHeight: 160, armSpan: 151 } }),
+      () => exportMotion(recording, { format: 'csv', estimator: 'ik', calibration: { eyeHeight: 160, armSpan: 151 } }),
       /^A height of 170\.94 m is outside/,
     ],
     [
       'with an option that there is not',
       // reason: what a page without types may pass
-      () => exportMotion(recording, { to: 'csv', format: 'csv' } as Parameters<typeof exportMotion>[1]),
-      /^“format” is not an option of exportMotion\. Use to, estimator, /,
+      () => exportMotion(recording, { format: 'csv', to: 'csv' } as Parameters<typeof exportMotion>[1]),
+      /^“to” is not an option of exportMotion\. Use format, estimator, /,
     ],
     [
       'of no frames',
-      () => exportMotion({ ...recording, frames: [] }, { to: 'bvh', estimator: 'ik' }),
+      () => exportMotion({ ...recording, frames: [] }, { format: 'bvh', estimator: 'ik' }),
       /^The recording has no frame in which the head is seen\.$/,
     ],
     [
       'that runs backwards',
-      () => exportMotion({ ...recording, frames: recording.frames.toReversed() }, { to: 'bvh', estimator: 'ik' }),
+      () => exportMotion({ ...recording, frames: recording.frames.toReversed() }, { format: 'bvh', estimator: 'ik' }),
       /^Frame 2 of the recording is not later/,
     ],
     [
       'in inches',
-      () => exportMotion(recording, { to: 'bvh', estimator: 'ik', unit: 'inch' as 'm' }),
+      () => exportMotion(recording, { format: 'bvh', estimator: 'ik', unit: 'inch' as 'm' }),
       /^“inch” is not a unit of a BVH file. Use m or cm.$/,
     ],
   ])('%s is refused in a sentence', async (_, work, sentence) => {
@@ -127,13 +129,13 @@ describe('a recording', () => {
   test('says in a table that a hand was not seen where the device guessed it', async () => {
     const guessed = { ...recording.frames[3]!.leftHand!, tracking: 'emulated' as const };
     const frames = recording.frames.with(3, { ...recording.frames[3]!, leftHand: guessed });
-    const { parts } = await exportMotion({ ...recording, frames }, { to: 'csv', estimator: 'ik' });
+    const { parts } = await exportMotion({ ...recording, frames }, { format: 'csv', estimator: 'ik' });
     const rows = textOf(parts).split('\n').slice(1);
     expect(rows.slice(2, 5).map((row) => row.split(',').slice(1, 3).join())).toEqual(['1,1', '0,1', '1,1']);
   });
 
   test('without measures is of a person as tall as its first frame shows', async () => {
-    const { parts } = await exportMotion({ ...recording, calibration: null }, { to: 'csv', estimator: 'ik' });
+    const { parts } = await exportMotion({ ...recording, calibration: null }, { format: 'csv', estimator: 'ik' });
     const [header, row] = textOf(parts).split('\n');
     const at = header!.split(',').indexOf('head_y');
     expect(Number(row!.split(',')[at])).toBeGreaterThan(1.3);
@@ -145,10 +147,10 @@ describe('a long export', () => {
     const told: number[] = [];
     const left: (number | null)[] = [];
     await exportMotion(recordingOf(20), {
-      to: 'bvh',
+      format: 'bvh',
       estimator: 'ik',
-      onProgress({ share, secondsLeft }) {
-        told.push(share);
+      onProgress({ fraction, secondsLeft }) {
+        told.push(fraction);
         left.push(secondsLeft);
       },
     });
@@ -162,7 +164,7 @@ describe('a long export', () => {
     const timer = setInterval(() => {
       turns += 1;
     }, 0);
-    await exportMotion(recordingOf(20), { to: 'bvh', estimator: 'ik' });
+    await exportMotion(recordingOf(20), { format: 'bvh', estimator: 'ik' });
     clearInterval(timer);
     expect(turns).toBeGreaterThan(3);
   });
@@ -175,7 +177,7 @@ describe('a long export', () => {
       arrive = resolve;
     });
     const asked = vi.fn(() => loading);
-    const work = exportMotion(recording, { to: 'bvh', networks: asked, signal: giveUp.signal });
+    const work = exportMotion(recording, { format: 'bvh', networks: asked, signal: giveUp.signal });
     const refused = expect(work).rejects.toThrow('enough');
     await expect.poll(() => asked.mock.calls.length).toBeGreaterThan(0);
     giveUp.abort(new Error('enough'));
@@ -189,7 +191,7 @@ describe('a long export', () => {
     let disposed = 0;
     const network = openPlainModel();
     const work = exportMotion(recordingOf(20), {
-      to: 'bvh',
+      format: 'bvh',
       estimator: 'learned',
       networks: async () => ({
         ...network,

@@ -20,7 +20,7 @@ test('a program of Node has the learned network from the disk, without a word of
 test('a program of Node makes files of motion by the learned method, which is the default', async () => {
   const frames = Array.from({ length: 30 }, (_, i) => actorFrame(2 + i / 60, defaultCalibration));
   const recording: Recording = { device: 'actor', rateHz: 60, calibration: defaultCalibration, frames };
-  const { parts } = await exportMotion(recording, { to: 'bvh' });
+  const { parts } = await exportMotion(recording, { format: 'bvh' });
   expect(parts.join('')).toMatch(/^HIERARCHY/);
 });
 

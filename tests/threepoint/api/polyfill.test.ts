@@ -150,8 +150,8 @@ test('a program without a window, such as one of Node, is refused in a sentence'
 
 test('an option that it does not know is refused', () => {
   // reason: what a page without types may pass
-  expect(() => installBodyTracking({ onfault: () => undefined } as object)).toThrow(
-    '“onfault” is not an option of installBodyTracking. Use onFault, ',
+  expect(() => installBodyTracking({ onwarning: () => undefined } as object)).toThrow(
+    '“onwarning” is not an option of installBodyTracking. Use onWarning, ',
   );
 });
 
@@ -164,7 +164,7 @@ test('a page that handles no fault is warned of a session without a floor, and o
   await vi.waitFor(() => expect(warn).toHaveBeenCalledTimes(2));
   const warned = warn.mock.calls.flat().sort();
   expect(warned).toEqual([
-    expect.stringMatching(/“learned”: learned\.bin: gone\. Handle “onFault”/),
-    expect.stringMatching(/no body: .*not supported\. Handle “onFault”/),
+    expect.stringMatching(/“learned”: learned\.bin: gone\. Handle “onWarning”/),
+    expect.stringMatching(/no body: .*not supported\. Handle “onWarning”/),
   ]);
 });

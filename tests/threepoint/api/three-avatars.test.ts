@@ -1,4 +1,4 @@
-import { avatarMotion, loadAvatar } from 'threepoint/api/three';
+import { avatarMotionWriter, loadAvatar } from 'threepoint/api/three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { closedHand, type Fingers, flatHand } from 'threepoint/core/body/hand-shape';
 import { createIk } from 'threepoint/core/estimation/estimators';
@@ -67,7 +67,7 @@ describe('an avatar', () => {
     await expect(loadAvatar(foreign, { bones: handless })).rejects.toThrow('its humanoid has no leftHand');
   });
 
-  test.each(Object.entries({ loadAvatar, avatarMotion }))(
+  test.each(Object.entries({ loadAvatar, avatarMotionWriter: avatarMotionWriter }))(
     'that has not arrived whole is refused by %s',
     async (_, take) => {
       await expect(take(mannequin().slice(0, -4))).rejects.toThrow(

@@ -125,7 +125,7 @@ describe('a body in a session of three.js', () => {
   test('reports no end of a session whose frames it never read', async () => {
     const { headset, tracker, told } = await begin({ calibration: defaultCalibration });
     headset.putOn();
-    tracker.updateFrom(standing);
+    tracker.updateFromFrame(standing);
     headset.takeOff();
     expect(told.filter((line) => line.startsWith('session'))).toEqual([]);
   });
@@ -156,7 +156,7 @@ describe('a body in a session of three.js', () => {
   test('goes on after a frame of the page’s own with a time that is no number', async () => {
     const { tracker } = await begin({ calibration: defaultCalibration });
     const wearer = (time: number) => actorFrame(time, defaultCalibration);
-    for (let i = 0; i < 72; i++) tracker.updateFrom({ ...wearer(i / 72), ...(i === 20 && { time: Number.NaN }) });
+    for (let i = 0; i < 72; i++) tracker.updateFromFrame({ ...wearer(i / 72), ...(i === 20 && { time: Number.NaN }) });
     const turned: number[] = [];
     tracker.object.traverse(({ quaternion }) => turned.push(...quaternion));
     expect(turned.every(Number.isFinite)).toBe(true);
@@ -206,7 +206,7 @@ describe('a body in a session of three.js', () => {
 
   test('a frame of the page’s own moves it without a session', async () => {
     const { tracker } = await begin({ calibration: defaultCalibration });
-    tracker.updateFrom(standing);
+    tracker.updateFromFrame(standing);
     expect(tracker.object.visible).toBe(true);
     expect(ownHeadSeen(tracker)).toBe(true);
   });
@@ -214,11 +214,11 @@ describe('a body in a session of three.js', () => {
   test('of a page’s own frames hides its head from the wearer of a session, but shows them the head of a stand-in', async () => {
     const { headset, tracker } = await begin({ calibration: defaultCalibration });
     headset.putOn();
-    tracker.updateFrom(standing);
+    tracker.updateFromFrame(standing);
     expect(ownHeadSeen(tracker)).toBe(false);
-    tracker.updateFrom({ ...standing, time: 1.1 }, defaultCalibration);
+    tracker.updateFromFrame({ ...standing, time: 1.1 }, defaultCalibration);
     expect(ownHeadSeen(tracker)).toBe(true);
-    tracker.updateFrom({ ...standing, time: 1.2 });
+    tracker.updateFromFrame({ ...standing, time: 1.2 });
     headset.takeOff();
     expect(ownHeadSeen(tracker)).toBe(true);
   });
@@ -235,7 +235,7 @@ describe('a body in a session of three.js', () => {
     headset.setHead({ position: { x: 1, y: 1.6, z: 0 }, orientation: identity });
     const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
     run(2);
-    tracker.updateFrom(standing);
+    tracker.updateFromFrame(standing);
     expect(warn.mock.calls).toEqual([[expect.stringContaining('“update” has no effect after “dispose”')]]);
     warn.mockRestore();
     tracker.recentre();

@@ -3,7 +3,7 @@ import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } f
 import { validateBytes } from 'gltf-validator';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { avatarClip } from 'threepoint/avatar/avatar-clip';
+import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
 import { turnPoint } from 'threepoint/core/motion/skeleton';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';

@@ -1,7 +1,7 @@
 import type { Vector3 } from 'three';
-import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
-import type { Holding } from 'threepoint/avatar/hands/holding';
-import { fingerBonesOf } from 'threepoint/core/body/finger-bones';
+import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
+import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import { fingerBoneNames } from 'threepoint/core/body/finger-bone-names';
 import { distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
 import { type FingerName, fingerNames, type MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimators';
@@ -118,7 +118,7 @@ describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (
 
     test.each(sides)('have no finger of the %s one in it, and fingertips on it', (side) => {
       for (const finger of fingerNames) {
-        const [, middle, end] = fingerBonesOf(side, finger) as [string, string, string];
+        const [, middle, end] = fingerBoneNames(side, finger) as [string, string, string];
         const gap = nearest(skin, [middle, end], (at) => distance(side, at, finger));
         expect(gap, finger).toBeGreaterThan(-flesh);
         if (finger !== 'thumb') expect(gap, finger).toBeLessThan(10);

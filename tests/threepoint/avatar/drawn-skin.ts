@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { SkinnedMesh, Vector3 } from 'three';
 import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import { Holding } from 'threepoint/avatar/hands/holding';
+import { Holding } from 'threepoint/avatar/hands/hold-object';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { type MutableHandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { makePose, type Pose } from 'threepoint/core/math/pose';

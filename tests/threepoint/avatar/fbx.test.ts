@@ -1,8 +1,8 @@
 import { deflateSync } from 'node:zlib';
-import { avatarClip } from 'threepoint/avatar/avatar-clip';
+import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
-import { MotionWithoutBody } from 'threepoint/avatar/file/motion-without-body';
+import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
+import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { builtFbx } from './built-fbx';

@@ -1,4 +1,4 @@
-import { createHeadLoss } from 'threepoint/avatar/rig/head-loss';
+import { createHeadLoss } from 'threepoint/avatar/head-loss-fade';
 import { describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 

@@ -1,4 +1,4 @@
-import { Holding } from 'threepoint/avatar/hands/holding';
+import { Holding } from 'threepoint/avatar/hands/hold-object';
 import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from 'threepoint/core/body/hand-geometry';
 import { fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { type Pose, transformPoint } from 'threepoint/core/math/pose';

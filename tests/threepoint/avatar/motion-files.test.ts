@@ -1,7 +1,7 @@
 import { deflateSync } from 'node:zlib';
 import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
-import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
-import { readGltfMotion } from 'threepoint/avatar/file/motion-source';
+import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
+import { readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { prepareMocap, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
 import { truthJoints } from 'threepoint/core/mocap/skeleton-map';

@@ -1,6 +1,6 @@
 import { deflateSync } from 'node:zlib';
+import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
-import { glbOfFile } from 'threepoint/avatar/file/glb-of-file';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';

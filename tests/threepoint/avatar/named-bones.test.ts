@@ -1,8 +1,8 @@
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
-import { withNamedBones } from 'threepoint/avatar/humanoid/name-bones';
 import { boneNode } from 'threepoint/avatar/humanoid/needed-bones';
-import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones';
+import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
+import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';

@@ -1,4 +1,4 @@
-import { Pace, reflectionSize } from 'threepoint/avatar/reflection-cost';
+import { Pace, reflectionSize } from 'threepoint/avatar/reflection-size';
 import { describe, expect, test } from 'vitest';
 
 /** Height to width of the page's mirror. */

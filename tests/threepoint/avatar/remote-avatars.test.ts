@@ -16,7 +16,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { PassingFault } from 'threepoint/core/errors/passing-fault';
+import { TransientError } from 'threepoint/core/errors/transient-error';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { transformPoint } from 'threepoint/core/math/pose';
 import { fromAxisAngle } from 'threepoint/core/math/quat';
@@ -161,7 +161,7 @@ describe('an avatar that could not be had', () => {
   }
 
   test('for a fault that passes is shown once it has loaded, and no mannequin is reported', async () => {
-    const { others, told, show, asked } = wearing([new PassingFault('the server answers 404'), null]);
+    const { others, told, show, asked } = wearing([new TransientError('the server answers 404'), null]);
     await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
     await show(4, () => asked() > 1, 100);
     expect([asked(), others.drawnAs(1)]).toEqual([1, plainAvatar]);
@@ -171,7 +171,7 @@ describe('an avatar that could not be had', () => {
   });
 
   test('for a fault that does not pass soon is reported once, and requested again and again', async () => {
-    const { told, show, asked } = wearing([new PassingFault('the server answers 404')]);
+    const { told, show, asked } = wearing([new TransientError('the server answers 404')]);
     for (let attempt = 1; attempt <= 6; attempt++) await show(10 * attempt, () => asked() === attempt);
     expect(asked()).toBe(6);
     expect(told).toEqual(['the server answers 404']);

@@ -1,7 +1,7 @@
 import { type Mesh, type MeshStandardMaterial, Texture } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { viewsOfFile } from 'threepoint/avatar/file/blob-buffer-views';
 import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
-import { viewsOfFile } from 'threepoint/avatar/file/views-of-file';
 import { describe, expect, test, vi } from 'vitest';
 import { glbOf, padded } from './glb';
 

@@ -1,4 +1,4 @@
-import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
 import type { BodyRig } from './rig';
 import {
   boxOf,
@@ -193,7 +193,7 @@ export function palmOf(rig: BodyRig, size: number): Region {
 
 export const fingersOf = ({ fingers, fingerPoint }: BodyRig): Region[] =>
   fingers.map((finger) => {
-    const names = fingerBones(finger.name);
+    const names = fingerBoneSuffixes(finger.name);
     const segment = (index: number): Part => {
       const from = fingerPoint(finger, index);
       const to = fingerPoint(finger, index + 1);

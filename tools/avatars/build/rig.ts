@@ -1,4 +1,4 @@
-import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
 import averageHand from 'threepoint/core/body/hand-geometry.json';
 import type { FingerName } from 'threepoint/core/body/hand-shape';
 import { type JointName, parentOf } from 'threepoint/core/body/joints';
@@ -128,9 +128,9 @@ export function makeRig({ shoulder, arm, hand = 1 }: RigMeasures = {}): BodyRig 
     { name: 'leftLowerArm', parent: 'leftUpperArm', joint: onArm(armJoints.elbow) },
     { name: 'leftHand', parent: 'leftLowerArm', joint: wrist },
     ...fingers.flatMap((finger) =>
-      fingerBones(finger.name).map((phalanx, index) => ({
+      fingerBoneSuffixes(finger.name).map((phalanx, index) => ({
         name: `left${phalanx}`,
-        parent: index === 0 ? 'leftHand' : `left${fingerBones(finger.name)[index - 1]}`,
+        parent: index === 0 ? 'leftHand' : `left${fingerBoneSuffixes(finger.name)[index - 1]}`,
         joint: fingerPoint(finger, index),
       })),
     ),

@@ -1,4 +1,4 @@
-import { fingersOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
+import { fingersOfButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
@@ -65,7 +65,7 @@ export function gesturesOf(of: BallConnection): BallGestures {
       // Asked only while there is a match: see `play`.
       state: seen?.match as BallState,
       arenaFromFloor: of.arenaFromFloor(seat),
-      matchAhead: seen?.matchAhead ?? 0,
+      matchAhead: seen?.matchClockOffset ?? 0,
     };
   });
 }
@@ -81,7 +81,7 @@ export function play(
   for (const action of done.actions) {
     if (!isHandAction(action)) continue;
     const { player: _, ...ownAction } = action;
-    of.act(ownAction);
+    of.sendAction(ownAction);
   }
   return done;
 }
@@ -230,14 +230,14 @@ export class BallBots {
     if (!seen || seen.mySeat === null || !seen.match) return;
     const { match, mySeat } = seen;
     bot.gestures ??= gesturesOf(line);
-    if (update.news.length > 0) bot.gestures.resume();
+    if (update.changes.length > 0) bot.gestures.resume();
     bot.gestures.onEvents(update.events);
     const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
     const mover = { line, gestures: bot.gestures, actor, estimator };
     for (const moment of momentsUntil(time, bot.movedAt)) moveOnce(mover, moment, this.sight);
     bot.movedAt = time;
     const me = match.players[mySeat];
-    if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) line.ready(true);
+    if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) line.setReady(true);
   }
 
   /** Returns the actor of a bot; a new one for another station or another round, except during a match. */

@@ -106,9 +106,9 @@ export function probeOf(
     aim: aim && length(aim.velocity),
     connection: connection.status.phase,
     /** Rounds cut short because the room had forgotten them. */
-    voided: connection.room?.voided ?? 0,
+    voided: connection.room?.voidedRounds ?? 0,
     /** How often the room has taken this page in: once, and again after each connection that was lost. */
-    welcomes: connection.room?.welcomes ?? 0,
+    welcomes: connection.room?.welcomeCount ?? 0,
     /** How many balls are in each kind of place. */
     balls: {
       rack: count('rack'),

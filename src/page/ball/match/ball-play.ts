@@ -88,9 +88,9 @@ export class BallPlay {
     if (this.room?.paused && this.begunAt !== null) this.sight.pausedSeconds += time - this.begunAt;
     this.begunAt = time;
     const update = this.client.update(time);
-    if (update.news.includes('resumed')) this.resumed = true;
+    if (update.changes.includes('resumed')) this.resumed = true;
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
-    if (update.news.length > 0) this.gestures?.resume();
+    if (update.changes.length > 0) this.gestures?.resume();
     this.gestures?.onEvents(update.events);
     if (this.connection) this.bots.seat(this.connection, time);
     this.bots.move(time);
@@ -131,7 +131,7 @@ export class BallPlay {
       state,
       epoch: before.epoch,
       connection: line.status.phase,
-      time: time + before.matchAhead,
+      time: time + before.matchClockOffset,
       me,
       role: me === null ? null : (state.players[me]?.role ?? null),
       rotate: before.rotate,
@@ -167,24 +167,24 @@ export class BallPlay {
   }
 
   ready(on: boolean): void {
-    this.connection?.ready(on);
+    this.connection?.setReady(on);
   }
 
   rotate(on: boolean): void {
-    this.connection?.rotate(on);
+    this.connection?.setRotation(on);
   }
 
   sit(seat: number | null): void {
-    this.connection?.sit(seat);
+    this.connection?.changeSeat(seat);
   }
 
   /** Pauses the match's clock, or withdraws the pause. Refused if the room's terms do not allow it. */
   pause(on: boolean): void {
-    this.connection?.pause(on);
+    this.connection?.setPaused(on);
   }
 
   away(on: boolean): void {
-    this.connection?.away(on);
+    this.connection?.setAway(on);
     this.bots.setAway(on && this.othersPlay);
   }
 
@@ -195,7 +195,7 @@ export class BallPlay {
 
   /** Shows the others this player with another avatar. */
   wear(avatar: AvatarRef): void {
-    this.connection?.wear(avatar);
+    this.connection?.setAvatar(avatar);
   }
 
   probe(): BallProbe | null {
@@ -227,7 +227,7 @@ export class BallPlay {
     if (!options.acting() || options.steering?.() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - this.waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {
-      this.connection?.ready(true);
+      this.connection?.setReady(true);
     }
   }
 }

@@ -47,7 +47,7 @@ class BallPanel implements ActivityPanel {
   }
 
   show(): void {
-    if (!this.#context.study.run) void this.#context.server.known();
+    if (!this.#context.study.run) void this.#context.server.whenKnown();
     this.#bar.show(this.#state(), this.#context.settings.sound);
   }
 
@@ -85,7 +85,7 @@ class BallPanel implements ActivityPanel {
   async #askServer(): Promise<void> {
     const { server, switches, reopen } = this.#context;
     const { state: before } = server;
-    if ((await server.ask()) === 'here' && before === 'none' && switches.room) reopen();
+    if ((await server.refresh()) === 'here' && before === 'none' && switches.room) reopen();
   }
 
   #invite(): void {

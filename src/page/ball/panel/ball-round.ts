@@ -1,6 +1,6 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballsLeft } from 'threepoint-games/ball/state-readings';
-import { bannerText, connectionText } from 'threepoint-rooms/client/banner';
+import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
 import { roleTexts } from '../court/court-plan';
 import type { BallFrame } from '../match/ball-frame';
 import type { BallPlay } from '../match/ball-play';
@@ -58,7 +58,7 @@ export function ballRound({ play, frame, players, secondsLeft, acting, voices }:
   const ended = play.status.phase === 'ended';
   const own = me === null ? null : state.players[me];
   const standing = { state, seconds: Math.ceil(secondsLeft), people: players, me, rotate, acting };
-  const delay = play.room?.delay ?? null;
+  const delay = play.room?.responseTime ?? null;
   return {
     phase: state.phase,
     score: state.score,

@@ -64,7 +64,7 @@ export class VoiceCall {
     for (const session of this.#linked) if (!others.includes(session)) this.#dropped.add(session);
     this.#linked.clear();
     for (const session of others) this.#linked.add(session);
-    this.#mesh.follow(seated ? this.#session : null, others);
+    this.#mesh.connectTo(seated ? this.#session : null, others);
   }
 
   configure(configuration: RTCConfiguration): void {
@@ -112,7 +112,7 @@ export class VoiceCall {
   /** Repairs connections and sound. Call it twice a second. `joined`: this page is connected to the room. */
   watch(joined: boolean): void {
     const { context } = this.#options;
-    this.#mesh.watch(performance.now() / 1000, joined);
+    this.#mesh.restartLost(performance.now() / 1000, joined);
     // A headset's sleep suspends audio too.
     if (context.state === 'suspended' && document.visibilityState === 'visible') void context.resume();
     this.#sound.mend();

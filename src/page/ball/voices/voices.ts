@@ -71,7 +71,7 @@ export class Voices {
     const { play } = this.#options;
     if (play.voices !== this.#line) {
       this.#line = play.voices;
-      this.#line?.listen({
+      this.#line?.setListener({
         onSeatsChanged: () => this.seats.update(),
         onSignal: (from, body) => this.#call?.receive(from, body),
       });
@@ -152,7 +152,7 @@ export class Voices {
 
   dispose(): void {
     this.#disposed = true;
-    this.#line?.listen(null);
+    this.#line?.setListener(null);
     this.leave();
   }
 
@@ -176,7 +176,7 @@ export class Voices {
     this.#call = new VoiceCall({
       context,
       configuration: this.#configurationOf(terms),
-      signal: (to, body) => this.#line?.signal(to, body),
+      signal: (to, body) => this.#line?.sendSignal(to, body),
       onSession: () => this.#announce(),
       onVoice: () => this.seats.applyBlocks(),
     });

@@ -1,5 +1,5 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import { Holding } from 'threepoint/avatar/hands/holding';
+import { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { HandGeometry } from 'threepoint/core/body/hand-geometry';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';

@@ -77,11 +77,11 @@ export class DesktopControls {
 
   #state(): PanelState {
     const { settings, body, stage, avatar, headset, recorder, motionExport } = this.#options;
-    const { eyeHeight, armSpan, forearm } = body.wearerCalibration;
+    const { eyeHeight, armSpan, forearm } = body.userCalibration;
     return {
       ...settings,
-      estimator: body.wanted,
-      unavailable: body.unavailable,
+      estimator: body.selectedEstimator,
+      unavailable: body.unavailableEstimators,
       view: stage.view.view,
       avatarName: avatar.current ? avatar.name : 'None yet',
       avatarPending: avatar.pending,

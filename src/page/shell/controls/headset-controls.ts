@@ -25,7 +25,7 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
   /** Draws the pointers. */
   readonly rays: VrPointers;
   readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;
-  readonly body: Pick<BodySolver, 'estimator' | 'unavailable' | 'calibration'>;
+  readonly body: Pick<BodySolver, 'estimator' | 'unavailableEstimators' | 'calibration'>;
   readonly activities: Pick<Activities, 'all' | 'current' | 'goTo' | 'setSound'>;
   readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered' | 'commands' | 'raised' | 'raise'>;
   readonly userCalibration: Pick<UserCalibration, 'recentre'>;

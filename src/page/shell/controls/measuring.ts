@@ -15,7 +15,7 @@ import type { Settings } from '../settings';
 import type { UserCalibration } from '../user-calibration';
 
 export interface MeasuringOptions {
-  readonly body: Pick<BodySolver, 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'userCalibration'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly settings: Pick<Settings, 'actor'>;
   readonly recorder: Pick<Recorder, 'mode'>;
@@ -43,7 +43,7 @@ export class Measuring {
       onStep: (step) => this.#show(step),
       // Three points do not determine the length of a forearm: a typed one stays.
       onMeasured: (calibration) =>
-        userCalibration.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
+        userCalibration.calibrateForGood(withForearm(calibration, body.userCalibration.forearm), 'measured'),
       closesItself: () => headset.worn,
     });
   }

@@ -1,5 +1,5 @@
 import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
-import type { MotionWriter } from 'threepoint/api/motion-export';
+import type { MotionWriter } from 'threepoint/api/motion-file';
 import type { MotionFormat } from 'threepoint/api/motion-formats';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -12,7 +12,7 @@ import type { ShownAvatar } from '../shown-avatar';
 
 export interface MotionExportOptions {
   readonly recorder: Pick<Recorder, 'recording' | 'name'>;
-  readonly body: Pick<BodySolver, 'wanted' | 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'selectedEstimator' | 'userCalibration'>;
   readonly avatar: Pick<ShownAvatar, 'name' | 'file'>;
   readonly networks: BodySolverOptions['networks'];
   readonly notices: Pick<Notices, 'show'>;
@@ -47,20 +47,20 @@ export class MotionExport {
     const { recorder, body, notices } = this.#options;
     const { recording, name } = recorder;
     if (!recording || !name || this.#state) return;
-    const estimator = body.wanted;
+    const estimator = body.selectedEstimator;
     const stem = name.replace(/\.json$/i, '');
     const { label } = estimatorTexts[estimator];
     this.#giveUp = new AbortController();
     const { signal } = this.#giveUp;
-    this.#tell({ name: stem, method: label, share: 0, secondsLeft: null });
+    this.#tell({ name: stem, method: label, fraction: 0, secondsLeft: null });
     try {
-      const { exportMotionWith: exportMotionBare } = await import('threepoint/api/motion-export');
+      const { writeMotionFile: exportMotionBare } = await import('threepoint/api/motion-file');
       const { extension, type, parts } = await exportMotionBare(recording, {
-        to: await this.#formatOf(choice),
+        format: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
         estimator,
         networks: this.#options.networks,
-        calibration: recording.calibration ?? body.wearerCalibration,
+        calibration: recording.calibration ?? body.userCalibration,
         signal,
         onProgress: (progress) => this.#tell({ name: stem, method: label, ...progress }),
       });
@@ -77,7 +77,7 @@ export class MotionExport {
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
     const { avatar } = this.#options;
-    const { avatarClip } = await import('threepoint/avatar/avatar-clip');
+    const { avatarClip } = await import('threepoint/avatar/avatar-motion-writer');
     return avatarClip(await avatar.file(), avatar.name, { decoders });
   }
 

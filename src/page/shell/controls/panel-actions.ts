@@ -1,4 +1,4 @@
-import { armSpanFromFingertipSpan, calibrationComplaint, eyeHeightFromStature } from 'threepoint/core/body/calibration';
+import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } from 'threepoint/core/body/calibration';
 import { offerDownload } from 'threepoint-ui/downloads';
 import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from '../panel/panel-state';
@@ -28,14 +28,14 @@ function bodyActions({
     calibrate: () => measuring.start(),
     setMeasures({ heightCm, armSpanCm, forearmCm }) {
       // What is measured of hands and gaze stays: no one types that.
-      const { forearm, ...measured } = body.wearerCalibration;
+      const { forearm, ...measured } = body.userCalibration;
       const calibration = {
         ...measured,
         eyeHeight: eyeHeightFromStature(heightCm / 100),
         armSpan: armSpanFromFingertipSpan(armSpanCm / 100),
         ...(forearmCm !== null && { forearm: forearmCm / 100 }),
       };
-      const complaint = calibrationComplaint(calibration);
+      const complaint = calibrationProblem(calibration);
       if (complaint) notices.show('warning', complaint);
       else userCalibration.calibrateForGood(calibration, 'by hand');
     },
@@ -74,7 +74,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
       recorder.record({
         device: !headset.worn && (settings.actor || !headset.emulator) ? 'actor' : driven,
         rateHz: timing.summary().rateHz,
-        calibration: body.wearerCalibration,
+        calibration: body.userCalibration,
       });
       onChange();
     },

@@ -1,6 +1,6 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics, makeJointPoses } from 'threepoint/core/body/forward-kinematics';
+import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { smoothingFactor } from 'threepoint/core/math/damper';
@@ -26,7 +26,7 @@ const place = vec3(0, 0, 0);
 /** The distance of the drawn joints from the device's: a mean over the last moments, or as `shareOf` says. */
 export class DeviceDifference {
   readonly #shareOf: (elapsed: number) => number;
-  readonly #joints = makeJointPoses();
+  readonly #joints = createJointPoses();
   /** [m], in the order of `estimatedJoints`. */
   readonly #means = new Float64Array(estimatedJoints.length);
   #skeleton: Skeleton | null = null;

@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import { type MovingReplay, ReplayedBody } from 'threepoint/api/replayed-body';
-import { shapeOfButtons } from 'threepoint/avatar/hands/pressed-fingers';
+import { ReplayedBody, type ReplayState } from 'threepoint/api/replayed-body';
+import { shapeOfButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -33,7 +33,7 @@ export interface PageFrameOptions {
   /** Between what is tracked and the body, where a study wants the body worse than it could be. */
   readonly impaired: Pick<TrackingDegradation, 'apply' | 'reset'>;
   readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
-  readonly recorder: Pick<Recorder, 'observe'> & MovingReplay;
+  readonly recorder: Pick<Recorder, 'observe'> & ReplayState;
   readonly difference: Pick<DeviceDifference, 'observe'>;
   readonly avatar: Pick<ShownAvatar, 'current'>;
   readonly headset: Headset;

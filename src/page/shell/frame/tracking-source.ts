@@ -19,7 +19,7 @@ export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
   readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
-  readonly body: Pick<BodySolver, 'wearerCalibration'>;
+  readonly body: Pick<BodySolver, 'userCalibration'>;
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
   readonly activities: Pick<Activities, 'current' | 'act'>;
   readonly study: Pick<PageStudy, 'idle'>;
@@ -52,7 +52,7 @@ export class TrackingSource {
    */
   get standIn(): Calibration | null {
     const { headset, recorder, body } = this.#options;
-    return headset.tracking ? null : (recorder.person ?? body.wearerCalibration);
+    return headset.tracking ? null : (recorder.person ?? body.userCalibration);
   }
 
   /** The newest tracked frame; null: none yet. */

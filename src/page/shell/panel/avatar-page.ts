@@ -1,4 +1,4 @@
-import { bodyLabels } from 'threepoint/avatar/built-in-bodies';
+import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
 import { skinColors } from 'threepoint/avatar/palettes';
 import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';

@@ -1,4 +1,4 @@
-import { fingerBones } from 'threepoint/core/body/finger-bones';
+import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
 import { type BoneMap, type BoneName, boneNames, fingerNames, neededBones } from 'threepoint/core/humanoid/bones';
 import { type Side, sides } from 'threepoint/core/math/side';
 import type { WaitingForBones } from '../shown-avatar';
@@ -18,7 +18,7 @@ const arm = { Shoulder: 'shoulder (collarbone)', UpperArm: 'upper arm', LowerArm
 const leg = { UpperLeg: 'thigh', LowerLeg: 'lower leg', Foot: 'foot', Toes: 'toes' };
 const fingers = Object.fromEntries(
   fingerNames.flatMap((finger) =>
-    fingerBones(finger).map((bone, i) => [
+    fingerBoneSuffixes(finger).map((bone, i) => [
       bone,
       `${finger.toLowerCase()} ${finger === 'Thumb' ? '' : 'finger '}${i + 1}`,
     ]),

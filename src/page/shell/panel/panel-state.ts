@@ -21,7 +21,7 @@ export interface ExportState {
   /** What draws the body in it, in words. */
   readonly method: string;
   /** Share [0, 1] that is done, and seconds for the rest; null: not known yet. */
-  readonly share: number;
+  readonly fraction: number;
   readonly secondsLeft: number | null;
 }
 

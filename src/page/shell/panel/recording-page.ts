@@ -72,9 +72,9 @@ const exportChoices: readonly (readonly [ExportChoice, label: string, title: str
 ];
 
 /** How far a file is, in words. */
-export const exportText = ({ name, method, share, secondsLeft }: ExportState): string => {
+export const exportText = ({ name, method, fraction, secondsLeft }: ExportState): string => {
   const left = secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`;
-  return `${name} as drawn by ${method}: ${Math.floor(100 * share)}\u00a0%${left}`;
+  return `${name} as drawn by ${method}: ${Math.floor(100 * fraction)}\u00a0%${left}`;
 };
 
 /** Files for other programs. */
@@ -104,7 +104,7 @@ function createExportSection(actions: RecordingActions) {
     show({ recorder: { mode, name }, exporting }: PanelState) {
       for (const choice of choices) choice.disabled = mode === 'recording' || name === null || exporting !== null;
       for (const node of [text, bar, cancel]) node.hidden = exporting === null;
-      bar.value = exporting?.share ?? 0;
+      bar.value = exporting?.fraction ?? 0;
       text.textContent = exporting ? exportText(exporting) : '';
     },
   };

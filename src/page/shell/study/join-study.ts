@@ -21,7 +21,7 @@ export interface JoinStudyOptions extends EmbodyingParts {
   readonly headset: Headset;
   readonly activities: Activities;
   readonly timing: FrameTiming;
-  readonly body: EmbodyingParts['body'] & Pick<BodySolver, 'wearerCalibration'>;
+  readonly body: EmbodyingParts['body'] & Pick<BodySolver, 'userCalibration'>;
   readonly userCalibration: Pick<UserCalibration, 'calibrate' | 'forget'>;
 }
 
@@ -57,7 +57,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     inSession: () => headset.worn,
     deviceFault: () => headset.fault,
     room: () => headset.room,
-    calibration: () => body.wearerCalibration,
+    calibration: () => body.userCalibration,
     setCalibration(calibration) {
       if (calibration) userCalibration.calibrate(calibration, 'measured');
       else userCalibration.forget();

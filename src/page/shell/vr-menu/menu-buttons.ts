@@ -1,4 +1,4 @@
-import { labelOf } from 'threepoint/avatar/built-in-bodies';
+import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import {
   type BuiltInBody,
   builtInBodies,

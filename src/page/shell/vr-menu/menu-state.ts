@@ -9,7 +9,7 @@ import type { VrMenuState } from './menu-buttons';
 
 /** The parts of the page that the menu in the headset shows. */
 export interface MenuParts {
-  readonly body: Pick<BodySolver, 'estimator' | 'unavailable'>;
+  readonly body: Pick<BodySolver, 'estimator' | 'unavailableEstimators'>;
   readonly settings: Settings;
   readonly activities: Pick<Activities, 'all' | 'current'>;
   readonly measuring: Pick<Measuring, 'step'>;
@@ -26,7 +26,7 @@ export function menuStateOf(parts: MenuParts, sheet: MenuSheet | null): VrMenuSt
   const activity = activities.current && (activities.current.menu?.() ?? noMenu);
   return {
     estimator: body.estimator,
-    unavailable: body.unavailable,
+    unavailable: body.unavailableEstimators,
     calibration: measuring.step,
     overlay: settings.vrOverlay,
     deviceBody: settings.deviceBody,

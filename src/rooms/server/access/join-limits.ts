@@ -1,8 +1,8 @@
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
-import { HttpError } from 'threepoint-http/answer';
 import { clientAddressOf } from 'threepoint-http/client-address';
+import { HttpError } from 'threepoint-http/response';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayMetrics } from '../settings/relay-metrics';
 

@@ -1,7 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
 import * as v from 'valibot';
-import { mostSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
+import { maxSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
 
 /** The seat and name that a study assigns to a participant; seat null: a spectator. */
 export interface AssignedPlace {
@@ -35,7 +35,7 @@ const longestToken = 1024;
 
 const assignedPlace = v.nullable(
   v.strictObject({
-    seat: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(mostSeats - 1))),
+    seat: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(maxSeats - 1))),
     name: v.string(),
   }),
 );

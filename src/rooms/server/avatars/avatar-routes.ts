@@ -2,9 +2,9 @@ import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import { avatarHash, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
-import { type Answer, done, HttpError, json } from 'threepoint-http/answer';
 import { clientAddressOf } from 'threepoint-http/client-address';
 import { readBody } from 'threepoint-http/request-body';
+import { HttpError, type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
 import type { Call, Route } from 'threepoint-http/router';
 import { requirePass } from '../access/request-pass';
 import type { RoomTokens } from '../access/room-tokens';
@@ -68,14 +68,18 @@ export class AvatarRoutes {
   }
 
   /** Answers with the size limit, and with the hash of the person's stored file. */
-  async #terms(call: Call): Promise<Answer> {
+  async #terms(call: Call): Promise<HttpResponse> {
     const { configuration, store } = this.#options;
     const { room, identity } = await requirePass(call, this.#options.tokens);
     const taken = Math.min(mostAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
-    return json({ mostBytes: taken, elsewhere: configuration.avatarsFrom, yours: store.keptOf(room, identity) });
+    return jsonResponse({
+      mostBytes: taken,
+      elsewhere: configuration.avatarsFrom,
+      yours: store.hashOf(room, identity),
+    });
   }
 
-  async #download(call: Call): Promise<Answer> {
+  async #download(call: Call): Promise<HttpResponse> {
     const { room, identity } = await requirePass(call, this.#options.tokens);
     await this.#spend(this.#downloads, identity, 'download');
     const bytes = this.#options.store.get(room, hashIn(call));
@@ -83,7 +87,7 @@ export class AvatarRoutes {
     return { status: 200, headers: asFile, body: bytes };
   }
 
-  async #upload(call: Call): Promise<Answer> {
+  async #upload(call: Call): Promise<HttpResponse> {
     const { request } = call;
     const { room, identity, assigned } = await requirePass(call, this.#options.tokens);
     const hash = hashIn(call);
@@ -98,7 +102,7 @@ export class AvatarRoutes {
     const reserved = this.#reserve({ room, identity, address: network }, length);
     try {
       reserved.keep(hash, await this.#receive(request, length, hash));
-      return done;
+      return noContent;
     } finally {
       reserved.cancel();
     }

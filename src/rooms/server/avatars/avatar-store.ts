@@ -2,7 +2,7 @@ import { type AvatarHash, type AvatarRef, mostAvatarBytes } from 'threepoint/cor
 
 export interface AvatarStoreOptions {
   /** The most bytes of all files, uploads under way included; 0: no file is accepted. */
-  readonly mostBytes: number;
+  readonly maxBytes: number;
   /** Returns the avatar of a person in a room of this process; null: they have no seat there. */
   readonly avatarOf: (room: string, identity: string) => AvatarRef | null;
   /** Seconds, monotonic. */
@@ -79,14 +79,14 @@ export class AvatarStore {
    * of this person is under way.
    */
   reserve({ room, identity, address }: AvatarOwner, length: number): Reservation | 'full' | 'crowded' | 'busy' {
-    const { mostBytes } = this.#options;
+    const { maxBytes } = this.#options;
     const owner = ownerOf(room, identity);
     if (this.#uploads.has(owner)) return 'busy';
     const before = this.#files.get(owner);
     const freed = before?.bytes.length ?? 0;
-    if (this.bytes - freed + length > mostBytes) return 'full';
+    if (this.bytes - freed + length > maxBytes) return 'full';
     const freedHere = before?.address === address ? freed : 0;
-    const mostHere = Math.max(mostAvatarBytes, shareOfAddress * mostBytes);
+    const mostHere = Math.max(mostAvatarBytes, shareOfAddress * maxBytes);
     if (this.#bytesFrom(address) - freedHere + length > mostHere) return 'crowded';
     this.#uploads.set(owner, { address, length });
     return {
@@ -105,7 +105,7 @@ export class AvatarStore {
   }
 
   /** Returns the hash of a person's stored file; null: none. */
-  keptOf(room: string, identity: string): AvatarHash | null {
+  hashOf(room: string, identity: string): AvatarHash | null {
     return this.#files.get(ownerOf(room, identity))?.hash ?? null;
   }
 

@@ -10,7 +10,7 @@ import type { RoomPass } from '../access/room-tokens';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayCounts } from '../settings/relay-metrics';
 import { closeConnection } from '../sockets/relay-transport';
-import { mostBytesWaiting } from '../sockets/slow-readers';
+import { maxQueuedBytes } from '../sockets/slow-readers';
 
 /** A connection with a pass, before and after it joins its room. */
 export interface Client {
@@ -102,7 +102,7 @@ export function sendPoses(to: Iterable<Client>, poses: readonly FreshPose[], cou
     const message = own === null ? shared : poseMessage(poses, own);
     if (!message) continue;
     const { wire, socket } = client;
-    if (wire.writable && wire.writableLength <= mostBytesWaiting && socket.conn.readyState === 'open') {
+    if (wire.writable && wire.writableLength <= maxQueuedBytes && socket.conn.readyState === 'open') {
       wire.write(message);
       counts.framesOut += 1;
       counts.bytesOut += message.length;

@@ -185,7 +185,7 @@ export class RoomRegistry {
   getOrCreate(pass: RoomPass): RegisteredRoom | null {
     const existing = this.wake(pass.room);
     if (existing) return existing;
-    if (this.#rooms.size >= this.#options.configuration.mostRooms) return null;
+    if (this.#rooms.size >= this.#options.configuration.maxRooms) return null;
     const hosted = this.#create(pass);
     if (!hosted) return null;
     this.#rooms.set(pass.room, hosted);

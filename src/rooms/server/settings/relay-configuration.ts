@@ -1,6 +1,6 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { weaknessOf } from 'threepoint-http/secret-bits';
-import { type Environment, partsOf, wrong } from './environment';
+import { secretWeakness } from 'threepoint-http/secret-strength';
+import { type Environment, invalidVariable, splitList } from './environment';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 
 /** The settings of the relay, from the environment. */
@@ -19,7 +19,7 @@ export interface RelayConfiguration {
   readonly joinsPerMinute: number;
   /** The most open connections of one address. */
   readonly connectionsPerAddress: number;
-  readonly mostRooms: number;
+  readonly maxRooms: number;
   /** Length of a round of the ball game [s], in rooms without terms. */
   readonly ballSeconds: number;
   /** The most megabytes of all stored avatars; 0: no avatar is accepted. */
@@ -71,24 +71,24 @@ function numberFrom(environment: Environment, name: string, fallback: number, mi
   const text = environment[name];
   if (text === undefined || text === '') return fallback;
   const value = Number(text);
-  if (!(value >= min && value <= max)) throw wrong(name, `be a number from ${min} to ${max}`, text);
+  if (!(value >= min && value <= max)) throw invalidVariable(name, `be a number from ${min} to ${max}`, text);
   return value;
 }
 
 function originsFrom(environment: Environment, name: string, scheme: RegExp): readonly string[] {
-  return partsOf(environment[name]).map((part) => {
+  return splitList(environment[name]).map((part) => {
     const url = URL.canParse(part) ? new URL(part) : null;
     if (!url || !scheme.test(url.protocol) || (part !== url.origin && part !== `${url.origin}/`))
-      throw wrong(name, 'list origins such as https://example.org', part);
+      throw invalidVariable(name, 'list origins such as https://example.org', part);
     return url.origin;
   });
 }
 
 function hostsFrom(text: string | undefined): readonly string[] {
-  const names = partsOf(text);
+  const names = splitList(text);
   const strange = names.find((name) => !/^[a-z0-9]([a-z0-9.-]*[a-z0-9])?$/i.test(name));
   if (strange !== undefined)
-    throw wrong('THREEPOINT_HOSTS', 'list names such as study.example.org, without ports', strange);
+    throw invalidVariable('THREEPOINT_HOSTS', 'list names such as study.example.org, without ports', strange);
   return names;
 }
 
@@ -96,12 +96,12 @@ function folderFrom(text: string | undefined): string | null {
   if (!text) return null;
   const url = URL.canParse(text) ? new URL(text) : null;
   if (url?.protocol !== 'https:' || !url.pathname.endsWith('/') || url.search || url.hash || url.username)
-    throw wrong('THREEPOINT_AVATARS_FROM', 'be a folder such as https://example.org/avatars/', text);
+    throw invalidVariable('THREEPOINT_AVATARS_FROM', 'be a folder such as https://example.org/avatars/', text);
   return url.href;
 }
 
 function refuseWeak(name: string, secret: string | null): void {
-  const weakness = secret === null ? null : weaknessOf(secret);
+  const weakness = secret === null ? null : secretWeakness(secret);
   if (weakness) throw new ConfigurationError(`The secret in the environment variable ${name} ${weakness}`);
 }
 
@@ -123,10 +123,10 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
   refuseWeak('THREEPOINT_ADMIN_TOKEN', adminToken);
   const redisUrl = environment.THREEPOINT_REDIS_URL || null;
   if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl))
-    throw wrong('THREEPOINT_REDIS_URL', 'be like redis://localhost:6379', redisUrl);
+    throw invalidVariable('THREEPOINT_REDIS_URL', 'be like redis://localhost:6379', redisUrl);
   const level = environment.THREEPOINT_LOG_LEVEL || 'warn';
   const logLevel = logLevels.find((known) => known === level);
-  if (!logLevel) throw wrong('THREEPOINT_LOG_LEVEL', `be one of ${logLevels.join(', ')}`, level);
+  if (!logLevel) throw invalidVariable('THREEPOINT_LOG_LEVEL', `be one of ${logLevels.join(', ')}`, level);
   if (redisUrl !== null && secret === null) {
     throw new ConfigurationError(
       'Several processes need the same THREEPOINT_SECRET. Set it together with THREEPOINT_REDIS_URL.',
@@ -146,7 +146,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),
     // Thirty people behind one address: each has six connections for the page and two WebSockets.
     connectionsPerAddress: whole('THREEPOINT_CONNECTIONS_PER_ADDRESS', 256, 8, 1_000_000),
-    mostRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
+    maxRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     avatarMegabytes: whole('THREEPOINT_AVATAR_MEGABYTES', 256, 0, 65_536),
     avatarsFrom: folderFrom(environment.THREEPOINT_AVATARS_FROM),

@@ -1,5 +1,5 @@
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { type Environment, partsOf, wrong } from './environment';
+import { type Environment, invalidVariable, splitList } from './environment';
 
 /** The servers by which pages connect their voices. */
 export interface VoiceConfiguration {
@@ -15,9 +15,9 @@ export const voiceEnvironment = `  THREEPOINT_VOICES             off: players ca
   THREEPOINT_TURN_SECRET        secret of the TURN servers (coturn: static-auth-secret), 32 characters or more`;
 
 function urlsFrom(environment: Environment, name: string, form: RegExp, like: string): readonly string[] {
-  const urls = partsOf(environment[name]);
+  const urls = splitList(environment[name]);
   const strange = urls.find((url) => !form.test(url));
-  if (strange !== undefined) throw wrong(name, `list addresses such as ${like}`, strange);
+  if (strange !== undefined) throw invalidVariable(name, `list addresses such as ${like}`, strange);
   return urls;
 }
 
@@ -27,7 +27,7 @@ function urlsFrom(environment: Environment, name: string, form: RegExp, like: st
  */
 export function voiceConfigurationFrom(environment: Environment): VoiceConfiguration | null {
   const wanted = environment.THREEPOINT_VOICES || 'on';
-  if (wanted !== 'on' && wanted !== 'off') throw wrong('THREEPOINT_VOICES', 'be on or off', wanted);
+  if (wanted !== 'on' && wanted !== 'off') throw invalidVariable('THREEPOINT_VOICES', 'be on or off', wanted);
   const stun = urlsFrom(environment, 'THREEPOINT_STUN', /^stuns?:[\w.[\]:-]+$/, 'stun:stun.example.org:3478');
   const urls = urlsFrom(
     environment,

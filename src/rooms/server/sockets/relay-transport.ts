@@ -5,10 +5,10 @@ import type { Duplex } from 'node:stream';
 import { Server as Engine } from 'engine.io';
 import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
-import { HttpError, refusal, sendRawAnswer } from 'threepoint-http/answer';
-import { targetOf } from 'threepoint-http/target';
-import { handshakeMs } from 'threepoint-http/web-server';
-import { longestMessage } from '../../protocol/messages';
+import { parseRequestTarget } from 'threepoint-http/request-target';
+import { errorResponse, HttpError, sendRawResponse } from 'threepoint-http/response';
+import { handshakeTimeoutMs } from 'threepoint-http/web-server';
+import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayMetrics } from '../settings/relay-metrics';
@@ -50,7 +50,7 @@ export function closeConnection(socket: Socket): void {
  * Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns
  * whether to handle it.
  */
-function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
+function routeBinaryMessages(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
   // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
   const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
   for (const engines of websocket.listeners('message')) {
@@ -80,12 +80,12 @@ export function createRelayTransport(
     transports: ['websocket'],
     allowUpgrades: false,
     perMessageDeflate: false,
-    maxHttpBufferSize: longestMessage,
+    maxHttpBufferSize: maxMessageBytes,
     // A page that hangs, or reads nothing, is detected within seven seconds.
     pingInterval: 3000,
     pingTimeout: 4000,
   });
-  const io = new Server({ serveClient: false, connectTimeout: handshakeMs, parser: relayParser });
+  const io = new Server({ serveClient: false, connectTimeout: handshakeTimeoutMs, parser: relayParser });
   io.bind(engine);
   const listeners = new WeakMap<Socket['conn'], WireListener>();
   function end(conn: Socket['conn'], fault: WireFault): void {
@@ -104,7 +104,7 @@ export function createRelayTransport(
     const raw = conn.request.socket;
     slowReaders.watch(conn);
     const take = createFloodLimiter(now, () => end(conn, 'flood'));
-    divert(conn, take, (bytes) => {
+    routeBinaryMessages(conn, take, (bytes) => {
       const listener = listeners.get(conn);
       if (listener) listener.onPose(bytes);
       else conn.close();
@@ -126,13 +126,13 @@ export function createRelayTransport(
     listen: (socket: Socket, listener: WireListener): void => void listeners.set(socket.conn, listener),
     /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
     upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean {
-      const target = targetOf(request.url);
+      const target = parseRequestTarget(request.url);
       if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
       try {
         socket.once('close', admit(request, target.query));
       } catch (error) {
         if (!(error instanceof HttpError)) throw error;
-        sendRawAnswer(socket, refusal(error));
+        sendRawResponse(socket, errorResponse(error));
         return true;
       }
       engine.handleUpgrade(request as never, socket, head);

@@ -4,7 +4,7 @@ import type { Socket } from 'socket.io';
 const slowSeconds = 5;
 const mostWaiting = 256;
 /** The most bytes that may wait on a connection that still receives poses: with TLS each write takes a moment. */
-export const mostBytesWaiting = 4096;
+export const maxQueuedBytes = 4096;
 /** Interval of the check [ms]. */
 const slowCheckMs = 1000;
 
@@ -39,7 +39,7 @@ export class SlowReaders {
   #check(): void {
     const now = this.#now();
     for (const [conn, writableAt] of this.#writableAt) {
-      const isFree = conn.transport.writable && conn.request.socket.writableLength <= mostBytesWaiting;
+      const isFree = conn.transport.writable && conn.request.socket.writableLength <= maxQueuedBytes;
       if (isFree) this.#writableAt.set(conn, now);
       if ((isFree || now - writableAt <= slowSeconds) && packetsWaiting(conn) <= mostWaiting) continue;
       this.#writableAt.delete(conn);

@@ -1,8 +1,8 @@
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
-import { HttpError } from 'threepoint-http/answer';
 import { clientAddressOf } from 'threepoint-http/client-address';
 import { createSlotCounter } from 'threepoint-http/connection-limiter';
+import { HttpError } from 'threepoint-http/response';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayMetrics } from '../settings/relay-metrics';
@@ -41,7 +41,7 @@ export function createUpgradeAdmission(
   return (request, query) => {
     const error = protocolErrorOf(request, query);
     if (error) throw error;
-    const refusal = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
+    const refusal = site.checkHost(request) ?? site.checkOrigin(request);
     if (refusal) {
       metrics.kicked('origin');
       log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');

@@ -1,5 +1,5 @@
 import { createHash, createHmac } from 'node:crypto';
-import { type Answer, json } from 'threepoint-http/answer';
+import { type HttpResponse, jsonResponse } from 'threepoint-http/response';
 import type { Call, Route } from 'threepoint-http/router';
 import { requirePass } from '../access/request-pass';
 import type { RoomTokens } from '../access/room-tokens';
@@ -42,12 +42,12 @@ export class VoiceRoutes {
     this.routes = [{ method: 'GET', path: '/api/voices', access: 'client', handle, bodyLimit: 0 }];
   }
 
-  async #terms(call: Call): Promise<Answer> {
+  async #terms(call: Call): Promise<HttpResponse> {
     const { voices, tokens, now } = this.#options;
     const { identity, assigned } = await requirePass(call, tokens);
-    if (!voices || assigned) return json(noVoices);
+    if (!voices || assigned) return jsonResponse(noVoices);
     const { stun, turn } = voices;
-    return json({
+    return jsonResponse({
       voices: true,
       iceServers: [
         ...(stun.length > 0 ? [{ urls: stun }] : []),

@@ -3,7 +3,7 @@ import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { softwareIn } from 'threepoint-http/software';
+import { readSoftwareVersion } from 'threepoint-http/software-version';
 import { checkedPlan, parsePlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { compareCohorts } from '../../model/results/compare-cohorts';
@@ -92,7 +92,7 @@ function run(): void {
       store.records.store(plan.id, participant, records, firstSession);
       store.places.saveProgress(plan.id, participant, progress, firstSession);
     }
-    const used = softwareIn(join(root, 'public'), pathToFileURL(join(root, 'package.json')));
+    const used = readSoftwareVersion(join(root, 'public'), pathToFileURL(join(root, 'package.json')));
     const software = { exportedBy: used, served: [{ since: firstSession, ...used }] };
     const content = (participant?: string) => {
       const records = store.records.all(plan.id, participant);

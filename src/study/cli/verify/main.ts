@@ -2,7 +2,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { softwareIn } from 'threepoint-http/software';
+import { readSoftwareVersion } from 'threepoint-http/software-version';
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { verifyExport } from './verify-export';
 
@@ -14,7 +14,7 @@ const mostShown = 50;
 try {
   await loadStudyPlugins(process.env);
   if (!existsSync(path)) throw new Error('there is no such file');
-  const here = softwareIn(
+  const here = readSoftwareVersion(
     fileURLToPath(new URL('../../../../public', import.meta.url)),
     new URL('../../../../package.json', import.meta.url),
   );

@@ -1,6 +1,6 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import type { Software } from 'threepoint-http/software';
+import type { Software } from 'threepoint-http/software-version';
 import { shortageOf } from 'threepoint-http/thread-calls';
 import { StoreRefusal } from '../storage/store-refusal';
 

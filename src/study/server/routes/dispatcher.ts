@@ -1,4 +1,4 @@
-import type { Answer } from 'threepoint-http/answer';
+import type { HttpResponse } from 'threepoint-http/response';
 import type { StudyStore } from '../storage/store';
 import { StoreRefusal } from '../storage/store-refusal';
 import type { StudyRequest, StudyRoute } from './route';
@@ -6,7 +6,7 @@ import { refusalOf, type StudyRoutes } from './routes';
 
 /** The result of a request, in a form that can be sent between threads. */
 export type StudyOutcome =
-  | { readonly answer: Answer }
+  | { readonly answer: HttpResponse }
   | {
       readonly refused: {
         readonly status: number;
@@ -94,7 +94,7 @@ export class StudyDispatcher {
     return result;
   }
 
-  async #outcome(run: () => Promise<Answer>): Promise<StudyOutcome> {
+  async #outcome(run: () => Promise<HttpResponse>): Promise<StudyOutcome> {
     try {
       return { answer: await run() };
     } catch (error) {

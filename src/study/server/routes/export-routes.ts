@@ -1,4 +1,4 @@
-import type { Answer } from 'threepoint-http/answer';
+import type { HttpResponse } from 'threepoint-http/response';
 import { exportName } from '../export/export-zip';
 import type { StudyAccess } from './guard';
 import { type Handle, route, type StudyParts, type StudyRoute } from './route';
@@ -11,7 +11,7 @@ interface ExportAsked {
 }
 
 /** Resolves with the answer that contains an export. */
-export async function exportOf({ store, software, makeZip }: StudyParts, asked: ExportAsked): Promise<Answer> {
+export async function exportOf({ store, software, makeZip }: StudyParts, asked: ExportAsked): Promise<HttpResponse> {
   const { participant } = asked;
   const info = store.plans.get(asked.study, asked.version);
   const plan = participant === undefined ? info.plan : store.plans.planFor(asked.study, participant);

@@ -1,8 +1,13 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { HttpError } from 'threepoint-http/answer';
-import { createAuthThrottle, type Guess, TooManyGuesses, type WrongGuess } from 'threepoint-http/auth-throttle';
+import {
+  type AuthAttempt,
+  createAuthThrottle,
+  type FailedAttempt,
+  TooManyAttempts,
+} from 'threepoint-http/auth-throttle';
 import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
+import { HttpError } from 'threepoint-http/response';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/store';
 
@@ -16,7 +21,7 @@ export interface StudyGuardOptions {
   readonly store: Pick<StudyStore, 'plans' | 'places'>;
   /** The experimenter's token, sent as "Authorization: Bearer …"; null: there are no experimenters. */
   readonly experimenterToken: string | null;
-  readonly onWrongGuess: (guess: WrongGuess) => void;
+  readonly onWrongGuess: (guess: FailedAttempt) => void;
 }
 
 /** The sender of a request and the place in the request. */
@@ -73,13 +78,13 @@ export function createStudyGuard({ store, experimenterToken, onWrongGuess }: Stu
   const throttle = createAuthThrottle(onWrongGuess);
   const spendingOpenPlace = createOpenPlaces();
 
-  type Attempted = Omit<Guess, 'address'> & Pick<Concerned, 'address'>;
+  type Attempted = Omit<AuthAttempt, 'address'> & Pick<Concerned, 'address'>;
 
   async function attempt({ address, ...guess }: Attempted, isRight: () => boolean): Promise<boolean> {
     try {
       return await throttle.attempt({ ...guess, address: requiredAddress(address) }, isRight);
     } catch (error) {
-      if (!(error instanceof TooManyGuesses)) throw error;
+      if (!(error instanceof TooManyAttempts)) throw error;
       throw tooMany(error.message, error.retryAfterSeconds);
     }
   }

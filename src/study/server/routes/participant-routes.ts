@@ -1,6 +1,6 @@
 import { parseRecording } from 'threepoint/core/tracking/recording';
 import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
-import { done, HttpError, json } from 'threepoint-http/answer';
+import { HttpError, jsonResponse, noContent } from 'threepoint-http/response';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
@@ -81,43 +81,43 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
       const { invitation, consent } = checked(claimSchema, jsonOf(call));
       const claim = () => takePlace(store, call, consent);
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
-      return json({ token, withdrawalCode, ...sessionOf(store, call) }, 201);
+      return jsonResponse({ token, withdrawalCode, ...sessionOf(store, call) }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
       store.places.reinvite(study, participant);
-      return done;
+      return noContent;
     }),
     route('POST', `${own}/release`, 'experimenter', 0, ({ study, participant }) => {
       store.places.release(study, participant);
-      return done;
+      return noContent;
     }),
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
       const plan = store.plans.planFor(call.study, call.participant);
       const valid = records.map((record, index) => within(`records[${index}]`, () => checkedRecord(record, plan)));
-      return json({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
+      return jsonResponse({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
     }),
     route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
-      json({ records: store.records.all(study, participant) }),
+      jsonResponse({ records: store.records.all(study, participant) }),
     ),
     route('PUT', `${own}/progress`, 'participant', bodyLimits.json, (call) => {
       store.places.saveProgress(call.study, call.participant, jsonOf(call), call.at);
-      return done;
+      return noContent;
     }),
     route('GET', `${own}/progress`, 'participant', 0, ({ study, participant, at }) =>
-      json({ progress: store.places.progress(study, participant, at) }),
+      jsonResponse({ progress: store.places.progress(study, participant, at) }),
     ),
     route('GET', `${own}/commands`, 'participant', 0, ({ study, participant, query }) => {
       const { after } = checked(sinceSchema, { after: Number(query.get('after') ?? 0) });
-      return json({ commands: store.commands.after(study, participant, after) });
+      return jsonResponse({ commands: store.commands.after(study, participant, after) });
     }),
     route('POST', `${own}/commands`, 'experimenter', bodyLimits.json, (call) => {
       const command = checked(commandSchema, jsonOf(call));
-      return json({ number: store.commands.add(call.study, call.participant, command, call.at) }, 201);
+      return jsonResponse({ number: store.commands.add(call.study, call.participant, command, call.at) }, 201);
     }),
     route('POST', `${own}/remarks`, 'experimenter', bodyLimits.json, (call) => {
       const remark = checked(remarkSchema, jsonOf(call));
-      return json({ id: store.records.addRemark(call.study, call.participant, remark.text, call.at) }, 201);
+      return jsonResponse({ id: store.records.addRemark(call.study, call.participant, remark.text, call.at) }, 201);
     }),
     route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, at, query, body }) => {
       const { trial } = checked(motionSchema, { trial: query.get('trial') });
@@ -128,19 +128,19 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
         throw new HttpError(400, (error as Error).message);
       }
       store.motion.store(study, participant, trial, recording, at);
-      return done;
+      return noContent;
     }),
     signing(`${own}/seat`, async (call) => {
       const trial = checked(playedTogetherSchema, jsonOf(call));
       const plan = store.plans.planFor(call.study, call.participant);
       // A request that is admitted without the participant's token is from an experimenter, who watches.
-      return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
+      return jsonResponse(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
     exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
       exportOf(parts, { at, study, participant }),
     ),
     route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
-      json(store.deletion.delete(study, participant, 'experimenter', at)),
+      jsonResponse(store.deletion.delete(study, participant, 'experimenter', at)),
     ),
   ];
 }

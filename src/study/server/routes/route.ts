@@ -1,7 +1,7 @@
-import type { Answer } from 'threepoint-http/answer';
 import type { ClientAddress } from 'threepoint-http/client-address';
+import type { HttpResponse } from 'threepoint-http/response';
 import type { Route } from 'threepoint-http/router';
-import type { Software } from 'threepoint-http/software';
+import type { Software } from 'threepoint-http/software-version';
 import { mostMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
 import type { StudyStore } from '../storage/store';
@@ -37,7 +37,7 @@ export interface StudyRoute extends Omit<Route<StudyAccess>, 'handle'> {
   readonly changes: boolean;
   /** Whether the answer has no time limit. */
   readonly isPatient: boolean;
-  handle(call: StudyCall): Answer | Promise<Answer>;
+  handle(call: StudyCall): HttpResponse | Promise<HttpResponse>;
 }
 
 /** The parts of the server that routes use. */

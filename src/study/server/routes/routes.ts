@@ -1,5 +1,5 @@
 import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
-import { type Answer, HttpError } from 'threepoint-http/answer';
+import { HttpError, type HttpResponse } from 'threepoint-http/response';
 import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
 import { StoreRefusal } from '../storage/store-refusal';
 import { type Concerned, createStudyGuard, type StudyGuardOptions } from './guard';
@@ -46,7 +46,11 @@ export function createStudyRoutes({
     /** Throws an HttpError if the request is not permitted; called before the body is read. */
     admit: async ({ access }: StudyRoute, request: StudyRequest): Promise<void> =>
       guard.admit(access, concerned(request)),
-    handle: ({ handle }: StudyRoute, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Answer | Promise<Answer> =>
+    handle: (
+      { handle }: StudyRoute,
+      request: StudyRequest,
+      body: Uint8Array<ArrayBuffer>,
+    ): HttpResponse | Promise<HttpResponse> =>
       handle({ ...concerned(request), at: request.at, query: new URLSearchParams(request.query), body }),
   };
 }

@@ -1,5 +1,5 @@
 import { checked, integerBetween, participantId, text } from 'threepoint/core/validation/validation';
-import { type Answer, done, json } from 'threepoint-http/answer';
+import { type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
 import { jsonOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
@@ -29,12 +29,12 @@ function versionIn(query: URLSearchParams): number | undefined {
 }
 
 /** Returns a study with the records of participants who follow the version of its plan that `info` shows. */
-function recordsOf(store: Pick<StudyStore, 'records'>, info: StudyInfo): Answer {
+function recordsOf(store: Pick<StudyStore, 'records'>, info: StudyInfo): HttpResponse {
   const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
   const head = `${JSON.stringify(info).slice(0, -1)},"records":`;
   const records = store.records.listed(info.plan.id, new Set(participants));
   const body = Buffer.concat([Buffer.from(head), ...records, Buffer.from('}\n')]);
-  return { ...json(null), body };
+  return { ...jsonResponse(null), body };
 }
 
 /** Returns the routes of the server and of one study. */
@@ -42,7 +42,7 @@ export function studyRoutes(parts: StudyParts): StudyRoute[] {
   const { store, guard } = parts;
   return [
     route('GET', '', 'experimenter', 0, () =>
-      json({
+      jsonResponse({
         studies: store.plans.all().map(({ plan, versions: _, ...rest }) => {
           const { id, participants } = plan;
           return { id, title: studyTitle(plan), participants, ...rest };
@@ -51,35 +51,37 @@ export function studyRoutes(parts: StudyParts): StudyRoute[] {
     ),
     route('POST', '', 'experimenter', bodyLimits.json, (call) => {
       const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
-      return json(store.plans.add(plan, { simulated, newVersion, at: call.at }), 201);
+      return jsonResponse(store.plans.add(plan, { simulated, newVersion, at: call.at }), 201);
     }),
     // Participants who have begun read the text of their version.
     route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
       const { plan, simulated } = store.plans.get(study);
       const participant = query.get('participant');
       const read = participant === null ? plan : store.plans.planFor(study, checked(participantId, participant));
-      return json(publicPlan(read, simulated));
+      return jsonResponse(publicPlan(read, simulated));
     }),
     route('DELETE', '/:study', 'experimenter', 0, ({ study }) => {
       store.deletion.deleteSimulated(study);
-      return done;
+      return noContent;
     }),
     route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
       return recordsOf(store, store.plans.get(study, versionIn(query)));
     }),
     route('GET', '/:study/receipts', 'experimenter', 0, ({ study }) => {
       store.plans.get(study);
-      return json({ receipts: store.deletion.receipts(study) });
+      return jsonResponse({ receipts: store.deletion.receipts(study) });
     }),
     exporting('/:study/export', 'experimenter', ({ study, at, query }) =>
       exportOf(parts, { at, study, version: versionIn(query) }),
     ),
     route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
-      json({ participants: store.overview(study, at) }),
+      jsonResponse({ participants: store.overview(study, at) }),
     ),
     route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {
       const { code } = checked(withdrawalSchema, jsonOf(call));
-      return json(await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)));
+      return jsonResponse(
+        await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)),
+      );
     }),
   ];
 }

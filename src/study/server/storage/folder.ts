@@ -3,8 +3,8 @@ import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync
 import { join } from 'node:path';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { weaknessOf } from 'threepoint-http/secret-bits';
-import type { Software } from 'threepoint-http/software';
+import { secretWeakness } from 'threepoint-http/secret-strength';
+import type { Software } from 'threepoint-http/software-version';
 import { FolderInUse, FolderLock } from './folder-lock';
 import { DatabaseProblem } from './schema';
 import { sqliteCodeOf } from './sqlite-errors';
@@ -29,7 +29,7 @@ const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(
 function keptToken(file: string): string {
   if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
   const token = readFileSync(file, 'utf8').trim();
-  const weakness = drawnToken.test(token) ? null : weaknessOf(token);
+  const weakness = drawnToken.test(token) ? null : secretWeakness(token);
   if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
   return token;
 }

@@ -133,7 +133,7 @@ export class StudyDatabase {
    */
   async flushed(): Promise<void> {
     try {
-      await this.#commits.flushed();
+      await this.#commits.flush();
     } catch (error) {
       const text = 'the disk of the server failed, and this may not be stored. Restart the server';
       throw new StoreRefusal('lost', text, reasonOf(error));

@@ -1,6 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
+import { glbOfFile } from './convert-to-glb';
 import { hashOf } from './file-hash';
-import { glbOfFile } from './glb-of-file';
 import { type AvatarLimits, avatarLimits, inspectAvatar } from './inspect-avatar';
 import { gltfFaults } from './validate-gltf';
 

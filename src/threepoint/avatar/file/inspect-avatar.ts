@@ -2,7 +2,7 @@ import * as v from 'valibot';
 import { reasonOf } from '../../core/errors/reasons';
 import { chunksOf } from './glb-chunks';
 import { imageSize, isKtx2 } from './image-size';
-import { MotionWithoutBody } from './motion-without-body';
+import { MotionWithoutBody } from './motion-only-error';
 
 /** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
 export const avatarLimits = {

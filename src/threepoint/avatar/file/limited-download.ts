@@ -1,5 +1,5 @@
-import { PassingFault } from '../../core/errors/passing-fault';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { TransientError } from '../../core/errors/transient-error';
 import { joinBytes, nameOfAddress } from '../../core/files';
 
 /** What a file is to be, with its article, and how much of it this page reads. */
@@ -30,7 +30,7 @@ const isOfOtherServer = (url: string): boolean =>
 
 /**
  * Downloads a file. One that is larger than its kind may be is refused before it is read, or as soon as that shows.
- * Rejects with a sentence that names the file; with a PassingFault where the network or the server is to blame.
+ * Rejects with a sentence that names the file; with a TransientError where the network or the server is to blame.
  */
 export async function downloadLimited(
   url: string,
@@ -43,7 +43,7 @@ export async function downloadLimited(
   signal?.addEventListener('abort', () => aborting.abort());
   const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
     const why = isOfOtherServer(url) ? otherServerHint : '';
-    throw new PassingFault(`${name}: could not be downloaded (${firstLine(reasonOf(error))})${why}`);
+    throw new TransientError(`${name}: could not be downloaded (${firstLine(reasonOf(error))})${why}`);
   });
   /** Ends the answer, so that nothing more of it comes. */
   const refuse = (error: Error): never => {
@@ -51,7 +51,7 @@ export async function downloadLimited(
     throw error;
   };
   if (!response.ok || !response.body)
-    return refuse(new PassingFault(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
+    return refuse(new TransientError(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
   if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
     return refuse(new Error(`${name}: the server sent a web page instead of ${kind.what}`));
   const total = Number(response.headers.get('content-length')) || 0;
@@ -61,7 +61,7 @@ export async function downloadLimited(
   const reader = response.body.getReader();
   for (;;) {
     const { done, value } = await reader.read().catch((error: unknown) => {
-      throw new PassingFault(`${name}: the connection was lost during the download (${firstLine(reasonOf(error))})`);
+      throw new TransientError(`${name}: the connection was lost during the download (${firstLine(reasonOf(error))})`);
     });
     if (done) break;
     pieces.push(value);

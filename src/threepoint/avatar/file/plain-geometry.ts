@@ -1,6 +1,6 @@
 import { BufferAttribute, type InterleavedBufferAttribute, type Object3D, type TypedArray } from 'three';
-import type { Steps } from '../in-steps';
-import { meshesOf } from '../meshes-of';
+import type { Steps } from '../between-frames';
+import { meshesOf } from '../scene-meshes';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 

@@ -7,7 +7,7 @@ import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '.
 import { conjugate, multiply, quat } from '../../core/math/quat';
 import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
-import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
+import { ofSide, type RigFinger, type RigHand, readHand } from './rig-hand';
 
 const frames = makeFingerFrames();
 /** The rotations of a finger's bones since the rest pose. */

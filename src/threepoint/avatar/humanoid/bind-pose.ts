@@ -1,5 +1,5 @@
 import { Matrix4, type Object3D } from 'three';
-import { skinnedMeshesOf } from '../meshes-of';
+import { skinnedMeshesOf } from '../scene-meshes';
 
 /**
  * A posed bone lies further than this from where its skin was bound to it [share of the body's size, and of a turn].

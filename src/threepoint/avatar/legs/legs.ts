@@ -4,7 +4,7 @@ import { type Side, sides } from '../../core/math/side';
 import { vec3 } from '../../core/math/vec3';
 import { LegHelperJoints } from '../rig/leg-helpers';
 import { type AvatarJoint, legJoints, type Rig } from '../rig/rig';
-import type { SpreadLimb } from '../rig/spread-weights';
+import type { SpreadLimb } from '../rig/spread-limb-weights';
 import { LegPosture, type LegProportions } from './leg-posture';
 
 const bonesOf = {

@@ -13,7 +13,7 @@ import {
 } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
 import type { HelperJoint, Rig } from './rig';
-import type { SpreadLimb } from './spread-weights';
+import type { SpreadLimb } from './spread-limb-weights';
 
 /** One arm's joints that its file lacks. */
 interface ArmHelpers {
@@ -51,7 +51,7 @@ function angleAbout(from: Quat, to: Quat, along: (typeof alongArm)[Side]): numbe
 /**
  * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads
  * over the forearm and that of the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of
- * any rig is shared among them (spread-weights); twist bones of its own are taken for the bone they lie on.
+ * any rig is shared among them (spread-limb-weights); twist bones of its own are taken for the bone they lie on.
  */
 export class ArmHelperJoints {
   readonly #rig: Rig;

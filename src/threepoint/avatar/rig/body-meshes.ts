@@ -11,9 +11,9 @@ import {
 } from 'three';
 import type { SkinTone } from '../../core/body/avatar-ref';
 import { recordOf } from '../../core/records';
-import type { Steps } from '../in-steps';
-import { meshesOf } from '../meshes-of';
+import type { Steps } from '../between-frames';
 import { palettes, skinColors } from '../palettes';
+import { meshesOf } from '../scene-meshes';
 import type { Rig } from './rig';
 import { type SkinPart, skinParts, sortByPart } from './skin-parts';
 

@@ -3,7 +3,7 @@ import { type Quat, quat, slerp } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
 import type { LegPose } from '../legs/leg-posture';
 import type { HelperJoint, Rig } from './rig';
-import type { SpreadLimb } from './spread-weights';
+import type { SpreadLimb } from './spread-limb-weights';
 
 /** One leg's joints that its file lacks: each half of the way between the bones that meet there. */
 interface LegHelpers {

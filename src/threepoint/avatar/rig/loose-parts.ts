@@ -9,8 +9,8 @@ import {
   type SkinnedMesh,
   Vector3,
 } from 'three';
-import type { Steps } from '../in-steps';
-import { meshesOf, skinnedMeshesOf } from '../meshes-of';
+import type { Steps } from '../between-frames';
+import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import type { Rig, RigBone } from './rig';
 
 /** The share of a bone's length that counts as the bone's own; its end belongs to the next bone. */

@@ -1,5 +1,5 @@
 import { BufferAttribute, type Object3D, type SkinnedMesh, Vector3 } from 'three';
-import type { Steps } from '../in-steps';
+import type { Steps } from '../between-frames';
 
 /** What a triangle of skin belongs to, in the order in which parts are kept: a prefix of them can be drawn alone. */
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;

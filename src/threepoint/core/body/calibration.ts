@@ -1,5 +1,5 @@
 import { sides } from '../math/side';
-import { type HandTilts, isBelievableTilt as isPlausibleTilt, steepestHandTilt } from './hand-tilt';
+import { type HandTilts, isPlausibleTilt, steepestHandTilt } from './hand-tilt';
 import type { TrackerOffsets } from './tracker-offsets';
 
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
@@ -94,18 +94,18 @@ function hasParts(value: unknown, other: unknown): boolean {
  * Returns a sentence about the implausible measure of a calibration; null: it is plausible. `pinning` checks the
  * trackers' offsets.
  */
-export const calibrationComplaint = (calibration: Calibration): string | null =>
-  bodyComplaint(calibration) ?? wornComplaint(calibration);
+export const calibrationProblem = (calibration: Calibration): string | null =>
+  bodyProblem(calibration) ?? tiltProblem(calibration);
 
 /**
- * Throws a RangeError with the sentence of `calibrationComplaint` where the measures are not human, or are no measures.
+ * Throws a RangeError with the sentence of `calibrationProblem` where the measures are not human, or are no measures.
  */
-export function demandPerson(calibration: Calibration): void {
+export function assertCalibration(calibration: Calibration): void {
   // A page without types may pass anything.
   if (typeof calibration !== 'object' || calibration === null) {
     throw new RangeError('calibration is no object of measures. Pass {eyeHeight, armSpan} in metres, or “auto”.');
   }
-  const complaint = calibrationComplaint(calibration);
+  const complaint = calibrationProblem(calibration);
   if (complaint) throw new RangeError(complaint);
 }
 
@@ -119,7 +119,7 @@ const unitHint = (value: number): string =>
   value >= leastCentimetres ? ` Give metres: ${value} cm are ${Number((value / 100).toPrecision(6))} m.` : '';
 
 /** Returns why a measure is no number; null: it is one. `how`: what to give. */
-function numberComplaint(name: string, value: unknown, how: string): string | null {
+function numberProblem(name: string, value: unknown, how: string): string | null {
   if (value === undefined) return `The ${name} is missing. Give ${how} in metres.`;
   if (typeof value === 'number' && !Number.isNaN(value)) return null;
   const shown = typeof value === 'string' ? `“${value}”` : String(value);
@@ -127,11 +127,11 @@ function numberComplaint(name: string, value: unknown, how: string): string | nu
 }
 
 /** Returns why the body's measures are implausible; null: they are plausible. */
-function bodyComplaint({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREARM }: Calibration): string | null {
+function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREARM }: Calibration): string | null {
   const complaint =
-    numberComplaint('eye height', eyeHeight, 'the height of the eyes above the floor') ??
-    numberComplaint('arm span', armSpan, 'the distance from wrist to wrist') ??
-    numberComplaint('forearm', forearm, 'the distance from elbow to wrist');
+    numberProblem('eye height', eyeHeight, 'the height of the eyes above the floor') ??
+    numberProblem('arm span', armSpan, 'the distance from wrist to wrist') ??
+    numberProblem('forearm', forearm, 'the distance from elbow to wrist');
   if (complaint) return complaint;
   const stature = metres(statureFromEyeHeight(eyeHeight));
   if (eyeHeight < eyeHeightRange.min || eyeHeight > eyeHeightRange.max) {
@@ -150,7 +150,7 @@ function bodyComplaint({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREAR
 }
 
 /** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
-function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
+function tiltProblem({ gazePitch = 0, handTilts }: Calibration): string | null {
   const radians = (value: number) => `${value.toFixed(2)} rad`;
   if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
     return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(steepestGazePitch)}.`;
@@ -167,7 +167,7 @@ function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null
 /** Returns the calibration with this forearm [m]; unchanged where the arm cannot have it. */
 export function withForearm(calibration: Calibration, forearm: number | undefined): Calibration {
   const extended = { ...calibration, forearm };
-  return forearm !== undefined && calibrationComplaint(extended) === null ? extended : calibration;
+  return forearm !== undefined && calibrationProblem(extended) === null ? extended : calibration;
 }
 
 // Below it the person sits or the floor is wrong; a child that low needs the guided calibration.
@@ -177,7 +177,7 @@ const LOWEST_STANDING_ADULT = 1.35;
  * A body for a wearer who has not calibrated, from the headset's height [m] above the floor: taken for the eye height
  * where an adult could stand so tall; otherwise (seated, wrong floor) the default body.
  */
-export function provisionalCalibration(headHeight: number): Calibration {
+export function calibrationFromHeadHeight(headHeight: number): Calibration {
   if (!(headHeight >= LOWEST_STANDING_ADULT && headHeight <= eyeHeightRange.max)) return defaultCalibration;
   return { eyeHeight: headHeight, armSpan: headHeight * ARM_SPAN_PER_EYE_HEIGHT };
 }

@@ -10,7 +10,7 @@ import type { Skeleton } from './skeleton';
 export type JointPoses = Readonly<Record<JointName, Pose<'floor'>>>;
 export type MutableJointPoses = Readonly<Record<JointName, MutablePose<'floor'>>>;
 
-export const makeJointPoses = (): MutableJointPoses => recordOf(jointNames, () => makePose<'floor'>());
+export const createJointPoses = (): MutableJointPoses => recordOf(jointNames, () => makePose<'floor'>());
 
 /**
  * Returns the position of every joint, floor frame: the skeleton's offsets turned by the pose's rotations, parents
@@ -23,7 +23,7 @@ export const makeJointPoses = (): MutableJointPoses => recordOf(jointNames, () =
 export function forwardKinematics(
   skeleton: Skeleton,
   pose: UpperBodyPose,
-  target: MutableJointPoses = makeJointPoses(),
+  target: MutableJointPoses = createJointPoses(),
 ): MutableJointPoses {
   for (let index = 0; index < jointNames.length; index++) {
     const joint = jointNames[index]!;

@@ -54,7 +54,7 @@ const opposed = fingerBend(0, 0, 0, 0);
  * fist. A finger that is inside when it is straight begins bent back, and stays straight where its outer bones are
  * inside even so. The thumb closes from above the palm or from before it, whichever brings it further round.
  */
-export function closeRound(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
+export function closeAround(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
   for (let i = 0; i < fingerNames.length; i++) {
     const name = fingerNames[i]!;
     closeFinger(surface, name, geometry[name], name === 'thumb' ? openThumb : flatHand[name], target[name]);

@@ -18,7 +18,7 @@ export interface HandTilt {
 export type HandTilts = { readonly [Hand in Side]?: HandTilt | undefined };
 
 /** Returns the default tilt, used until the user is calibrated. */
-export function usualHandTilt(side: Side): HandTilt {
+export function defaultHandTilt(side: Side): HandTilt {
   const [pitch, yaw] = proportions.handTilt as [number, number];
   // A left hand is a right one's mirror image.
   return { pitch, yaw: side === 'left' ? -yaw : yaw };
@@ -35,14 +35,14 @@ export function handTiltOf({ x, y, z }: Vec3): HandTilt {
 export const { steepestHandTilt } = limits;
 
 /** Whether a hand may be held so. */
-export const isBelievableTilt = ({ pitch, yaw }: HandTilt): boolean => Math.hypot(pitch, yaw) <= steepestHandTilt;
+export const isPlausibleTilt = ({ pitch, yaw }: HandTilt): boolean => Math.hypot(pitch, yaw) <= steepestHandTilt;
 
 /** The rotation that a hand of this tilt is turned by, in its own frame, so that its −Z continues the forearm. */
-export function turnOfTilt({ pitch, yaw }: HandTilt): MutableQuat {
+export function tiltRotation({ pitch, yaw }: HandTilt): MutableQuat {
   const angle = Math.hypot(pitch, yaw);
   return angle < 1e-12 ? quat(0, 0, 0, 1) : fromAxisAngle(vec3(pitch / angle, yaw / angle, 0), angle);
 }
 
 /** Returns the turn to a forearm in this direction [unit, hand frame], limited to the steepest plausible tilt. */
-export const turnToForearm = (direction: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+export const forearmRotation = (direction: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   limitAngle(rotationBetween(forward, direction, target), steepestHandTilt, target);

@@ -51,13 +51,13 @@ export interface Pinning extends TrackerMeasuring {
   /** Creates the pins of one estimator. */
   create(calibration: Calibration): Pins;
   /** Throws a RangeError where the offset of a tracker is no pose, or longer than a tracker is from its joint. */
-  demandOffsets(calibration: Calibration): void;
+  assertOffsets(calibration: Calibration): void;
 }
 
 export const pinning: Pinning = {
   ...trackerMeasuring,
   create: (calibration) => new Pins(calibration),
-  demandOffsets({ trackerOffsets }) {
+  assertOffsets({ trackerOffsets }) {
     for (const name of trackerNames) {
       const offset = trackerOffsets?.[name];
       if (!offset || isPlausibleOffset(offset)) continue;

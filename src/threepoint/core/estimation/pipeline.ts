@@ -7,7 +7,7 @@ import { rotate } from '../math/quat';
 import { vec3 } from '../math/vec3';
 import type { DeviceBody } from '../tracking/device-body';
 import { floorFromHeading } from '../tracking/heading';
-import { demandPinning, type TrackingFrame } from '../tracking/tracking-frame';
+import { assertPinning, type TrackingFrame } from '../tracking/tracking-frame';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { composeBody } from './compose-body';
@@ -153,7 +153,7 @@ export class Pipeline implements PoseEstimator {
   }
 
   update(frame: TrackingFrame): Estimate {
-    demandPinning(frame.trackers, this.#pins);
+    assertPinning(frame.trackers, this.#pins);
     const { state } = this;
     const body = this.#body;
     const deltaSeconds = this.#elapsed(frame.time);

@@ -1,4 +1,4 @@
-import { fingerBones } from '../body/finger-bones';
+import { fingerBoneSuffixes } from '../body/finger-bone-names';
 import { type Side, sides } from '../math/side';
 
 const centreBones = ['hips', 'spine', 'chest', 'upperChest', 'neck', 'head', 'jaw'] as const;
@@ -21,7 +21,7 @@ export type BoneName =
 export type BoneMap = Readonly<Partial<Record<BoneName, string>>>;
 
 /** VRM's names of all bones of a hand's fingers, without the side. */
-export const handFingerBones: readonly string[] = fingerNames.flatMap(fingerBones);
+export const handFingerBones: readonly string[] = fingerNames.flatMap(fingerBoneSuffixes);
 
 /** Every bone that a map may name. */
 export const boneNames: ReadonlySet<string> = new Set([

@@ -1,4 +1,4 @@
-import { fingerBones } from '../body/finger-bones';
+import { fingerBoneSuffixes } from '../body/finger-bone-names';
 import { distance, dot, normalise, subtract, zero } from '../math/vec3';
 import { fingerNames } from './bones';
 import type { JointTree } from './joint-tree';
@@ -86,7 +86,7 @@ export function matchFingers(tree: JointTree, hand: number): readonly FingerMatc
   }
   const matches = new Map<string, FingerMatch>();
   for (const [finger, { joints }] of pairs)
-    for (const [i, bone] of fingerBones(finger).entries())
+    for (const [i, bone] of fingerBoneSuffixes(finger).entries())
       if (joints[i] !== undefined && !matches.has(bone))
         matches.set(bone, { bone, joint: joints[i], confidence, reason });
   return [...matches.values()];

@@ -14,7 +14,7 @@ import {
   type Vec3,
   zero,
 } from '../math/vec3';
-import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { createJointPoses, type FileMotion } from '../motion/file-motion';
 import { recordOf } from '../records';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
@@ -106,7 +106,7 @@ interface Stance {
 }
 
 function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance {
-  const poses = makeJointPoses(file.names.length);
+  const poses = createJointPoses(file.names.length);
   const shares = recordOf(axisNames, () => 0);
   const lows = recordOf(axisNames, (): number[] => []);
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
@@ -162,7 +162,7 @@ export function turnBetween(from: FileAxis, to: FileAxis): Quat {
 export function facesBack(file: FileMotion, joints: StandingJoints): boolean | null {
   const [leftHip, rightHip] = joints.upperLegs;
   if ([leftHip, rightHip, ...joints.feet, ...joints.toes].some((i) => i < 0)) return null;
-  const poses = makeJointPoses(file.names.length);
+  const poses = createJointPoses(file.names.length);
   let [back, clear] = [0, 0];
   for (const frame of sampledFrames(file.frameCount, 100)) {
     const { positions } = file.pose(frame, poses);

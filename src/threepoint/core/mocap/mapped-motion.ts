@@ -1,6 +1,6 @@
 import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
 import { subtract, up, type Vec3 } from '../math/vec3';
-import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
+import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
 import { type BvhJoint, type BvhMotion, poseBvh } from '../motion/read-bvh';
 import { floorFromAxes } from './body-axes';
 import { directions } from './read-skeleton-map';
@@ -34,7 +34,7 @@ function facingForward(file: FileMotion, map: SkeletonMap): FileMotion {
   const across = rotate(floor, subtract(restOf('rightUpperArm'), restOf('leftUpperArm')));
   const ours = fromAxisAngle(up, -Math.atan2(-across.z, across.x));
   const turn = multiply(conjugate(floor), multiply(ours, floor, quat(0, 0, 0, 1)));
-  const turned = makeJointPoses(file.names.length);
+  const turned = createJointPoses(file.names.length);
   for (const [i, at] of file.rest.entries()) rotate(turn, at, turned.positions[i]!);
   for (const rotation of turned.rotations) Object.assign(rotation, turn);
   return countedFrom(file, turned);
@@ -65,7 +65,7 @@ export function fromMappedRest(
   if (restFrame === undefined) return file;
   if (restFrame > restFile.frameCount)
     throw new Error(`restFrame ${restFrame}, but there are ${restFile.frameCount} frames`);
-  const there = restFile.pose(restFrame - 1, makeJointPoses(restFile.names.length));
+  const there = restFile.pose(restFrame - 1, createJointPoses(restFile.names.length));
   const order = file.names.map((name) => restFile.names.indexOf(name));
   const missing = order.indexOf(-1);
   if (missing >= 0) throw new Error(`no joint “${file.names[missing]}”, so its restFrame is of another skeleton`);
@@ -95,5 +95,5 @@ function poseOfAngles(
     });
   });
   const pose = { ...motion, joints, frameCount: 1, values: Float64Array.from(values) };
-  return poseBvh(pose, 0, makeJointPoses(joints.length));
+  return poseBvh(pose, 0, createJointPoses(joints.length));
 }

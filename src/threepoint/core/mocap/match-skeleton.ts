@@ -2,7 +2,7 @@ import type { BoneName } from '../humanoid/bones';
 import { type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
 import { type Side, sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
-import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
+import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
 import {
   axesOfTrunk,
   axisIn,
@@ -127,7 +127,7 @@ function exchanged(match: HumanoidMatch): HumanoidMatch {
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
 function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): JointPoses | null {
-  const pose = file.pose(0, makeJointPoses(file.names.length));
+  const pose = file.pose(0, createJointPoses(file.names.length));
   const axes = axesOfTrunk(pose.positions, joints, true);
   if (!axes || !restsAsPerson(pose.positions, limbs, axes)) return null;
   const level = sides.every((side) => {

@@ -1,4 +1,4 @@
-import { calibrationComplaint, defaultCalibration, statureFromEyeHeight } from '../body/calibration';
+import { calibrationProblem, defaultCalibration, statureFromEyeHeight } from '../body/calibration';
 import { armLength as personArmLength } from '../body/skeleton';
 import {
   conjugate,
@@ -27,7 +27,7 @@ import {
   writeVec3,
   zero,
 } from '../math/vec3';
-import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { createJointPoses, type FileMotion } from '../motion/file-motion';
 import { armLength, cmu, eyesFromHeadJoint, units } from './mocap-rules.json';
 import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestPose } from './rest-pose';
 import {
@@ -122,7 +122,7 @@ function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number):
 /** Returns why height and arm span of joints at rest [m] are no person's; null: they are, or there are no legs. */
 function bodyComplaint(rest: RestPose): string | null {
   const eyeHeight = eyeHeightAtRest(rest);
-  return eyeHeight === null ? null : calibrationComplaint({ eyeHeight, armSpan: armSpanAtRest(rest) });
+  return eyeHeight === null ? null : calibrationProblem({ eyeHeight, armSpan: armSpanAtRest(rest) });
 }
 
 /** Whether joints at rest [m] have the size of a person. */
@@ -187,7 +187,7 @@ export function* toOurJoints(
   };
   const positions = new Float64Array(file.frameCount * positionsWidth).fill(Number.NaN);
   const rotations = new Float64Array(file.frameCount * rotationsWidth);
-  const poses = makeJointPoses(file.names.length);
+  const poses = createJointPoses(file.names.length);
   const places = new Map(truthJoints.map((joint) => [joint, vec3(0, 0, 0)]));
   const lacking = assumed.filter((joint) => between[joint]);
   const carriedOf = new Map(

@@ -1,4 +1,4 @@
-import { type Calibration, calibrationComplaint } from '../body/calibration';
+import { type Calibration, calibrationProblem } from '../body/calibration';
 import { reasonOf } from '../errors/reasons';
 import { isObject } from '../json';
 import type { FileMotion } from '../motion/file-motion';
@@ -192,7 +192,7 @@ function* clipsOf(
   const { cuts, pieces } = cutAtLeaps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);
-  const complaint = calibrationComplaint(calibration);
+  const complaint = calibrationProblem(calibration);
   if (complaint) throw new Error(complaint);
   const neutral = neutralHead(motion, pieces);
   const floor = floorHeight(motion, pieces);

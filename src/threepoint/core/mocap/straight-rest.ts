@@ -1,7 +1,7 @@
 import { conjugate, fromAxisAngle, multiply, type Quat, rotate, rotationBetween } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, cross, dot, length, normalise, reject, subtract, type Vec3, zero } from '../math/vec3';
-import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
+import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
 import { downward, outward, sampledFrames } from './body-axes';
 
 /** A limb's joints by their index, from the trunk outwards; −1: the file has no such joint. */
@@ -28,7 +28,7 @@ class Straightener {
     readonly file: FileMotion,
     readonly parents: readonly number[],
   ) {
-    this.pose = makeJointPoses(file.names.length);
+    this.pose = createJointPoses(file.names.length);
     for (const [i, at] of file.rest.entries()) Object.assign(this.pose.positions[i]!, at);
   }
 
@@ -66,7 +66,7 @@ class Straightener {
  * points down in T-pose on the left, up on the right.
  */
 function hingeOf(file: FileMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 | null {
-  const poses = makeJointPoses(file.names.length);
+  const poses = createJointPoses(file.names.length);
   const sum = { x: 0, y: 0, z: 0 };
   let count = 0;
   for (const frame of sampledFrames(file.frameCount)) {

@@ -2,7 +2,7 @@ import { conjugate, type Quat, quat, rotate } from '../math/quat';
 import { quantile } from '../math/statistics';
 import { parentsFirst } from '../math/tree';
 import { add, dot, subtract, type Vec3, vec3 } from '../math/vec3';
-import { type FileMotion, makeJointPoses } from '../motion/file-motion';
+import { createJointPoses, type FileMotion } from '../motion/file-motion';
 import { type StandingJoints, sampledFrames, trunkWay } from './body-axes';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
@@ -19,7 +19,7 @@ export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: Fil
   const [foot] = joints.feet;
   if (foot < 0) return null;
   const height = dot(subtract(file.rest[joints.hips]!, file.rest[foot]!), above);
-  const poses = makeJointPoses(file.names.length);
+  const poses = createJointPoses(file.names.length);
   const places: Vec3[] = [];
   let standing = 0;
   for (const frame of sampledFrames(file.frameCount)) {
@@ -42,7 +42,7 @@ export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: Fil
 export function withTurnedRest(file: FileMotion, turn: Quat): FileMotion {
   const parents = file.parents!;
   const order = parentsFirst(parents);
-  const before = makeJointPoses(file.names.length);
+  const before = createJointPoses(file.names.length);
   const back = quat(0, 0, 0, 1);
   const offset = vec3(0, 0, 0);
   return {

@@ -8,7 +8,7 @@ export interface JointPoses {
 }
 
 /** Poses of so many joints, all at the origin, as at rest. */
-export const makeJointPoses = (count: number): JointPoses => ({
+export const createJointPoses = (count: number): JointPoses => ({
   positions: Array.from({ length: count }, () => vec3(0, 0, 0)),
   rotations: Array.from({ length: count }, () => quat(0, 0, 0, 1)),
 });

@@ -28,7 +28,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import { type FileMotion, type JointPoses, makeJointPoses } from './file-motion';
+import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
 
 /** A clip of glTF has no rate of its own: it is read at this one [Hz]. */
 const rateHz = 60;
@@ -269,7 +269,7 @@ export class GltfClip {
   /** Writes nodes as the file shows them without its animation. */
   rest(nodes: readonly number[]): JointPoses {
     this.#scene.pose(null);
-    return this.#scene.write(nodes, makeJointPoses(nodes.length));
+    return this.#scene.write(nodes, createJointPoses(nodes.length));
   }
 
   /** Returns for each of these nodes which of them is the nearest above it; −1: none. */

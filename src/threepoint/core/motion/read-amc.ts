@@ -1,6 +1,6 @@
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
 import { add, copyVec3, type MutableVec3, setVec3, subtract, vec3 } from '../math/vec3';
-import { type FileMotion, type JointPoses, makeJointPoses } from './file-motion';
+import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
 import { Lines, Rows, shown } from './lines';
 import { type AsfSkeleton, fromEuler } from './read-asf';
 
@@ -76,7 +76,7 @@ function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values 
   const { bones } = skeleton;
   const names = ['root', ...bones.map(({ name }) => name), ...bones.map(({ name }) => `${name}:end`)];
   const rest = player
-    .pose(new Float64Array(width), 0, makeJointPoses(names.length))
+    .pose(new Float64Array(width), 0, createJointPoses(names.length))
     .positions.map((position) => subtract(position, skeleton.rootPosition));
   return {
     ...{ names, rest, rateHz: null, frameCount: count, notes: [] },

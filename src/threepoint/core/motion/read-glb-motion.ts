@@ -1,7 +1,7 @@
 import { isIndex, type Json } from '../json';
 import { angleBetween, conjugate, identity, multiply, type Quat, rotate } from '../math/quat';
 import { add, distance, scale, subtract, type Vec3 } from '../math/vec3';
-import { type FileMotion, type JointPoses, makeJointPoses } from './file-motion';
+import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
 import { accessorOf, decompose, GltfClip, objects } from './gltf-clip';
 
 /** A joint in the space in which its skin was bound. */
@@ -58,7 +58,7 @@ function restOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>): JointPoses {
     );
   const [turn] = [identity, shown.rotations[above] ?? identity].sort((a, b) => off(a) - off(b)) as [Quat];
   const size = sizeOf(clip, bound, shown);
-  const rest = makeJointPoses(all.length);
+  const rest = createJointPoses(all.length);
   for (const node of clip.order) {
     const { parent } = clip.nodes[node]!;
     const own = bound.get(node);

@@ -1,9 +1,9 @@
 import { type Calibration, statureFromEyeHeight } from '../body/calibration';
-import { fingerBonesOf } from '../body/finger-bones';
+import { fingerBoneNames } from '../body/finger-bone-names';
 import { averageHand, fingerPoints, type HandGeometry, makeFingerPoints, mirrorPoint } from '../body/hand-geometry';
 import { type FingerBend, type FingerName, fingerNames } from '../body/hand-shape';
 import { type JointName, jointNames, parentOf } from '../body/joints';
-import { legShares } from '../body/leg-shares';
+import { legProportions } from '../body/leg-proportions';
 import { type Skeleton, sideSign, skeletonFromCalibration, wristFromHandBone } from '../body/skeleton';
 import { type MutableQuat, type Quat, rotateInverse, setQuat } from '../math/quat';
 import { type Side, sides } from '../math/side';
@@ -64,7 +64,7 @@ function addFingers(builder: Builder, side: Side, hand: HandGeometry): void {
     fingerPoints(finger, hand[finger], restBend(finger), points);
     const at = points.map((point) => handPoint(side, point));
     let parent: string = `${side}Hand`;
-    for (const [i, name] of fingerBonesOf(side, finger).entries()) {
+    for (const [i, name] of fingerBoneNames(side, finger).entries()) {
       const offset = i === 0 ? at[0]! : subtract(at[i]!, at[i - 1]!);
       builder.add(name, parent, offset, i === 2 ? { end: subtract(at[3]!, at[2]!) } : {});
       parent = name;
@@ -73,7 +73,7 @@ function addFingers(builder: Builder, side: Side, hand: HandGeometry): void {
 }
 
 function addLeg(builder: Builder, side: Side, eyeHeight: number, hipsHeight: number): void {
-  const { aside, hip, knee, ankle, foot } = legShares;
+  const { aside, hip, knee, ankle, foot } = legProportions;
   const rest = { measured: false };
   builder.add(
     `${side}UpperLeg`,

@@ -1,12 +1,12 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
-import { fingerBonesOf } from '../body/finger-bones';
+import { fingerBoneNames } from '../body/finger-bone-names';
 import { type Fingers, fingerNames, unknownFingers } from '../body/hand-shape';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, backward, cross, normalise, right, scale, up, type Vec3, vec3, writeVec3, zero } from '../math/vec3';
-import { makeJointPoses } from './file-motion';
+import { createJointPoses } from './file-motion';
 import { poseBones } from './motion';
 import { type MotionBone, motionSkeleton, turnPoint } from './skeleton';
 import { BoneRotations } from './take-motion';
@@ -85,7 +85,7 @@ function addHand(joints: Joints, side: Side): void {
   const ahead = side === 'left' ? right : left;
   joints.list.push({ name: `${side}-hand-wrist`, bone: joints.index(hand), at: zero, rest: axesAlong(ahead, up) });
   for (const finger of fingerNames) {
-    const [first, second, third] = fingerBonesOf(side, finger);
+    const [first, second, third] = fingerBoneNames(side, finger);
     const called = `${side}-hand-${finger}`;
     // The nail of a thumb looks up and outward.
     const above = finger === 'thumb' ? normalise(vec3(side === 'left' ? -1 : 1, 1, 1)) : up;
@@ -156,7 +156,7 @@ export class XRBodyPoser {
       rotations: new Float32Array(4 * measured),
       seen: new Uint8Array(1),
     };
-    this.#posed = makeJointPoses(this.#bones.length);
+    this.#posed = createJointPoses(this.#bones.length);
     this.#poses = new Map(this.#joints.map(({ name }) => [name, makePose<'floor'>()]));
   }
 

@@ -1,5 +1,5 @@
-import { type Calibration, calibrationComplaint, steepestGazePitch } from '../body/calibration';
-import { type HandTilts, handTiltOf, isBelievableTilt } from '../body/hand-tilt';
+import { type Calibration, calibrationProblem, steepestGazePitch } from '../body/calibration';
+import { type HandTilts, handTiltOf, isPlausibleTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import { type Pose, transformTracked } from '../math/pose';
@@ -11,7 +11,7 @@ import type { Mutable } from '../records';
 import { type CalibrationFault, calibrationFaults } from './calibration-faults';
 import { headingFromFloor } from './heading';
 import type { TrackerMeasuring, TrackerSample } from './measure-trackers';
-import { demandPinning, type TrackingFrame } from './tracking-frame';
+import { assertPinning, type TrackingFrame } from './tracking-frame';
 
 /**
  * The person stands straight, looks ahead and stretches both arms for this long: forward, sideways, or down and out by
@@ -68,7 +68,12 @@ export type GuidedCalibration =
       readonly reason: string;
     };
 
-export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', part: 0, startTime: null, samples: null };
+export const initialGuidedCalibration: GuidedCalibration = {
+  kind: 'measuring',
+  part: 0,
+  startTime: null,
+  samples: null,
+};
 
 /**
  * Returns the next state after a frame; `done` and `failed` stay as they are. Time that runs backwards restarts the
@@ -80,7 +85,7 @@ export function stepGuidedCalibration(
   frame: TrackingFrame,
   pinning?: TrackerMeasuring,
 ): GuidedCalibration {
-  demandPinning(frame.trackers, pinning);
+  assertPinning(frame.trackers, pinning);
   if (state.kind !== 'measuring') return state;
   const startTime = state.startTime === null || frame.time < state.startTime ? frame.time : state.startTime;
   const samples = withSample(sampleOf(frame, pinning), startTime === frame.time ? null : state.samples);
@@ -223,7 +228,7 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
   };
   const trackers = samples.map((sample) => sample.trackers);
   const calibration = { ...measured, ...pinning?.measure(trackers, measured, head.height) };
-  const complaint = calibrationComplaint(calibration);
+  const complaint = calibrationProblem(calibration);
   return complaint === null
     ? { kind: 'done', calibration }
     : { kind: 'failed', fault: 'unlikely', reason: `${complaint} ${calibrationFaults.unlikely}` };
@@ -263,7 +268,7 @@ function tiltsOf(wrists: readonly MeasuredWrist[], headHeight: number, eyeHeight
       1 / seen.length,
     );
     const tilt = handTiltOf(forearm);
-    if (length(forearm) > STEADY_HAND && isBelievableTilt(tilt)) handTilts[side] = tilt;
+    if (length(forearm) > STEADY_HAND && isPlausibleTilt(tilt)) handTilts[side] = tilt;
   }
   return Object.keys(handTilts).length > 0 ? { handTilts } : {};
 }

@@ -1,5 +1,5 @@
 import type { Calibration } from '../body/calibration';
-import { legShares } from '../body/leg-shares';
+import { legProportions } from '../body/leg-proportions';
 import { skeletonFromCalibration } from '../body/skeleton';
 import { isPlausibleOffset, type TrackerName, type TrackerOffset, trackerNames } from '../body/tracker-offsets';
 import {
@@ -83,7 +83,7 @@ function restJointsOf(calibration: Calibration, headHeight: number): (name: Trac
   return (name, tracker) => {
     if (name === 'hips') return hips;
     if (name === 'chest') return chest;
-    return stands ? vec3(tracker.x, legShares.ankle * calibration.eyeHeight, hips.z) : null;
+    return stands ? vec3(tracker.x, legProportions.ankle * calibration.eyeHeight, hips.z) : null;
   };
 }
 

@@ -21,7 +21,7 @@ export interface PageClock {
   /** Whether the newest frame follows a pause. */
   readonly paused: boolean;
   /** The time that was left out of all pauses so far [s]. */
-  readonly leftOut: number;
+  readonly skippedSeconds: number;
   /** Returns the time between two frames, for events from elsewhere. */
   now(): number;
 }
@@ -65,7 +65,7 @@ export function createPageClock(read: () => number): PageClock {
     get paused() {
       return paused;
     },
-    get leftOut() {
+    get skippedSeconds() {
       return leftOut;
     },
     now() {
@@ -77,7 +77,7 @@ export function createPageClock(read: () => number): PageClock {
 }
 
 /** Returns a clock that continues when `read` is set back. Call it often: time between two calls may be lost. */
-export function neverBack(read: () => number): () => number {
+export function monotonic(read: () => number): () => number {
   let setBack = 0;
   let last = Number.NEGATIVE_INFINITY;
   return () => {

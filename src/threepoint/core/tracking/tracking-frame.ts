@@ -34,7 +34,7 @@ export interface TrackingFrame {
 }
 
 /** Throws a TypeError where there are trackers and no part that draws or measures them. */
-export function demandPinning(trackers: unknown, pinning: object | undefined): void {
+export function assertPinning(trackers: unknown, pinning: object | undefined): void {
   if (!trackers || pinning) return;
   throw new TypeError("Trackers need `pinning`. Import it from 'threepoint/trackers' and pass it with the options.");
 }

@@ -2,12 +2,12 @@ import fc from 'fast-check';
 import {
   armSpanFromFingertipSpan,
   type Calibration,
-  calibrationComplaint,
+  calibrationFromHeadHeight,
+  calibrationProblem,
   defaultCalibration,
   eyeHeightFromStature,
   eyeHeightRange,
   fingertipSpanFromArmSpan,
-  provisionalCalibration,
   sameCalibration,
   statureFromEyeHeight,
   steepestGazePitch,
@@ -41,10 +41,10 @@ describe('measures of people', () => {
 
 describe('what is a person’s body', () => {
   test('ordinary people, small children and giants are', () => {
-    expect(calibrationComplaint(defaultCalibration)).toBeNull();
+    expect(calibrationProblem(defaultCalibration)).toBeNull();
     for (const stature of [1.02, 1.2, 1.5, 1.7, 1.9, 2.1, 2.28]) {
       const calibration = { eyeHeight: eyeHeightFromStature(stature), armSpan: armSpanFromFingertipSpan(stature) };
-      expect(calibrationComplaint(calibration)).toBeNull();
+      expect(calibrationProblem(calibration)).toBeNull();
     }
   });
 
@@ -103,14 +103,14 @@ describe('what is a person’s body', () => {
       /right hand’s tilt/,
     ],
   ])('%s is not, and the sentence says why', (_, calibration, sentence) => {
-    expect(calibrationComplaint(calibration)).toMatch(sentence);
+    expect(calibrationProblem(calibration)).toMatch(sentence);
   });
 });
 
 test('whatever the guided calibration measures of a headset and of hands is a person’s', () => {
   const tilt = { pitch: 0.6, yaw: -0.7 };
   for (const gazePitch of [-steepestGazePitch, 0, steepestGazePitch]) {
-    expect(calibrationComplaint({ ...defaultCalibration, gazePitch, handTilts: { left: tilt } })).toBeNull();
+    expect(calibrationProblem({ ...defaultCalibration, gazePitch, handTilts: { left: tilt } })).toBeNull();
   }
 });
 
@@ -149,21 +149,21 @@ test('a forearm that was typed stays with other measures, unless no such arm has
 
 describe('before the first calibration', () => {
   test('who stands is as tall as they stand', () => {
-    expect(provisionalCalibration(1.72).eyeHeight).toBe(1.72);
-    expect(provisionalCalibration(1.45).eyeHeight).toBe(1.45);
+    expect(calibrationFromHeadHeight(1.72).eyeHeight).toBe(1.72);
+    expect(calibrationFromHeadHeight(1.45).eyeHeight).toBe(1.45);
   });
 
   test('who sits, or whose floor is wrong, is an ordinary adult', () => {
-    expect(provisionalCalibration(1.15)).toEqual(defaultCalibration);
-    expect(provisionalCalibration(0)).toEqual(defaultCalibration);
-    expect(provisionalCalibration(eyeHeightRange.max + 0.5)).toEqual(defaultCalibration);
-    expect(provisionalCalibration(Number.NaN)).toEqual(defaultCalibration);
+    expect(calibrationFromHeadHeight(1.15)).toEqual(defaultCalibration);
+    expect(calibrationFromHeadHeight(0)).toEqual(defaultCalibration);
+    expect(calibrationFromHeadHeight(eyeHeightRange.max + 0.5)).toEqual(defaultCalibration);
+    expect(calibrationFromHeadHeight(Number.NaN)).toEqual(defaultCalibration);
   });
 
   test('it is always a body', () => {
     fc.assert(
       fc.property(number(-10, 10), (height) => {
-        expect(calibrationComplaint(provisionalCalibration(height))).toBeNull();
+        expect(calibrationProblem(calibrationFromHeadHeight(height))).toBeNull();
       }),
       { seed },
     );

@@ -1,4 +1,4 @@
-import { closeRound, distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
+import { closeAround, distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
 import { averageHand, fingerPoints, makeFingerPoints } from 'threepoint/core/body/hand-geometry';
 import { closedHand, type FingerName, fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
@@ -26,7 +26,7 @@ const things: Readonly<Record<string, (point: Vec3) => number>> = {
 
 describe.each(Object.entries(things))('a hand round %s', (_, surface) => {
   const shape = makeHandShape();
-  closeRound(surface, hand, shape);
+  closeAround(surface, hand, shape);
 
   test.each(fingerNames)('lays its %s finger on the surface, and not through it', (name) => {
     const gap = clearance(name, shape, surface);
@@ -37,7 +37,7 @@ describe.each(Object.entries(things))('a hand round %s', (_, surface) => {
 
 test('the thumb of a hand round a bow’s grip lies across it, over against the palm', () => {
   const shape = makeHandShape();
-  closeRound(things['a bow’s grip across the palm']!, hand, shape);
+  closeAround(things['a bow’s grip across the palm']!, hand, shape);
   const [, , joint, tip] = fingerPoints('thumb', hand.thumb, shape.thumb, makeFingerPoints());
   // The grip's axis is 36 mm before the palm.
   expect(tip.y).toBeLessThan(-0.05);
@@ -47,6 +47,6 @@ test('the thumb of a hand round a bow’s grip lies across it, over against the 
 
 test('a hand round nothing is a fist', () => {
   const shape = makeHandShape();
-  closeRound(() => 1, hand, shape);
+  closeAround(() => 1, hand, shape);
   for (const name of fingerNames) expect(shape[name].middle).toBeCloseTo(closedHand[name].middle, 9);
 });

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import type { Calibration } from 'threepoint/core/body/calibration';
-import { handTiltOf, isBelievableTilt, turnOfTilt } from 'threepoint/core/body/hand-tilt';
+import { handTiltOf, isPlausibleTilt, tiltRotation } from 'threepoint/core/body/hand-tilt';
 import { createEstimator, createIk } from 'threepoint/core/estimation/estimators';
 import { angleBetween, conjugate, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
 import { sides } from 'threepoint/core/math/side';
@@ -21,7 +21,7 @@ const framesAsTold = 2;
 /** Returns the frame of a device whose hands have these tilts to the forearms. */
 const worn = (frame: TrackingFrame, left: typeof straight, right: typeof straight): TrackingFrame => {
   const turned = (hand: TrackingFrame['leftHand'], by: typeof straight) =>
-    hand && { ...hand, orientation: multiply(hand.orientation, conjugate(turnOfTilt(by))) };
+    hand && { ...hand, orientation: multiply(hand.orientation, conjugate(tiltRotation(by))) };
   return { ...frame, leftHand: turned(frame.leftHand, left), rightHand: turned(frame.rightHand, right) };
 };
 
@@ -29,7 +29,7 @@ describe('hands that stand at a tilt to their forearms', () => {
   test('a tilt is where its turn takes −Z, however long the forearm', () => {
     fc.assert(
       fc.property(tilt, number(0.1, 2), (given, metres) => {
-        const found = handTiltOf(scale(rotate(turnOfTilt(given), forward), metres));
+        const found = handTiltOf(scale(rotate(tiltRotation(given), forward), metres));
         expect(found.pitch).toBeCloseTo(given.pitch, 9);
         expect(found.yaw).toBeCloseTo(given.yaw, 9);
       }),
@@ -38,15 +38,15 @@ describe('hands that stand at a tilt to their forearms', () => {
   });
 
   test('up is pitch and to the left is yaw', () => {
-    expect(rotate(turnOfTilt({ pitch: 0.3, yaw: 0 }), forward).y).toBeGreaterThan(0.2);
-    expect(rotate(turnOfTilt({ pitch: 0, yaw: 0.3 }), forward).x).toBeLessThan(-0.2);
+    expect(rotate(tiltRotation({ pitch: 0.3, yaw: 0 }), forward).y).toBeGreaterThan(0.2);
+    expect(rotate(tiltRotation({ pitch: 0, yaw: 0.3 }), forward).x).toBeLessThan(-0.2);
     expect(handTiltOf(forward)).toEqual({ pitch: 0, yaw: -0 });
   });
 
   test('a wrist bent by 57° and more is no tilt of a hand', () => {
-    expect(isBelievableTilt({ pitch: 0.6, yaw: 0.7 })).toBe(true);
-    expect(isBelievableTilt({ pitch: -0.8, yaw: 0.7 })).toBe(false);
-    expect(isBelievableTilt({ pitch: Number.NaN, yaw: 0 })).toBe(false);
+    expect(isPlausibleTilt({ pitch: 0.6, yaw: 0.7 })).toBe(true);
+    expect(isPlausibleTilt({ pitch: -0.8, yaw: 0.7 })).toBe(false);
+    expect(isPlausibleTilt({ pitch: Number.NaN, yaw: 0 })).toBe(false);
   });
 
   test.each([
@@ -101,12 +101,12 @@ describe('tilts that are noticed while hands move', () => {
     return estimator.state.tilts.turns;
   };
   const degreesFrom = (found: Quat, { pitch, yaw }: typeof straight) =>
-    (angleBetween(found, turnOfTilt({ pitch, yaw })) * 180) / Math.PI;
+    (angleBetween(found, tiltRotation({ pitch, yaw })) * 180) / Math.PI;
 
   test('are at first the calibrated ones, else the usual ones, a left hand’s the mirror image', () => {
     const told = { pitch: 0.3, yaw: -0.2 };
     const { left, right } = noticed(0, { left: told });
-    expect(left).toBeSameRotationAs(turnOfTilt(told), 1e-6);
+    expect(left).toBeSameRotationAs(tiltRotation(told), 1e-6);
     const { pitch, yaw } = handTiltOf(rotate(right, forward));
     expect(handTiltOf(rotate(noticed(0, undefined).left, forward))).toEqual({
       pitch: expect.closeTo(pitch, 9),

@@ -1,4 +1,4 @@
-import { type Calibration, provisionalCalibration } from 'threepoint/core/body/calibration';
+import { type Calibration, calibrationFromHeadHeight } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
@@ -78,7 +78,7 @@ describe('a headset that sits above or below its usual place', () => {
   });
 
   test('nothing is noticed where the span was not measured: the arms may be longer', () => {
-    const derived = { ...body, armSpan: provisionalCalibration(body.eyeHeight).armSpan };
+    const derived = { ...body, armSpan: calibrationFromHeadHeight(body.eyeHeight).armSpan };
     expect(noticedAfter(60, hanging(0.03), createIk(derived)).state.headset.rise).toBe(0);
     expect(noticedAfter(60, hanging(0.03)).state.headset.rise).toBeGreaterThan(0);
   });

@@ -1,10 +1,10 @@
-import { turnOfTilt } from 'threepoint/core/body/hand-tilt';
+import { tiltRotation } from 'threepoint/core/body/hand-tilt';
 import { estimatedJoints, type JointName } from 'threepoint/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { solveIk } from 'threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from 'threepoint/core/estimation/joint-positions';
 import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/networks/chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from 'threepoint/core/estimation/networks/features';
+import { FeatureWindow, featureCount, frameFeatures } from 'threepoint/core/estimation/networks/frame-features';
 import { paperFeatures } from 'threepoint/core/estimation/networks/paper-features';
 import { makeHandTiltsState, noticeHandTilts } from 'threepoint/core/estimation/online-calibration/notice-hand-tilts';
 import { type Side, sides } from 'threepoint/core/math/side';
@@ -25,7 +25,7 @@ const expectNear = (actual: ArrayLike<number>, expected: readonly number[], what
 
 /** How hands are turned in a frame. */
 const turnsOf = ({ handTilts: [left = [], right = []] }: GoldenCase['frames'][number]) => {
-  const turn = ([pitch = Number.NaN, yaw = Number.NaN]: readonly number[]) => turnOfTilt({ pitch, yaw });
+  const turn = ([pitch = Number.NaN, yaw = Number.NaN]: readonly number[]) => tiltRotation({ pitch, yaw });
   return { left: turn(left), right: turn(right) };
 };
 

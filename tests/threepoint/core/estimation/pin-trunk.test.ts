@@ -333,8 +333,8 @@ describe('a pinned trunk', () => {
   ])('refuses an offset %s', (_, offsets, sentence) => {
     // reason: a page without types may leave parts of an offset out
     const body = { ...calibration, trackerOffsets: offsets as TrackerOffsets };
-    expect(() => pinning.demandOffsets(body)).toThrow(sentence);
-    expect(() => pinning.demandOffsets(withOffsets(calibration))).not.toThrow();
+    expect(() => pinning.assertOffsets(body)).toThrow(sentence);
+    expect(() => pinning.assertOffsets(withOffsets(calibration))).not.toThrow();
   });
 
   test('reports the ankles of tracked feet, and none without', () => {

@@ -2,7 +2,7 @@ import { Quaternion, Vector3 } from 'three';
 import { BVHLoader } from 'three/addons/loaders/BVHLoader.js';
 import type { Quat } from 'threepoint/core/math/quat';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { createJointPoses } from 'threepoint/core/motion/file-motion';
 import { type BvhMotion, poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
 import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
 import { finishWork } from 'threepoint/core/motion/work';
@@ -30,7 +30,7 @@ describe.each(Object.entries(people))('the %s person in a BVH file', (_, { motio
     const file = read(textOf(writeBvh(motion, { unit })));
     expect(file.frameCount).toBe(truth.length);
     expect(file.frameSeconds).toBeCloseTo(1 / rateHz, 8);
-    const pose = makeJointPoses(file.joints.length);
+    const pose = createJointPoses(file.joints.length);
     let compared = 0;
     for (const [frame, joints] of truth.entries()) {
       poseBvh(file, frame, pose);

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { fingerBonesOf } from 'threepoint/core/body/finger-bones';
+import { fingerBoneNames } from 'threepoint/core/body/finger-bone-names';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from 'threepoint/core/body/hand-geometry';
 import { closedHand, fingerNames, flatHand, type HandShape, mixHandShape } from 'threepoint/core/body/hand-shape';
@@ -50,7 +50,7 @@ function joints(
     const wrist = multiply(orientation, conjugate(wristFromHandBone[side]));
     for (const finger of fingerNames) {
       const points = fingerPoints(finger, hand[finger], shapes[side][finger], makeFingerPoints());
-      const names = [...fingerBonesOf(side, finger), `${fingerBonesOf(side, finger)[2]}:end`];
+      const names = [...fingerBoneNames(side, finger), `${fingerBoneNames(side, finger)[2]}:end`];
       for (const [i, point] of points.entries()) {
         const inWrist = side === 'left' ? point : mirrorPoint(point, vec3(0, 0, 0));
         found.set(names[i]!, { position: add(position, rotate(wrist, inWrist)), orientation: null });

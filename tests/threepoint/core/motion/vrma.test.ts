@@ -6,7 +6,7 @@ import { Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { jointNames } from 'threepoint/core/body/joints';
 import { distance } from 'threepoint/core/math/vec3';
-import { makeJointPoses } from 'threepoint/core/motion/file-motion';
+import { createJointPoses } from 'threepoint/core/motion/file-motion';
 import { poseBones } from 'threepoint/core/motion/motion';
 import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
 import { clipTimes, writeVrma } from 'threepoint/core/motion/write-vrma';
@@ -27,7 +27,7 @@ async function load(bytes: ArrayBuffer) {
 
 describe.each(Object.entries(people))('the %s person in a VRM Animation', (_, { motion, truth }) => {
   const bytes = bytesOf(writeVrma(motion));
-  const pose = makeJointPoses(motion.bones.length);
+  const pose = createJointPoses(motion.bones.length);
   let vrm: VRM;
   let play: (time: number) => void;
 

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { jointNames } from 'threepoint/core/body/joints';
-import { legShares } from 'threepoint/core/body/leg-shares';
+import { legProportions } from 'threepoint/core/body/leg-proportions';
 import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { trackerNames } from 'threepoint/core/body/tracker-offsets';
 import { createIk } from 'threepoint/core/estimation/estimators';
@@ -12,7 +12,7 @@ import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint
 import { add, distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import {
   type GuidedCalibration,
-  startGuidedCalibration,
+  initialGuidedCalibration,
   stepGuidedCalibration,
 } from 'threepoint/core/tracking/guided-calibration';
 import type { BodyTrackers, TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -63,7 +63,7 @@ function stretched(
 
 /** Two seconds and a bit at 72 Hz. */
 function guide(at: (seconds: number) => Omit<TrackingFrame, 'time'>, rateHz = 72): GuidedCalibration {
-  let state: GuidedCalibration = startGuidedCalibration;
+  let state: GuidedCalibration = initialGuidedCalibration;
   for (let i = 0; i <= 2.1 * rateHz; i++)
     state = stepGuidedCalibration(state, { ...at(i / rateHz), time: 50 + i / rateHz }, pinning);
   return state;
@@ -121,7 +121,7 @@ describe('the guided calibration', () => {
 
   test('reports how much is done, and ends after two seconds', () => {
     const still = stretched(person, 'forward');
-    let state: GuidedCalibration = startGuidedCalibration;
+    let state: GuidedCalibration = initialGuidedCalibration;
     const parts: number[] = [];
     for (let i = 0; state.kind === 'measuring'; i++) {
       parts.push(state.part);
@@ -206,14 +206,14 @@ describe('the guided calibration', () => {
 
   test('refuses when tracking was gone for most of the time', () => {
     const still = stretched(person, 'forward');
-    let state: GuidedCalibration = startGuidedCalibration;
+    let state: GuidedCalibration = initialGuidedCalibration;
     for (const time of [0, 0.01, 0.02, 6.5]) state = stepGuidedCalibration(state, { ...still, time });
     expect(refused(state)).toMatch(/Tracking was lost/);
   });
 
   test('takes its time where frames come three times a second', () => {
     const still = stretched(person, 'forward');
-    let state: GuidedCalibration = startGuidedCalibration;
+    let state: GuidedCalibration = initialGuidedCalibration;
     for (let frame = 0; frame <= 6; frame++) state = stepGuidedCalibration(state, { ...still, time: frame / 3 });
     expect(state).toMatchObject({ kind: 'measuring', part: 1 });
     state = stepGuidedCalibration(state, { ...still, time: 7 / 3 });
@@ -278,7 +278,7 @@ describe('the guided calibration', () => {
     const underHead = ({ x, y, z }: Vec3) => vec3(x - eyes.x, y + person.eyeHeight - eyes.y, z - eyes.z);
     const hips = underHead(rest.hips.position);
     const ankle = (x: number) => ({
-      position: vec3(x, legShares.ankle * person.eyeHeight, hips.z),
+      position: vec3(x, legProportions.ankle * person.eyeHeight, hips.z),
       orientation: identity,
     });
     const joints = {
@@ -327,7 +327,7 @@ describe('the guided calibration', () => {
 
     test('are refused with a sentence where a page has not asked for them', () => {
       const frame = { ...moved, time: 0, trackers: placed };
-      expect(() => stepGuidedCalibration(startGuidedCalibration, frame)).toThrow(/pinning.*threepoint\/trackers/);
+      expect(() => stepGuidedCalibration(initialGuidedCalibration, frame)).toThrow(/pinning.*threepoint\/trackers/);
     });
 
     test('of a tracker that moves, is lost or belongs elsewhere stay unknown', () => {

@@ -1,15 +1,15 @@
 import fc from 'fast-check';
 import {
   type Calibration,
-  calibrationComplaint,
+  calibrationFromHeadHeight,
+  calibrationProblem,
   eyeHeightRange,
-  provisionalCalibration,
   withEyeHeight,
 } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
 import { right, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import { createHeightWatch } from 'threepoint/core/tracking/height-watch';
+import { createGrowthDetector } from 'threepoint/core/tracking/height-growth';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
@@ -37,7 +37,11 @@ function liftOf(orientation: Quat, calibration: Calibration): number {
 }
 
 /** All calibrations that were in force, the first one included. */
-function wear(frames: readonly TrackingFrame[], calibration: Calibration, watch = createHeightWatch()): Calibration[] {
+function wear(
+  frames: readonly TrackingFrame[],
+  calibration: Calibration,
+  watch = createGrowthDetector(),
+): Calibration[] {
   const worn = [calibration];
   for (const frame of frames) {
     const grown = watch.observe(frame, worn.at(-1)!);
@@ -101,8 +105,8 @@ describe('a person who stands taller than was calibrated', () => {
 
   test('has longer arms where they were not measured', () => {
     const frames = motion(2, () => 1.7);
-    const grown = wear(frames, provisionalCalibration(1.62)).at(-1)!;
-    expect(grown.armSpan).toBeCloseTo(provisionalCalibration(1.7).armSpan, 9);
+    const grown = wear(frames, calibrationFromHeadHeight(1.62)).at(-1)!;
+    expect(grown.armSpan).toBeCloseTo(calibrationFromHeadHeight(1.7).armSpan, 9);
   });
 });
 
@@ -145,7 +149,7 @@ describe('no one grows', () => {
       ),
     ).toEqual([giant]);
     const shortArms = { eyeHeight: 1.6, armSpan: 1.6 * 0.69 };
-    expect(calibrationComplaint(shortArms)).toBeNull();
+    expect(calibrationProblem(shortArms)).toBeNull();
     expect(
       wear(
         motion(10, () => 1.7),
@@ -175,14 +179,14 @@ describe('what was seen of a tall stand is forgotten', () => {
   });
 
   test('at a reset', () => {
-    const watch = createHeightWatch();
+    const watch = createGrowthDetector();
     wear(before, person, watch);
     watch.reset();
     expect(wear(later(0.8), person, watch)).toEqual([person]);
   });
 
   test('with another calibration', () => {
-    const watch = createHeightWatch();
+    const watch = createGrowthDetector();
     wear(before, person, watch);
     const anew = { ...person };
     expect(wear(later(0.8), anew, watch)).toEqual([anew]);
@@ -198,9 +202,9 @@ describe('another eye height for the same person', () => {
   test('is the same as having settled there, where the span was never measured', () => {
     fc.assert(
       fc.property(evenly(1.4, 2), evenly(1.4, 2), (from, to) => {
-        const moved = withEyeHeight(provisionalCalibration(from), to);
+        const moved = withEyeHeight(calibrationFromHeadHeight(from), to);
         expect(moved.eyeHeight).toBe(to);
-        expect(moved.armSpan).toBeCloseTo(provisionalCalibration(to).armSpan, 12);
+        expect(moved.armSpan).toBeCloseTo(calibrationFromHeadHeight(to).armSpan, 12);
       }),
       { seed },
     );

@@ -8,7 +8,7 @@ import { add, lerp, scale, setVec3 } from '../../math/vec3';
 import { copyJoints, type MutableJointPositions, makeJoints } from '../joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
 import { chestFeatureCount, chestFeatures, headingFromChest } from '../networks/chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from '../networks/features';
+import { FeatureWindow, featureCount, frameFeatures } from '../networks/frame-features';
 import { LatestResult } from '../networks/latest-result';
 import type { PoseRegressor } from '../networks/pose-regressor';
 import { correctionCutoff } from '../smoothing.json';

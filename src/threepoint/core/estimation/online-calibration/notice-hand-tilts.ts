@@ -1,4 +1,4 @@
-import { type HandTilts, turnOfTilt, turnToForearm, usualHandTilt } from '../../body/hand-tilt';
+import { defaultHandTilt, forearmRotation, type HandTilts, tiltRotation } from '../../body/hand-tilt';
 import { type MutableQuat, quat, rotate } from '../../math/quat';
 import { type Side, sides } from '../../math/side';
 import {
@@ -54,7 +54,7 @@ export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | un
   for (const side of sides) {
     const hand = state[side];
     const tilt = calibrated?.[side];
-    rotate(turnOfTilt(tilt ?? usualHandTilt(side)), forward, hand.prior);
+    rotate(tiltRotation(tilt ?? defaultHandTilt(side)), forward, hand.prior);
     hand.calibrated = tilt !== undefined;
     setVec3(hand.noticed, 0, 0, 0);
     turnAfter(state, side);
@@ -76,7 +76,7 @@ function priorMetres({ prior, calibrated: told, noticed }: HandTiltState): numbe
 function turnAfter(state: HandTiltsState, side: Side): void {
   const hand = state[side];
   addScaled(hand.noticed, hand.prior, priorMetres(hand), direction);
-  turnToForearm(normalise(direction, forward, direction), state.turns[side]);
+  forearmRotation(normalise(direction, forward, direction), state.turns[side]);
 }
 
 /**

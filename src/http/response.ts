@@ -1,0 +1,108 @@
+import { type IncomingMessage, type ServerResponse, STATUS_CODES } from 'node:http';
+import type { Duplex } from 'node:stream';
+import { securityHeaders } from './security-headers';
+
+/** The answer to a request, before it is sent. */
+export interface HttpResponse {
+  readonly status: number;
+  /** Headers by their names in lower case; they replace the default ones. */
+  readonly headers?: Readonly<Record<string, string | number>>;
+  readonly body?: string | Uint8Array;
+}
+
+/** A refusal that the client receives: a status and a sentence. */
+export class HttpError extends Error {
+  readonly status: number;
+  /** The invalid field of the body, as `records[1].body.age`; null: no single field is at fault. */
+  readonly field: string | null;
+  readonly headers: Readonly<Record<string, string>>;
+
+  constructor(
+    status: number,
+    message: string,
+    { field = null, headers = {} }: { field?: string | null; headers?: Readonly<Record<string, string>> } = {},
+  ) {
+    super(message);
+    this.status = status;
+    this.field = field;
+    this.headers = headers;
+  }
+}
+
+export const jsonResponse = (value: unknown, status = 200): HttpResponse => ({
+  status,
+  headers: { 'content-type': 'application/json; charset=utf-8' },
+  body: `${JSON.stringify(value)}\n`,
+});
+
+export const textResponse = (text: string, status = 200): HttpResponse => ({
+  status,
+  headers: { 'content-type': 'text/plain; charset=utf-8' },
+  body: `${text}\n`,
+});
+
+/** An answer without a body. */
+export const noContent: HttpResponse = { status: 204 };
+
+export const errorResponse = ({ status, message, field, headers }: HttpError): HttpResponse => {
+  const answer = jsonResponse({ error: message, field }, status);
+  return { ...answer, headers: { ...answer.headers, ...headers } };
+};
+
+/** Bytes and time [ms] of an unread body that are drained before closing, so that the client receives the error. */
+const lingerBytes = 2 ** 20;
+const lingerMs = 1000;
+
+const headersOf = ({ headers, body }: HttpResponse): Record<string, string | number> => ({
+  ...securityHeaders,
+  'cache-control': 'no-store',
+  ...(body !== undefined && { 'content-length': Buffer.byteLength(body) }),
+  ...headers,
+});
+
+const announcesBody = ({ headers }: IncomingMessage): boolean =>
+  headers['transfer-encoding'] !== undefined || Number(headers['content-length'] ?? 0) > 0;
+
+/** Drains the body, then calls `done`: at its end, or when `lingerBytes` or `lingerMs` is exceeded. */
+function drain(request: IncomingMessage, done: () => void): void {
+  let read = 0;
+  const finish = (): void => {
+    clearTimeout(timer);
+    request.off('data', count).off('end', finish).off('close', finish).pause();
+    done();
+  };
+  const count = (chunk: Buffer): void => {
+    read += chunk.length;
+    if (read > lingerBytes) finish();
+  };
+  const timer = setTimeout(finish, lingerMs);
+  request.on('data', count).on('end', finish).on('close', finish).resume();
+}
+
+/** Sends an answer with the security headers. After an unread body the connection is closed. */
+export function sendResponse(request: IncomingMessage, response: ServerResponse, answer: HttpResponse): void {
+  if (response.destroyed || response.headersSent) return;
+  const unread = announcesBody(request) && !request.complete;
+  response.writeHead(answer.status, { ...headersOf(answer), ...(unread && { connection: 'close' }) });
+  const body = request.method === 'HEAD' ? undefined : answer.body;
+  if (!unread) {
+    response.end(body);
+    return;
+  }
+  // The response ends later, but the client knows its length from the header.
+  if (body !== undefined) response.write(body);
+  else response.flushHeaders();
+  drain(request, () => response.end());
+}
+
+/** Sends an answer on a raw socket: the request could not be parsed, or asked for an upgrade. */
+export function sendRawResponse(socket: Duplex, answer: HttpResponse): void {
+  const headers = { ...headersOf(answer), connection: 'close' };
+  const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
+  const head = `HTTP/1.1 ${answer.status} ${STATUS_CODES[answer.status]}\r\n${lines.join('')}\r\n`;
+  const timer = setTimeout(() => socket.destroy(), lingerMs);
+  socket.once('close', () => clearTimeout(timer));
+  // Without a reader the client's end would not be noticed.
+  socket.resume();
+  socket.end(Buffer.concat([Buffer.from(head, 'latin1'), Buffer.from(answer.body ?? '')]));
+}

@@ -1,0 +1,28 @@
+/**
+ * Throws a TypeError where options are missing or have a name that is not known: a misspelt one would have no effect.
+ * `of`: the function or class with these options.
+ */
+export function assertOptions(of: string, options: object | null | undefined, known: readonly string[]): void {
+  if (typeof options !== 'object' || options === null) {
+    throw new TypeError(`${of} needs an object of options. Use ${known.join(', ')}.`);
+  }
+  const unknown = Object.keys(options).find((name) => !known.includes(name));
+  if (unknown === undefined) return;
+  throw new TypeError(`“${unknown}” is not an option of ${of}. Use ${known.join(', ')}.`);
+}
+
+/** Returns the names of all options of a type, which the compiler compares with the type. */
+export const optionNames = <Options extends object>(names: Record<keyof Required<Options>, true>): readonly string[] =>
+  Object.keys(names);
+
+const warned = new WeakSet<object>();
+
+/**
+ * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: the name of its class,
+ * which bundlers change.
+ */
+export function warnAfterDispose(object: object, what: string): void {
+  if (warned.has(object)) return;
+  warned.add(object);
+  console.warn(`threepoint: “update” has no effect after “dispose”. Stop calling it, or create another ${what}.`);
+}

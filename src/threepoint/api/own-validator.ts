@@ -1,3 +1,0 @@
-/** Starts a worker that validates files of avatars. */
-export const startValidator = async (): Promise<Worker> =>
-  new Worker(new URL('../avatar/file/check-worker.ts', import.meta.url), { type: 'module' });

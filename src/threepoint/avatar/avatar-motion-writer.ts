@@ -1,0 +1,167 @@
+import type { VRM } from '@pixiv/three-vrm';
+import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { BoneName } from '../core/humanoid/bones';
+import { createJointPoses, type JointPoses } from '../core/motion/file-motion';
+import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
+import { type Motion, poseBones } from '../core/motion/motion';
+import { clipOf } from '../core/motion/write-vrma';
+import { glbOfFile } from './file/convert-to-glb';
+import { chunksOf } from './file/glb-chunks';
+import { inspectAvatar } from './file/inspect-avatar';
+import { boneNode } from './humanoid/needed-bones';
+import { type Decoders, type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
+
+interface FileNode {
+  matrix?: number[];
+  translation?: number[];
+  rotation?: number[];
+  scale?: number[];
+}
+
+type AvatarDescription = GltfDescription & {
+  nodes: FileNode[];
+  meshes?: { primitives: { material?: number }[] }[];
+  extensions?: Record<string, Record<string, unknown> | undefined>;
+};
+
+/** An avatar's file with a motion as its clip. */
+export interface AvatarClip {
+  readonly extension: 'glb';
+  readonly type: 'model/gltf-binary';
+  write(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]>;
+}
+
+const read = (bytes: ArrayBuffer, name: string, decoders: Decoders = {}) => {
+  inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
+  const chunks = chunksOf(new Uint8Array(bytes));
+  if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
+  return { description: JSON.parse(chunks.json) as AvatarDescription, binary: chunks.binary };
+};
+
+const whole = (parts: readonly Uint8Array<ArrayBuffer>[]): Promise<ArrayBuffer> => new Blob([...parts]).arrayBuffer();
+
+/** The part of a VRM's extension that names its bones. */
+const humanoidParts = ['specVersion', 'exporterVersion', 'meta', 'humanoid', 'firstPerson'];
+
+/** Returns the avatar without surfaces and pictures, which no bone depends on and only a browser can decode. */
+function bonesAlone(description: AvatarDescription): AvatarDescription {
+  const bare = structuredClone(description);
+  for (const field of ['images', 'textures', 'samplers', 'materials']) delete bare[field];
+  for (const { primitives } of bare.meshes ?? []) for (const primitive of primitives) delete primitive.material;
+  const extensions: AvatarDescription['extensions'] = {};
+  for (const name of ['VRM', 'VRMC_vrm']) {
+    const own = bare.extensions?.[name];
+    if (!own) continue;
+    const kept = Object.fromEntries(Object.entries(own).filter(([part]) => humanoidParts.includes(part)));
+    const { thumbnailImage: _, texture: __, ...meta } = (kept.meta ?? {}) as Record<string, unknown>;
+    extensions[name] = { ...kept, meta };
+  }
+  bare.extensions = extensions;
+  return bare;
+}
+
+/** A bone of the rig that a bone of the motion turns. */
+interface DrivenBone {
+  /** The index among the motion's bones of the nearest bone above that the rig has; −1: there is none. */
+  readonly bone: number;
+  readonly above: number;
+  readonly node: number;
+  /** A rotation of the node is before · (how the bone has turned against the one above) · after. */
+  readonly before: Quaternion;
+  readonly after: Quaternion;
+}
+
+function drivenBones(motion: Motion, { vrm, nodeIndices }: LoadedAvatar): readonly DrivenBone[] {
+  const nodes = motion.bones.map(({ name, measured }) => (measured ? boneNode(vrm, name as BoneName) : null));
+  const rest = (object: Object3D | null) => object?.getWorldQuaternion(new Quaternion()) ?? new Quaternion();
+  return nodes.flatMap((object, bone): DrivenBone[] => {
+    const node = object && nodeIndices.get(object);
+    if (!object || node == null) return [];
+    let above = -1;
+    for (let up = object.parent; up && above < 0; up = up.parent) above = nodes.indexOf(up);
+    return [{ bone, above, node, before: rest(object.parent).invert(), after: rest(object) }];
+  });
+}
+
+const turned = new Quaternion();
+const carried = new Quaternion();
+
+/** The rotation of a driven node in a posed frame, in the file's own axes. */
+function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }: JointPoses): Quaternion {
+  const { x, y, z, w } = rotations[bone]!;
+  turned.set(x, y, z, w);
+  if (above >= 0) {
+    const q = rotations[above]!;
+    turned.premultiply(carried.copy(q).invert());
+  }
+  return turned.premultiply(before).multiply(after);
+}
+
+/** Moves every node to the body's rest: avatars in other poses were brought into T-pose. */
+function writeRest(description: AvatarDescription, nodeIndices: LoadedAvatar['nodeIndices']): void {
+  for (const [{ position, quaternion, scale }, index] of nodeIndices) {
+    const node = description.nodes[index];
+    if (!node) continue;
+    delete node.matrix;
+    node.translation = position.toArray();
+    node.rotation = quaternion.normalize().toArray();
+    node.scale = scale.toArray();
+  }
+}
+
+/** Transforms the hips' target [m] into the frame of their node's parent; steps are scaled to the rig's height. */
+function hipsPlacer(vrm: VRM, motion: Motion): (x: number, y: number, z: number) => Vector3 {
+  const hips = boneNode(vrm, 'hips')!;
+  const stature = hips.getWorldPosition(new Vector3()).y / motion.bones[0]!.offset.y;
+  const inParent = hips.parent!.matrixWorld.clone().invert();
+  const place = new Vector3();
+  return (x, y, z) => place.set(x, y, z).multiplyScalar(stature).applyMatrix4(inParent);
+}
+
+/** The avatar keeps its own proportions: rotations are the motion's, steps as long as its legs are. */
+function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, readonly NodeTrack[]> {
+  const driven = drivenBones(motion, avatar);
+  const count = motion.times.length;
+  const rotations = driven.map(() => new Float32Array(4 * count));
+  const hips = new Float32Array(3 * count);
+  const place = hipsPlacer(avatar.vrm, motion);
+  const posed = createJointPoses(motion.bones.length);
+  for (let frame = 0; frame < count; frame++) {
+    poseBones(motion, frame, posed);
+    const { x, y, z } = posed.positions[0]!;
+    place(x, y, z).toArray(hips, 3 * frame);
+    for (const [i, bone] of driven.entries())
+      nodeRotation(bone, posed)
+        .normalize()
+        .toArray(rotations[i]!, 4 * frame);
+    if (frame % 64 === 63) yield frame / count;
+  }
+  const node = driven.find(({ bone }) => bone === 0)!.node;
+  return [
+    { node, path: 'translation', values: hips },
+    ...driven.map(({ node }, i) => ({ node, path: 'rotation' as const, values: rotations[i]! })),
+  ];
+}
+
+/**
+ * Makes GLB files of an avatar (VRM or a humanoid of another kind) that moves: all that is in its file stays, but for
+ * clips of its own; FBX is converted first. Rejects with a sentence that names the file.
+ */
+export async function avatarClip(given: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<AvatarClip> {
+  const bytes = await glbOfFile(given, name, 'body');
+  const { description, binary } = read(bytes, name, options.decoders);
+  const bare = await whole(packGlb(bonesAlone(description), [new Uint8Array(binary)]));
+  const avatar = await parseAvatar(bare, name, options);
+  avatar.vrm.scene.updateMatrixWorld(true);
+  return {
+    extension: 'glb',
+    type: 'model/gltf-binary',
+    *write(motion) {
+      const moved = structuredClone(description);
+      writeRest(moved, avatar.nodeIndices);
+      const tracks = yield* clipTracks(motion, avatar);
+      const more = addClip(moved, binary.length, { ...clipOf(motion), tracks });
+      return packGlb(moved, [new Uint8Array(binary), more]);
+    },
+  };
+}

@@ -1,0 +1,63 @@
+import type { WorkerAnswer, WorkerQuestion } from './avatar-check-worker';
+import type { AvatarCheck, CheckedAvatar } from './check-avatar';
+import { MotionWithoutBody } from './motion-only-error';
+
+/** The longest time [ms] that the start of a worker, and its check, may take. */
+const patienceMs = 20_000;
+
+/** Resolves when a worker of avatar-check-worker.ts has reported that it runs, or to null where it does not start. */
+async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Worker | null> {
+  // Node has no workers of pages: onnxruntime-web sets this name to the workers of node:worker_threads there.
+  if (!(globalThis.Worker?.prototype instanceof EventTarget)) return null;
+  // reason: a page without workers, or whose policy forbids them, throws or emits an error; both mean that none starts.
+  const worker = await Promise.resolve()
+    .then(start)
+    .catch(() => null);
+  if (!worker) return null;
+  const runs = await new Promise<boolean>((resolve) => {
+    const timer = setTimeout(() => resolve(false), patienceMs);
+    const settle = (started: boolean) => () => {
+      clearTimeout(timer);
+      resolve(started);
+    };
+    worker.onmessage = settle(true);
+    worker.onerror = settle(false);
+  });
+  if (runs) return worker;
+  worker.terminate();
+  return null;
+}
+
+/**
+ * Returns a check in workers that live for one file: neither a slow file nor one that breaks the validator delays a
+ * frame. The bytes are passed without a copy: those given are empty afterwards. `instead`: the check where no worker
+ * starts.
+ */
+export const workerCheck =
+  (start: () => Worker | Promise<Worker>, instead: AvatarCheck): AvatarCheck =>
+  async (bytes, question) => {
+    const worker = await startedWorker(start);
+    return worker ? checkedBy(worker, bytes, question) : instead(bytes, question);
+  };
+
+function checkedBy(
+  worker: Worker,
+  bytes: ArrayBuffer,
+  { name, unpacked, limits }: Parameters<AvatarCheck>[1],
+): Promise<CheckedAvatar> {
+  return new Promise<CheckedAvatar>((resolve, reject) => {
+    const timer = setTimeout(() => reject(new Error(`${name}: the check took too long`)), patienceMs);
+    worker.onmessage = ({ data: answer }: MessageEvent<WorkerAnswer>) => {
+      clearTimeout(timer);
+      if ('checked' in answer) resolve(answer.checked);
+      else if ('motion' in answer) reject(new MotionWithoutBody(name));
+      else reject(new Error(answer.refused));
+    };
+    worker.onerror = ({ message }) => {
+      clearTimeout(timer);
+      reject(new Error(`${name}: could not be checked (${message || 'the validator stopped'})`));
+    };
+    const question: WorkerQuestion = { bytes, name, unpacked, ...(limits && { limits }) };
+    worker.postMessage(question, [bytes]);
+  }).finally(() => worker.terminate());
+}

@@ -1,0 +1,131 @@
+import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/three-vrm';
+import { type Group, type Object3D, Vector3 } from 'three';
+import type { BoneMap, BoneName } from '../../core/humanoid/bones';
+import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
+import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { distance, isFiniteVec3 } from '../../core/math/vec3';
+import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
+import { demandBones } from './needed-bones';
+import { fileBones, UnknownBones } from './unknown-bones-error';
+
+/** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
+const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);
+
+/** Nodes by the file's own names; of several of one name the uppermost. `among`: which nodes count. */
+function nodesByName(scene: Group, among: (node: Object3D) => boolean): Map<string, Object3D> {
+  const nodes = new Map<string, Object3D>();
+  scene.traverse((node) => {
+    const name = nameOf(node);
+    if (name !== '' && !nodes.has(name) && among(node)) nodes.set(name, node);
+  });
+  return nodes;
+}
+
+const skinBones = (scene: Group): Set<Object3D> =>
+  new Set(skinnedMeshesOf(scene).flatMap(({ skeleton }) => skeleton.bones));
+
+/**
+ * The nodes that may be bones: those that move skin, with what lies between them; of a file without skins all.
+ * `known`: nodes that are bones in any case.
+ */
+function candidatesOf(scene: Group, known: Iterable<Object3D>): readonly Object3D[] {
+  const skinned = skinBones(scene);
+  if (skinned.size > 0) for (const node of known) skinned.add(node);
+  const all: Object3D[] = [];
+  scene.traverse((node) => all.push(node));
+  if (skinned.size === 0) return all;
+  const under = new Map<Object3D, number>();
+  for (const bone of skinned)
+    for (let node: Object3D | null = bone; node; node = node.parent) under.set(node, (under.get(node) ?? 0) + 1);
+  // A node with all skin bones below it, except the lowest such node, is no part of the skeleton.
+  const whole = all.filter((node) => under.get(node) === skinned.size);
+  const root = skinned.has(whole.at(-1)!) ? whole.find((node) => skinned.has(node)) : whole.at(-1);
+  const outside = new Set(root ? whole.slice(0, whole.indexOf(root)) : []);
+  return all.filter((node) => under.has(node) && !outside.has(node));
+}
+
+/** The sums of the skin weights by bone; empty: no mesh has a skin. */
+function skinWeights(scene: Group): Map<Object3D, number> {
+  const sums = new Map<Object3D, number>();
+  for (const { geometry, skeleton } of skinnedMeshesOf(scene)) {
+    const { skinIndex, skinWeight } = geometry.attributes;
+    if (!skinIndex || !skinWeight) continue;
+    for (let vertex = 0; vertex < skinWeight.count; vertex++) {
+      for (let i = 0; i < skinWeight.itemSize; i++) {
+        const bone = skeleton.bones[skinIndex.getComponent(vertex, i)];
+        if (bone) sums.set(bone, (sums.get(bone) ?? 0) + skinWeight.getComponent(vertex, i));
+      }
+    }
+  }
+  return sums;
+}
+
+/** Returns the bones of a scene at rest, and their nodes. Throws where they have no places. */
+export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D> = []) {
+  const nodes = candidatesOf(scene, known);
+  const indices = new Map(nodes.map((node, i) => [node, i]));
+  const weights = skinWeights(scene);
+  // A scale below zero mirrors the joints; the skin is drawn mirrored, too.
+  const mirror = nodes.some((node) => node.matrixWorld.determinant() < 0) ? -1 : 1;
+  const place = new Vector3();
+  const joints = nodes.map((node): SkeletonJoint => {
+    const { x, y, z } = place.setFromMatrixPosition(node.matrixWorld);
+    const position = { x: mirror * x, y, z };
+    const parent = indices.get(node.parent as Object3D) ?? -1;
+    return { name: nameOf(node), parent, position, ...(weights.size > 0 && { weight: weights.get(node) ?? 0 }) };
+  });
+  const lost = joints.find(({ position }) => !isFiniteVec3(position));
+  if (lost) throw new Error(`${name}: the joint of ${lost.name} lies nowhere`);
+  if (joints.length > 1 && joints.every(({ position }) => distance(position, joints[0]!.position) === 0))
+    throw new Error(`${name}: its joints lie all in one place: is the scene scaled to nothing?`);
+  return { nodes, joints };
+}
+
+/**
+ * Finds the bones of a scene. Throws UnknownBones with what was found and what is missing where they are no humanoid's.
+ */
+function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
+  const { nodes, joints } = skeletonOf(scene, name);
+  const match = matchHumanoid(joints);
+  const complaint = humanoidComplaint(match);
+  if (!complaint)
+    return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
+  if (joints.every((joint) => joint.name === '')) throw new Error(`${name}: no humanoid in the file: it has no bones`);
+  const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
+  throw new UnknownBones(`${name}: ${complaint}. ${advice}`, fileBones(joints, match.map));
+}
+
+/** The nodes that a map names, of several of one name one that carries skin. Throws where one is not in the file. */
+function mappedBones(scene: Group, bones: BoneMap, name: string): ReadonlyMap<BoneName, Object3D> {
+  const skinned = skinBones(scene);
+  // A mesh may be called as the bone that moves it.
+  const nodes = nodesByName(scene, (node) => skinned.has(node));
+  for (const [called, node] of nodesByName(scene, () => true)) if (!nodes.has(called)) nodes.set(called, node);
+  // What three.js made of a name counts as well: it is what pages print.
+  scene.traverse((node) => {
+    if (!nodes.has(node.name)) nodes.set(node.name, node);
+  });
+  return new Map(
+    Object.entries(bones).map(([bone, called]) => {
+      const node = nodes.get(called);
+      if (!node) throw new Error(`${name}: bones.${bone}: no node is called “${called}”`);
+      return [bone as BoneName, node];
+    }),
+  );
+}
+
+/**
+ * Makes a VRM of a scene that is none. Its bones are those of `bones`, or those that are found. Throws a sentence that
+ * names the file and the missing bone, or what was found.
+ */
+export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
+  scene.updateMatrixWorld(true);
+  const bones = given ? mappedBones(scene, given, name) : foundBones(scene, name);
+  demandBones(name, (bone) => bones.has(bone));
+  const humanBones = Object.fromEntries([...bones].map(([bone, node]) => [bone, { node }])) as unknown as VRMHumanBones;
+  const humanoid = new VRMHumanoid(humanBones);
+  scene.add(humanoid.normalizedHumanBonesRoot);
+  const meshes = meshesOf(scene).map((mesh) => ({ meshes: [mesh], type: 'auto' }));
+  const meta = { metaVersion: '1', name, authors: [], licenseUrl: '' } as unknown as VRM['meta'];
+  return new VRM({ scene, meta, humanoid, firstPerson: new VRMFirstPerson(humanoid, meshes as never) });
+}

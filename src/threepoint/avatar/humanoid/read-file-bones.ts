@@ -1,0 +1,42 @@
+import { VRMUtils } from '@pixiv/three-vrm';
+import type { BoneName } from '../../core/humanoid/bones';
+import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
+import { skeletonOf } from './create-humanoid';
+import { type FileBones, fileBones } from './unknown-bones-error';
+
+/** The bones of a file, and whether it is worn without a map of them. */
+export interface ReadBones extends FileBones {
+  readonly accepted: boolean;
+}
+
+/**
+ * Reads the bones of a checked file and what they are without a map: those that a VRM states, and those that are found
+ * in another file. Rejects with a sentence that names the file.
+ */
+export async function bonesOfFile(checked: ReadableAvatar, name: string, decoders: Decoders): Promise<ReadBones> {
+  const { gltf, own } = await readScene(checked, name, { decoders });
+  const { scene } = gltf;
+  try {
+    // three-vrm adds joints that the file does not have.
+    own?.humanoid.normalizedHumanBonesRoot.removeFromParent();
+    scene.updateMatrixWorld(true);
+    const stated = Object.entries(own?.humanoid.humanBones ?? {}).map(([bone, { node }]) => ({ bone, node }));
+    const { nodes, joints } = skeletonOf(
+      scene,
+      name,
+      stated.map(({ node }) => node),
+    );
+    if (!own) {
+      const match = matchHumanoid(joints);
+      return { ...fileBones(joints, match.map), accepted: humanoidComplaint(match) === null };
+    }
+    const matches = stated.map(({ bone, node }): readonly [BoneName, BoneMatch] => [
+      bone as BoneName,
+      { joint: nodes.indexOf(node), confidence: 1, reason: 'the file states it' },
+    ]);
+    return { ...fileBones(joints, Object.fromEntries(matches)), accepted: true };
+  } finally {
+    VRMUtils.deepDispose(scene);
+  }
+}

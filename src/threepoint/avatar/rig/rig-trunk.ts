@@ -1,0 +1,179 @@
+import type { Vector3 } from 'three';
+import type { JointPoses, MutableJointPoses } from '../../core/body/forward-kinematics';
+import type { JointName } from '../../core/body/joints';
+import { clamp } from '../../core/math/damper';
+import { multiply, quat, rotate, rotationBetween } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  distance,
+  dot,
+  lerp,
+  type MutableVec3,
+  setVec3,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../../core/math/vec3';
+import type { Rig } from './rig';
+
+/** An upper arm gets no longer or shorter than this [share of its length] before the shoulder gives. */
+const armGives = 0.06;
+/** The base of a missing neck bone, from between the shoulders up to the head [share]. */
+const neckShare = 0.3;
+/** The base of a missing clavicle bone, from the neck out to the shoulder [share]. */
+const clavicleShare = 0.2;
+
+/**
+ * A vertebra of the rig: from the one below it, which is next in the rig, at rest and as long as the body wants it [m].
+ */
+interface Link {
+  readonly name: JointName;
+  readonly below: JointName;
+  readonly offset: MutableVec3;
+  /** How much of what the chain misses this joint takes over: 1 at the neck. */
+  share: number;
+}
+
+interface Shoulder {
+  readonly clavicle: 'leftShoulder' | 'rightShoulder';
+  readonly upperArm: 'leftUpperArm' | 'rightUpperArm';
+  readonly lowerArm: 'leftLowerArm' | 'rightLowerArm';
+  /** From the neck joint to where the clavicle begins, chest's frame, and along the clavicle, its own frame [m]. */
+  readonly root: MutableVec3;
+  readonly along: MutableVec3;
+}
+
+const makeShoulder = (side: Side): Shoulder => ({
+  clavicle: `${side}Shoulder`,
+  upperArm: `${side}UpperArm`,
+  lowerArm: `${side}LowerArm`,
+  root: vec3(0, 0, 0),
+  along: vec3(0, 0, 0),
+});
+
+// Scratch of one call; nothing of it is kept.
+const neck = vec3(0, 0, 0);
+const missed = vec3(0, 0, 0);
+const root = vec3(0, 0, 0);
+const own = vec3(0, 0, 0);
+const given = vec3(0, 0, 0);
+const before = vec3(0, 0, 0);
+const after = vec3(0, 0, 0);
+const swing = quat(0, 0, 0, 1);
+
+/**
+ * How far from the rig's own shoulder joint to the estimated one it must go until the elbow is `least` to `most` [m]
+ * away [share].
+ */
+function yielding(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number): number {
+  const far = distance(from, elbow);
+  if (far >= least && far <= most) return 0;
+  const bound = far > most ? most : least;
+  subtract(to, from, before);
+  subtract(from, elbow, after);
+  const a = dot(before, before);
+  const h = dot(before, after);
+  const root = Math.sqrt(Math.max(0, h * h - a * (far * far - bound * bound)));
+  return clamp((far > most ? -h - root : -h + root) / Math.max(a, 1e-12), 0, 1);
+}
+
+/**
+ * The trunk of a rig that is proportioned otherwise than the estimated body: it keeps its own neck, shoulders and the
+ * proportions of its spine. Pelvis, head, elbows and hands stay where they were estimated; where an arm reaches further
+ * than the rig's own shoulder lets it, the shoulder gives, as shoulders do.
+ */
+export class OwnTrunk {
+  private readonly links: Link[] = [];
+  private readonly neckToHead = vec3(0, 0, 0);
+  private readonly shoulders = [makeShoulder('left'), makeShoulder('right')];
+  /** The neck at the end of the chain of vertebrae. */
+  private readonly reached = vec3(0, 0, 0);
+  private readonly neckOffset = vec3(0, 0, 0);
+  private topVertebra: JointName = 'hips';
+
+  constructor(private readonly rig: Rig) {
+    let below: JointName = 'hips';
+    for (const name of ['spine', 'chest', 'upperChest'] as const) {
+      if (!rig.rest(name)) continue;
+      this.links.push({ name, below, offset: vec3(0, 0, 0), share: 0 });
+      below = name;
+    }
+    this.topVertebra = below;
+  }
+
+  /** Takes the rig's measures, scaled by `scale`, for a body in this T-pose. */
+  fit(tPose: JointPoses, scale: number): void {
+    const { rig } = this;
+    /** A joint of the rig at rest as our T-pose has it, which faces the other way [m]. */
+    const at = ({ x, y, z }: Vector3): MutableVec3 => vec3(-x * scale, y * scale, -z * scale);
+    const rest = (name: JointName): MutableVec3 | null => {
+      const place = rig.rest(name);
+      return place && at(place);
+    };
+    const [hips, head, left, right] = [rest('hips'), rest('head'), rest('leftUpperArm'), rest('rightUpperArm')];
+    if (!hips || !head || !left || !right) throw new Error('avatar/rig-trunk: a rig without hips, head or arms');
+    const restNeck = rest('neck') ?? lerp(lerp(left, right, 0.5), head, neckShare);
+    subtract(head, restNeck, this.neckToHead);
+    // The spine is as long as pelvis and head leave it; its joints keep their shares.
+    const wanted = tPose.head.position.y - this.neckToHead.y - tPose.hips.position.y;
+    const share = Math.max(0.2, wanted / Math.max(1e-3, restNeck.y - hips.y));
+    let below = hips;
+    for (const link of this.links) {
+      const joint = rest(link.name) ?? below;
+      subtract(joint, below, link.offset);
+      setVec3(link.offset, link.offset.x, link.offset.y * share, link.offset.z);
+      link.share = clamp((joint.y - hips.y) / Math.max(1e-3, restNeck.y - hips.y), 0, 1);
+      below = joint;
+    }
+    subtract(restNeck, below, this.neckOffset);
+    setVec3(this.neckOffset, this.neckOffset.x, this.neckOffset.y * share, this.neckOffset.z);
+    for (const { clavicle, upperArm, root, along } of this.shoulders) {
+      const tip = upperArm === 'leftUpperArm' ? left : right;
+      const begin = rest(clavicle) ?? lerp(restNeck, tip, clavicleShare);
+      subtract(begin, restNeck, root);
+      subtract(tip, begin, along);
+    }
+  }
+
+  /** Moves the joints of a pose, floor frame, to where this rig has them. */
+  apply(joints: MutableJointPoses): void {
+    subtract(joints.head.position, rotate(joints.neck.orientation, this.neckToHead, neck), neck);
+    for (const { name, below, offset } of this.links) {
+      const from = joints[below];
+      const { position } = joints[name];
+      add(from.position, rotate(from.orientation, offset, position), position);
+    }
+    const top = joints[this.topVertebra];
+    add(top.position, rotate(top.orientation, this.neckOffset, this.reached), this.reached);
+    subtract(neck, this.reached, missed);
+    for (const { name, share } of this.links) addScaled(joints[name].position, missed, share, joints[name].position);
+    copyVec3(neck, joints.neck.position);
+    for (const shoulder of this.shoulders) this.applyShoulder(shoulder, joints);
+  }
+
+  private applyShoulder(
+    { clavicle, upperArm, lowerArm, root: fromNeck, along }: Shoulder,
+    joints: MutableJointPoses,
+  ): void {
+    const collar = joints[clavicle];
+    const arm = joints[upperArm];
+    const elbow = joints[lowerArm].position;
+    copyVec3(arm.position, given);
+    add(neck, rotate(joints.upperChest.orientation, fromNeck, root), root);
+    add(root, rotate(collar.orientation, along, own), own);
+    const long = distance(given, elbow);
+    const give = yielding(own, given, elbow, long * (1 - armGives), long * (1 + armGives));
+    lerp(own, given, give, arm.position);
+    copyVec3(root, collar.position);
+    if (give > 0) {
+      rotationBetween(subtract(own, root, before), subtract(arm.position, root, after), swing);
+      multiply(swing, collar.orientation, collar.orientation);
+    }
+    rotationBetween(subtract(elbow, given, before), subtract(elbow, arm.position, after), swing);
+    multiply(swing, arm.orientation, arm.orientation);
+    this.rig.reach(upperArm, distance(arm.position, elbow));
+  }
+}
