@@ -43,7 +43,7 @@ export function differenceLines(fromDevice: NonNullable<FrameReport['fromDevice'
 }
 
 /** Frame time by stage, as a card on the desktop. Call `show` a few times a second, not per frame. */
-export function createOverlay(region: HTMLElement) {
+export function createFrameTimesOverlay(region: HTMLElement) {
   const total = element('strong', {}, '–');
   const tail = element('span', {}, '');
   const missed = element('p', { class: 'missed' });

@@ -1,7 +1,7 @@
 import { element } from './element';
 
 /** A line whose words are announced when they change. The running figures after them are only shown. */
-export function createRunningLine(attributes: { readonly class?: string } = {}) {
+export function createStatusLine(attributes: { readonly class?: string } = {}) {
   const status = element('span', { role: 'status' });
   const running = element('span');
   return {

@@ -5,7 +5,7 @@ interface TrustedTypes {
 }
 
 /** Returns the address of a script where it is a file of the page's own build, else null. */
-export function ownScript(address: string, folder: string): string | null {
+export function ownScriptAddress(address: string, folder: string): string | null {
   const { href } = new URL(address, `${folder}/`);
   return href.startsWith(`${folder}/assets/`) || href === `${folder}/sw.js` ? href : null;
 }
@@ -15,7 +15,7 @@ export function ownScript(address: string, folder: string): string | null {
  * (require-trusted-types-for) a browser refuses every other address of a script, and any text as markup or code.
  * Browsers without Trusted Types have the rest of the policy.
  */
-export function allowOwnScripts(): void {
+export function installTrustedTypesPolicy(): void {
   const { trustedTypes } = globalThis as { readonly trustedTypes?: TrustedTypes };
-  trustedTypes?.createPolicy('default', { createScriptURL: (address) => ownScript(address, pageFolder()) });
+  trustedTypes?.createPolicy('default', { createScriptURL: (address) => ownScriptAddress(address, pageFolder()) });
 }

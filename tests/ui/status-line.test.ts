@@ -1,5 +1,5 @@
 import { recorderText } from 'threepoint-page/shell/panel/recording-page';
-import { createRunningLine } from 'threepoint-ui/running-line';
+import { createStatusLine } from 'threepoint-ui/status-line';
 import { beforeEach, expect, test, vi } from 'vitest';
 
 /** The part of an element that a line of text needs; it counts how often its text was set. */
@@ -26,7 +26,7 @@ class Element {
 beforeEach(() => vi.stubGlobal('document', { createElement: () => new Element() }));
 
 test('a recording is announced when it begins and ends, not with every look at its seconds', () => {
-  const line = createRunningLine();
+  const line = createStatusLine();
   const [said, running] = (line.node as unknown as Element).children as [Element, Element];
   expect([said.attributes.role, running.attributes.role]).toEqual(['status', undefined]);
   const recorder = { paused: false, duration: 0, loop: true, name: null };

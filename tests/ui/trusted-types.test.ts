@@ -1,4 +1,4 @@
-import { ownScript } from 'threepoint-ui/own-scripts';
+import { ownScriptAddress } from 'threepoint-ui/trusted-types';
 import { expect, test } from 'vitest';
 
 const folder = 'https://example.org/threepoint';
@@ -6,7 +6,7 @@ const folder = 'https://example.org/threepoint';
 test.each(['https://example.org/threepoint/assets/inference-worker-3f2a.js', 'assets/check-worker-77aa.js', 'sw.js'])(
   '%s is a file of the build',
   (address) => {
-    expect(ownScript(address, folder)).toBe(new URL(address, `${folder}/`).href);
+    expect(ownScriptAddress(address, folder)).toBe(new URL(address, `${folder}/`).href);
   },
 );
 
@@ -21,5 +21,5 @@ test.each([
   'blob:https://example.org/0f0f',
   'javascript:0',
 ])('%s is none', (address) => {
-  expect(ownScript(address, folder)).toBeNull();
+  expect(ownScriptAddress(address, folder)).toBeNull();
 });

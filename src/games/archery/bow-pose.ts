@@ -62,7 +62,7 @@ export function turnBow(
 }
 
 /** Returns the direction of a bow (−Z), unit. */
-export const forwardOf = (bow: Pose<'floor'>, target?: MutableVec3): MutableVec3 =>
+export const bowDirection = (bow: Pose<'floor'>, target?: MutableVec3): MutableVec3 =>
   rotate(bow.orientation, forward, target);
 
 const restInBow = vec3(0, arrowRestHeight, 0);
@@ -75,7 +75,7 @@ export const arrowRestOf = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0,
 const toNock = vec3(0, 0, 0);
 
 /** Returns the nocking point of a bow without an arrow. */
-export const stringAtRest = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
+export const nockingPointOf = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   add(arrowRestOf(bow, target), rotate(bow.orientation, stringInBow, toNock), target);
 
 const arc = quat(0, 0, 0, 1);

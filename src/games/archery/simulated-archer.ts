@@ -1,7 +1,7 @@
 import { clamp } from 'threepoint/core/math/damper';
 import { addScaled, subtract } from 'threepoint/core/math/vec3';
 import { minimumJerk, type PlayerInput, yawOf } from '../simulated-body';
-import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
+import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 
 /** A movement to a posture, with its pressure on the button; at rest at both ends. */
@@ -30,7 +30,7 @@ function nextTarget(state: ArcheryState): Target | null {
  * The built-in archer, which produces hands and buttons for a whole round. Creates an archer that stands at the centre
  * of the zone, shoots at every target, nearest first, and then rests. Deterministic.
  */
-export function createArcher(body: ArcherBody) {
+export function createSimulatedArcher(body: ArcherBody) {
   const postures = new ArcherPostures(body);
   const { eyes } = postures;
 
@@ -100,13 +100,13 @@ export function createArcher(body: ArcherBody) {
       proceed(time, state);
       const current = plan[0];
       const share = current ? minimumJerk(clamp((time - began) / current.seconds, 0, 1)) : 0;
-      const now = current ? mix(from, current.to, share) : from;
+      const now = current ? mixPostures(from, current.to, share) : from;
       const pressure = current ? fromPressure + (current.pressure - fromPressure) * share : fromPressure;
 
       const swing = (current?.arc ?? 0) * Math.sin(Math.PI * share) ** 2;
-      return postures.seen(now, time, pressure, swing);
+      return postures.inputFor(now, time, pressure, swing);
     },
   };
 }
 
-export type Archer = ReturnType<typeof createArcher>;
+export type SimulatedArcher = ReturnType<typeof createSimulatedArcher>;

@@ -2,7 +2,7 @@ import { distance, isFiniteVec3, length } from 'threepoint/core/math/vec3';
 import type { BallAction, BallPlayer, BallState, Refusal } from './ball-state';
 import { ballRadius } from './flight';
 import { roundedLaunch, type Step, withBall } from './state-changes';
-import { ballInHand, ballMatchTime, tickSeconds } from './state-readings';
+import { ballInHand, ballMatchTime, tickSeconds } from './state-selectors';
 import { isInZone, rackPosition } from './stations';
 
 /** The fastest throw [m/s]; a professional's baseball reaches 45, an arm with a controller 15. */
@@ -18,10 +18,13 @@ export const armReach = 1.4;
  */
 export const releaseReach = 0.7;
 /** The largest delay of an action [s]; older ones are moved to this age. */
-export const longestDelay = 0.5;
+export const maxDelay = 0.5;
 
 /** Records an action number. Returns the updated record, or null if the number is invalid or has been seen. */
-export function countOnce({ sequence, seen }: BallPlayer, number: number): { sequence: number; seen: number } | null {
+export function recordSequence(
+  { sequence, seen }: BallPlayer,
+  number: number,
+): { sequence: number; seen: number } | null {
   if (!(Number.isInteger(number) && number > 0 && number < 2 ** 31)) return null;
   if (number > sequence) {
     const shift = number - sequence;
@@ -76,7 +79,7 @@ function throwBall(state: BallState, player: number, action: Throw, startedAt: n
   if (distance(position, head) > armReach) return 'reach';
   if (fist && distance(position, fist) > releaseReach) return 'reach';
   const now = ballMatchTime(state) + tickSeconds;
-  const time = Math.min(Math.max(action.at, now - longestDelay, startedAt), now);
+  const time = Math.min(Math.max(action.at, now - maxDelay, startedAt), now);
   if (time >= startedAt + state.options.seconds) return 'time';
   if (speed < slowestThrow) return putBack(state, player, ball);
   const launch = roundedLaunch({ time, position: { ...position, y: Math.max(position.y, ballRadius) }, velocity });

@@ -1,5 +1,5 @@
 import type { BallEvent, BallPlace, BallState, Basket, TimedLaunch } from './ball-state';
-import { floorBounceOf, meetsBasket, touchesFloor } from './flight';
+import { firstBasketContact, floorBounceOf, floorContactTime } from './flight';
 import { round, roundedLaunch, type Step, withBall } from './state-changes';
 
 type InAir = Extract<BallPlace, { on: 'air' }>;
@@ -9,24 +9,24 @@ function nextPlace(
   ball: number,
   place: InAir,
   score: number,
-  basket: BasketWay,
+  basket: BasketMotion,
   events: BallEvent[],
 ): BallPlace | null {
   const { thrower, launch } = place;
-  const meeting = place.missed ? null : meetsBasket(launch, basket.from, basket.to);
+  const meeting = place.missed ? null : firstBasketContact(launch, basket.from, basket.to);
   if (meeting?.kind === 'caught') {
     events.push({ type: 'caught', ball, player: thrower, at: round(meeting.time), score: score + 1 });
     return { on: 'basket', thrower };
   }
   if (meeting) {
-    const bounced = settled(roundedLaunch(meeting.launch), launch);
+    const bounced = afterFlight(roundedLaunch(meeting.launch), launch);
     events.push({ type: 'bounced', ball, off: 'basket', launch: bounced });
     return { ...place, launch: bounced };
   }
-  const time = touchesFloor(launch);
+  const time = floorContactTime(launch);
   if (time > basket.to.at) return null;
   const { launch: after, rolls } = floorBounceOf(launch, Math.max(time, launch.time));
-  const bounced = settled(roundedLaunch(after), launch);
+  const bounced = afterFlight(roundedLaunch(after), launch);
   if (!place.missed) events.push({ type: 'missed', ball, player: thrower });
   events.push(
     rolls ? { type: 'rolls', ball, launch: bounced } : { type: 'bounced', ball, off: 'floor', launch: bounced },
@@ -35,13 +35,13 @@ function nextPlace(
 }
 
 /** A movement of the basket from one pose to another. */
-interface BasketWay {
+interface BasketMotion {
   readonly from: Basket;
   readonly to: Basket;
 }
 
 /** Decides the flight of every ball while the basket moves to `to`. */
-export function decide(state: BallState, to: Basket): Step {
+export function resolveFlights(state: BallState, to: Basket): Step {
   const way = { from: state.basket, to };
   const events: BallEvent[] = [];
   let next: BallState = { ...state, basket: to };
@@ -57,5 +57,5 @@ export function decide(state: BallState, to: Basket): Step {
 }
 
 /** Returns a bounce whose rounded time is later than that of the flight before it. */
-const settled = (bounce: TimedLaunch, flight: TimedLaunch): TimedLaunch =>
+const afterFlight = (bounce: TimedLaunch, flight: TimedLaunch): TimedLaunch =>
   bounce.time > flight.time ? bounce : { ...bounce, time: round(flight.time + 1e-4) };

@@ -15,7 +15,7 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
-import { fallsTo, velocityAt } from '../ballistics';
+import { fallTime, velocityAt } from '../ballistics';
 import type { PlayerInput } from '../simulated-body';
 import type { BallState, TimedLaunch } from './ball-state';
 import { gripRadius } from './basket';
@@ -27,8 +27,8 @@ import {
   type PlayerBody,
   type PlayerPostures,
 } from './player-postures';
-import { ballMatchTime } from './state-readings';
-import type { BallBot, BotSight } from './thrower-motion';
+import type { BallBot, BotView } from './simulated-thrower';
+import { ballMatchTime } from './state-selectors';
 
 /** Half-life of each of two filters in series for the basket's motion [s], which make it start softly. */
 const moveHalfLife = 0.055;
@@ -83,7 +83,7 @@ class Holder implements BallBot {
     this.#look = add(eyes, aheadOfEyes);
   }
 
-  follow(time: number, { state }: BotSight): PlayerInput {
+  follow(time: number, { state }: BotView): PlayerInput {
     const elapsed = this.#lastTime === null ? 0 : clamp(time - this.#lastTime, 0, 0.1);
     this.#lastTime = time;
     const comes = this.#findNextBall(state);
@@ -94,7 +94,7 @@ class Holder implements BallBot {
     normalise(reject(right, this.#normal, across), undefined, across);
     this.#grip(left, -1);
     this.#grip(rightHand, 1);
-    return this.#postures.seen(this.#posture, time, 1, 1);
+    return this.#postures.inputFor(this.#posture, time, 1, 1);
   }
 
   /** Finds the next ball that comes down within reach; returns false if there is none. */
@@ -105,7 +105,7 @@ class Holder implements BallBot {
     for (const place of state.balls) {
       if (place.on !== 'air' || place.missed) continue;
       const { launch } = place;
-      const when = launch.time + fallsTo(launch, this.#home.y);
+      const when = launch.time + fallTime(launch, this.#home.y);
       if (when < now - 0.05 || when >= soonest) continue;
       this.#postures.inFloor(ballInAir(launch, when, point), point);
       if (distance(setVec3(point, point.x, 0, point.z), this.#level) > widest) continue;
@@ -150,7 +150,7 @@ class Holder implements BallBot {
     if (comes) this.#findFlying(state, point);
     else add(eyes, aheadOfEyes, point);
     dampVec3(this.#look, point, lookHalfLife, elapsed, this.#look);
-    this.#postures.looking(eyes, this.#look, gaze);
+    this.#postures.gazeAt(eyes, this.#look, gaze);
   }
 
   /** Writes the position of the first flying ball, floor frame; without one that of the opening. */
@@ -177,4 +177,4 @@ class Holder implements BallBot {
  * Creates a holder that carries the basket to where the next ball comes down, with steps aside if needed. `goalOf`: the
  * position of the opening instead.
  */
-export const createHolder = (body: PlayerBody, goalOf?: HolderGoal): BallBot => new Holder(body, goalOf);
+export const createSimulatedHolder = (body: PlayerBody, goalOf?: HolderGoal): BallBot => new Holder(body, goalOf);

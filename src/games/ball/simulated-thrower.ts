@@ -27,12 +27,12 @@ import {
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
-import { ballMatchTime } from './state-readings';
+import { ballMatchTime } from './state-selectors';
 import { rackPosition, stations } from './stations';
-import { type SwungThrow, ThrowPostures } from './throw-postures';
+import { ThrowPostures, type UnderarmThrow } from './throw-postures';
 
 /** A bot's view of the match: the state, and its own player index. */
-export interface BotSight {
+export interface BotView {
   readonly state: BallState;
   readonly player: number;
   /** The centre of the basket's opening as drawn, arena frame. Default: that of the state. */
@@ -42,7 +42,7 @@ export interface BotSight {
 /** A built-in player, which produces hands and buttons for a whole match. */
 export interface BallBot {
   /** Returns head, hands (own floor frame) and buttons at `time` [s, not decreasing]. */
-  follow(time: number, sight: BotSight): PlayerInput;
+  follow(time: number, sight: BotView): PlayerInput;
 }
 
 interface Movement {
@@ -53,9 +53,9 @@ interface Movement {
   /** Height of the arc on the way [m]. */
   readonly arc?: number;
   /** The movement lasts until this returns true. */
-  readonly until?: (sight: BotSight) => boolean;
+  readonly until?: (sight: BotView) => boolean;
   /** The throw that moves the fist and releases the button. */
-  readonly swung?: SwungThrow;
+  readonly swung?: UnderarmThrow;
 }
 
 /** Flight time of a throw [s]. */
@@ -71,7 +71,7 @@ const mark = vec3(0, 0, 0);
 const rise = vec3(0, 0, 0);
 
 /** Returns the nearest ball in a rack; null: none is within reach, or no round runs. */
-export function nearestBall({ state, player }: BotSight): number | null {
+export function nearestBall({ state, player }: BotView): number | null {
   if (state.phase !== 'running') return null;
   const station = stations[state.players[player]?.station ?? 0];
   if (!station) return null;
@@ -89,7 +89,7 @@ export function nearestBall({ state, player }: BotSight): number | null {
 }
 
 /** Returns whether it is this thrower's turn, and nobody has just thrown. */
-function mayThrow({ state, player }: BotSight): boolean {
+function mayThrow({ state, player }: BotView): boolean {
   if (state.phase !== 'running') return true;
   const now = ballMatchTime(state);
   for (const place of state.balls) {
@@ -119,11 +119,11 @@ class Thrower implements BallBot {
     this.#random = randomNumbers(seed);
   }
 
-  follow(time: number, sight: BotSight): PlayerInput {
+  follow(time: number, sight: BotView): PlayerInput {
     this.#postures.inFloor(sight.basket ?? sight.state.basket.position, this.#basket);
     this.#proceed(time, sight);
     const current = this.#plan[0];
-    return current ? this.#move(current, time) : this.#postures.seen(this.#from, time, 0, 0);
+    return current ? this.#move(current, time) : this.#postures.inputFor(this.#from, time, 0, 0);
   }
 
   /** Returns head, hands and buttons within a movement. */
@@ -138,11 +138,11 @@ class Thrower implements BallBot {
     const held = this.#fromPressure + (current.pressure - this.#fromPressure) * share;
     const pressure = swung ? (elapsed < swung.releaseAt ? 1 : 0) : held;
     const left = this.#throwing === 'left';
-    return this.#postures.seen(now, time, left ? pressure : 0, left ? 0 : pressure);
+    return this.#postures.inputFor(now, time, left ? pressure : 0, left ? 0 : pressure);
   }
 
   /** Ends the movements that are over by `time` and plans the next. */
-  #proceed(time: number, sight: BotSight): void {
+  #proceed(time: number, sight: BotView): void {
     if (this.#began === null) {
       this.#began = 0;
       this.#moves.resting(this.#basket, this.#from);
@@ -161,7 +161,7 @@ class Thrower implements BallBot {
   }
 
   /** Plans the next throw, or the movement to rest; returns false if the thrower rests already. */
-  #planNext(time: number, sight: BotSight): boolean {
+  #planNext(time: number, sight: BotView): boolean {
     const ball = nearestBall(sight);
     if (ball === null && this.#idle) return false;
     if (this.#idle) this.#began = time;
@@ -214,4 +214,4 @@ class Thrower implements BallBot {
  * Creates a thrower that throws the balls of the racks underarm at the basket, and then rests. `seed` is that of the
  * scatter.
  */
-export const createThrower = (body: PlayerBody, seed: number): BallBot => new Thrower(body, seed);
+export const createSimulatedThrower = (body: PlayerBody, seed: number): BallBot => new Thrower(body, seed);

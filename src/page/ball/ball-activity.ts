@@ -27,8 +27,8 @@ import { CourtInput } from './court-input';
 import { assignedSeat, type BallPlace, connectionsFor } from './match/ball-connections';
 import type { BallFrame, BallProbe } from './match/ball-frame';
 import { BallPlay } from './match/ball-play';
-import { createMatchClock } from './match/displayed-clock';
-import { playersOf } from './match/player-probe';
+import { createDisplayedClock } from './match/displayed-clock';
+import { playerProbes } from './match/player-probe';
 import { BallMenu } from './menu/ball-menu';
 import { createBallPanel } from './panel/ball-panel';
 import { type BallRound, ballRound } from './panel/ball-round';
@@ -38,7 +38,7 @@ import { BlockList } from './voices/block-list';
 import { Voices, type VoicesProbe } from './voices/voices';
 
 /** The state of a match and of its voices, for tests and tools. */
-export type CourtProbe = BallProbe & { readonly voices: VoicesProbe };
+export type BallActivityProbe = BallProbe & { readonly voices: VoicesProbe };
 
 type Players = BallFrame['players'];
 
@@ -50,7 +50,7 @@ const noticeSeconds = 8;
 const voidedNotice = 'The server was restarted, so this round does not count. You can start a new one.';
 
 /** The ball game in the page: the court, the other players' bodies, and the user's part in the match. */
-export class CourtActivity implements OpenActivity {
+export class BallActivity implements OpenActivity {
   readonly play: BallPlay;
   readonly sound: BallView['sound'];
   readonly voices: Voices;
@@ -62,7 +62,7 @@ export class CourtActivity implements OpenActivity {
   readonly #avatars: RoomBodies;
   readonly #menu: BallMenu;
   readonly #input: CourtInput;
-  readonly #clock = createMatchClock();
+  readonly #clock = createDisplayedClock();
   /** The width up to which the bar lies over the picture. */
   readonly #phone = matchMedia('(max-width: 480px)');
   /** The user joined without a name, and reads “You” instead of the one that others see. */
@@ -238,13 +238,13 @@ export class CourtActivity implements OpenActivity {
     return ballRound({ play, frame, players, secondsLeft: this.#clock.secondsLeft, acting, voices });
   }
 
-  probe(): CourtProbe | null {
+  probe(): BallActivityProbe | null {
     const probe = this.play.probe();
     return probe && { ...probe, secondsLeft: this.#clock.secondsLeft, voices: this.voices.probe() };
   }
 
   players(): readonly PlayerProbe[] {
-    return playersOf(this.play, this.#avatars);
+    return playerProbes(this.play, this.#avatars);
   }
 
   dispose(): void {
@@ -316,7 +316,7 @@ async function roomFor({ place, switches, clock, server, layout }: ActivityConte
 }
 
 /** Downloads the body of other players and connects to the room. Rejects with a reason. */
-export async function openCourt(context: ActivityContext): Promise<CourtActivity> {
+export async function openBallActivity(context: ActivityContext): Promise<BallActivity> {
   const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(plainAvatar), roomFor(context)]);
-  return new CourtActivity(context, room, mannequin);
+  return new BallActivity(context, room, mannequin);
 }

@@ -1,7 +1,7 @@
 import { estimatedJoints } from 'threepoint/core/body/joints';
 import { jointLabels } from '../shell/frame/device-difference';
 import type { HeadsetReport } from './headset-report';
-import { histogramEdgesMs, histogramOf } from './loss-lengths';
+import { histogramEdgesMs, histogramOf } from './tracking-losses';
 
 /** One part of the card. */
 export interface ReportSection {
@@ -21,7 +21,7 @@ const times = (quantiles: { readonly p50Ms: number; readonly p95Ms: number } | n
   quantiles ? `${quantiles.p50Ms.toFixed(1)} ms, p95 ${quantiles.p95Ms.toFixed(1)} ms` : 'not reported by this browser';
 
 /** Returns the parts of the card, each figure with its unit. */
-export const reportLines = (report: HeadsetReport): readonly ReportSection[] => [
+export const reportSections = (report: HeadsetReport): readonly ReportSection[] => [
   aboutDevice(report),
   noiseSection(report),
   lossSection(report),

@@ -41,7 +41,7 @@ export interface NoiseFigures {
  * of deviation s gives s, a constant velocity gives 0. A sway of amplitude a and frequency f adds a (2π f lag)² / √12:
  * 10 mm at 0.5 Hz and 72 Hz add 0.005 mm. Tremor of 8 to 12 Hz is as quick as noise and is counted with it.
  */
-export class NoiseRecorder {
+export class TrackerNoise {
   readonly #times: number[] = [];
   readonly #positions: Vec3[] = [];
   readonly #orientations: Quat[] = [];

@@ -9,7 +9,7 @@ export interface HandLosses {
 }
 
 /** Measures how long a hand is lost: from the first frame without it to the frame of its return. */
-export class LossLengths {
+export class TrackingLosses {
   readonly #lengths: number[] = [];
   #observed = 0;
   /** The time of the newest frame that counts [s]; null: none, or a menu of the system came in between. */
@@ -18,13 +18,13 @@ export class LossLengths {
   #lostAt: number | null = null;
   /** Whether the hand was seen at all, and since the last interruption. */
   #seen = false;
-  #following = false;
+  #observing = false;
 
   /** Adds a frame at this time [s]. Positions that the device guesses are no tracking. */
   add(time: number, tracked: boolean): void {
     this.#seen ||= tracked;
-    this.#following ||= tracked;
-    if (!this.#following) return;
+    this.#observing ||= tracked;
+    if (!this.#observing) return;
     if (this.#last !== null) this.#observed += time - this.#last;
     this.#last = time;
     if (!tracked) this.#lostAt ??= time;
@@ -36,7 +36,7 @@ export class LossLengths {
 
   /** Discards a loss in progress, and waits for the hand: the device shows a menu, or a step ended. */
   interrupt(): void {
-    this.#following = false;
+    this.#observing = false;
     this.#last = null;
     this.#lostAt = null;
   }

@@ -2,7 +2,7 @@ import { CanvasTexture, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
 import { anisotropyOf, type Quality } from './renderer';
 
 /** A texture that is drawn on a 2D canvas. Width and height in pixels. Throws where the browser offers no 2D canvas. */
-export function createDrawnTexture(width: number, height: number, quality: Quality) {
+export function createCanvasTexture(width: number, height: number, quality: Quality) {
   const canvas = document.createElement('canvas');
   canvas.width = width;
   canvas.height = height;
@@ -24,4 +24,4 @@ export function createDrawnTexture(width: number, height: number, quality: Quali
   };
 }
 
-export type DrawnTexture = ReturnType<typeof createDrawnTexture>;
+export type DrawableTexture = ReturnType<typeof createCanvasTexture>;

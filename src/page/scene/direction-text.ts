@@ -3,7 +3,7 @@ import { conjugate, rotate } from 'threepoint/core/math/quat';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 
 /** Describes the direction from a head to a point in words; height is ignored. */
-export function directionOf(head: Pose<'arena'>, point: Vec3): string {
+export function directionText(head: Pose<'arena'>, point: Vec3): string {
   const seen = rotate(conjugate(head.orientation), subtract(point, head.position));
   const degrees = (Math.atan2(seen.x, -seen.z) * 180) / Math.PI;
   const side = degrees < 0 ? 'left' : 'right';

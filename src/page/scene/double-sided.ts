@@ -5,4 +5,4 @@ import { DoubleSide } from 'three';
  * front, and looks its program up again for each (28 kB of garbage a frame for three nets before a mirror). A surface
  * that never covers itself needs only one pass.
  */
-export const bothSides = { side: DoubleSide, forceSinglePass: true } as const;
+export const doubleSided = { side: DoubleSide, forceSinglePass: true } as const;

@@ -1,15 +1,15 @@
 import { Sprite, SpriteMaterial } from 'three';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { vrFont } from 'threepoint-ui/vr-panel';
-import { ink } from './boards/lettering';
-import { createDrawnTexture } from './drawn-texture';
+import { ink } from './boards/board-style';
+import { createCanvasTexture } from './canvas-texture';
 import type { Quality } from './renderer';
 
 /** Height of the letters, as a share of the distance from which they are read. */
 const apparentSize = 0.055;
 
 /** How a word rises. */
-export interface RisingWordOptions {
+export interface FloatingTextOptions {
   readonly quality: Quality;
   /** How long it is seen [s]. */
   readonly seconds: number;
@@ -18,15 +18,15 @@ export interface RisingWordOptions {
 }
 
 /** A word that rises from a place for a moment and fades, over everything, as large for every reader. */
-export class RisingWord {
+export class FloatingText {
   readonly object: Sprite;
-  readonly #options: RisingWordOptions;
-  readonly #drawn: ReturnType<typeof createDrawnTexture>;
+  readonly #options: FloatingTextOptions;
+  readonly #drawn: ReturnType<typeof createCanvasTexture>;
   #text = '';
 
-  constructor(options: RisingWordOptions) {
+  constructor(options: FloatingTextOptions) {
     this.#options = options;
-    this.#drawn = createDrawnTexture(256, 128, options.quality);
+    this.#drawn = createCanvasTexture(256, 128, options.quality);
     const map = this.#drawn.texture;
     this.object = new Sprite(
       new SpriteMaterial({ map, transparent: true, depthTest: false, fog: false, toneMapped: false }),

@@ -18,7 +18,7 @@ const kindOf = ({ castShadow, receiveShadow, material, renderOrder }: PaintedMes
  * Merges the painted meshes below an object that look alike, so that each kind is one draw call. For scenery that
  * neither moves nor hides: the object gets new meshes in place of the merged ones.
  */
-export function mergeAlike(object: Object3D): void {
+export function mergeMeshes(object: Object3D): void {
   object.updateMatrixWorld(true);
   const intoObject = object.matrixWorld.clone().invert();
   const kinds = new Map<string, PaintedMesh[]>();

@@ -6,7 +6,7 @@ const side = 64;
 /**
  * Creates the material of a soft dark spot that fills its surface; `color`: red, green, blue; `opacity`: its middle.
  */
-export function createSoftSpot(color: readonly [number, number, number], opacity: number): MeshBasicMaterial {
+export function createSoftShadowMaterial(color: readonly [number, number, number], opacity: number): MeshBasicMaterial {
   const pixels = new Uint8Array(side * side * 4);
   for (let y = 0; y < side; y++) {
     for (let x = 0; x < side; x++) {

@@ -3,10 +3,10 @@ import * as v from 'valibot';
 import { boneMap, type PreferenceStore } from './preferences';
 
 /** The number of files whose maps are stored, the newest ones. */
-const mostFiles = 20;
+const maxFiles = 20;
 
 /** The bone maps that users gave for files, by the files' SHA-256; on this device only. */
-export class KnownBones {
+export class BoneMapStore {
   readonly #store: Pick<PreferenceStore, 'preferences' | 'remember'>;
 
   constructor(store: Pick<PreferenceStore, 'preferences' | 'remember'>) {
@@ -21,7 +21,7 @@ export class KnownBones {
   /** A map that could not be read again is not kept: all that is remembered would be lost with it. */
   keep(hash: string, bones: BoneMap): void {
     if (!v.is(boneMap, bones)) return;
-    const kept = [...this.#without(hash), [hash, bones] as const].slice(-mostFiles);
+    const kept = [...this.#without(hash), [hash, bones] as const].slice(-maxFiles);
     this.#store.remember({ bones: Object.fromEntries(kept) });
   }
 

@@ -8,7 +8,7 @@ import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/co
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { WornAvatar } from 'threepoint-rooms/client/shared-avatar';
-import { nameOf } from 'threepoint-ui/limited-files';
+import { fileNameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Studio } from '../studio/studio';
 import {
@@ -20,7 +20,7 @@ import {
 } from './avatar-loader';
 import type { Settings } from './settings';
 
-export interface ShownAvatarOptions extends AvatarLoaderOptions {
+export interface UserAvatarOptions extends AvatarLoaderOptions {
   readonly scene: Studio['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'builtInBody' | 'skinTone'>;
   readonly body: Pick<BodySolver, 'calibration'>;
@@ -63,8 +63,8 @@ interface Request {
 const reasonFor = (name: string, error: unknown): string => firstLine(reasonOf(error)).replace(`${name}: `, '');
 
 /** The avatar on the stage. Another one replaces it only when it has been loaded completely. */
-export class ShownAvatar {
-  readonly #options: ShownAvatarOptions;
+export class UserAvatar {
+  readonly #options: UserAvatarOptions;
   readonly #loader: AvatarLoader;
   #avatar: Avatar | null = null;
   #name = labelOf(plainAvatar);
@@ -79,7 +79,7 @@ export class ShownAvatar {
   #loading: Request | null = null;
   #waiting: (WaitingForBones & { readonly checked: AvatarFile }) | null = null;
 
-  constructor(options: ShownAvatarOptions) {
+  constructor(options: UserAvatarOptions) {
     this.#options = options;
     this.#loader = new AvatarLoader(options);
   }
@@ -134,7 +134,7 @@ export class ShownAvatar {
   }
 
   /** Sets the palette of a seat; null: the palette that the user chose. */
-  wear(palette: string | null): void {
+  setSeatPalette(palette: string | null): void {
     this.#seatPalette = palette;
     this.recolour();
   }
@@ -168,7 +168,7 @@ export class ShownAvatar {
    * holds motion and no body. Of several requests the last one is shown.
    */
   open(source: string | File): Promise<boolean | 'motion'> {
-    const request = this.#request(nameOf(source), false);
+    const request = this.#request(fileNameOf(source), false);
     return this.#arrive(request, async () => {
       const { signal } = request.cancellation;
       request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });

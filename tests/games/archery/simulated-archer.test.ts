@@ -4,11 +4,11 @@ import { angleBetween, rotate } from 'threepoint/core/math/quat';
 import { nextRandom, type RandomState } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import { add, distance, length, scale, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import { createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcherBody } from 'threepoint-games/archery/archer-postures';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { arrowSpeed } from 'threepoint-games/archery/bow';
 import { archeryRules } from 'threepoint-games/archery/rules';
+import { createSimulatedArcher } from 'threepoint-games/archery/simulated-archer';
 import { fistOf } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
@@ -141,7 +141,7 @@ describe('the built-in archer', () => {
       times: steady(72),
     });
     expect(state).toMatchObject({ score: 70, end: 'arrows' });
-    const archer = createArcher({ bowSide: 'left', eyeHeight: 1.6 });
+    const archer = createSimulatedArcher({ bowSide: 'left', eyeHeight: 1.6 });
     archer.follow(0, state);
     const a = archer.follow(3, state).frame;
     const b = archer.follow(3.5, state).frame;
@@ -160,7 +160,7 @@ describe('the built-in archer', () => {
       ...state,
       arrows: [{ id: 0, release: { time: 4, position: vec3(0, 1.5, -1), velocity: vec3(0, 50, -1) }, landing: null }],
     };
-    const archer = createArcher({ bowSide: 'left', eyeHeight: 1.6 });
+    const archer = createSimulatedArcher({ bowSide: 'left', eyeHeight: 1.6 });
     const hand = (time: number, at: ArcheryState) => archer.follow(time, at).frame.rightHand!.position;
     for (let time = 0; time < 4.5; time += 0.01) hand(time, state);
     const then = hand(6, flying);

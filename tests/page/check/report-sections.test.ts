@@ -1,12 +1,12 @@
 import * as fc from 'fast-check';
-import { reportLines } from 'threepoint-page/check/report-lines';
+import { reportSections } from 'threepoint-page/check/report-sections';
 import { expect, test } from 'vitest';
 import { anyReport } from './any-report';
 
 test('any report has a card, and each of its figures has a unit', () => {
   fc.assert(
     fc.property(anyReport, (report) => {
-      const sections = reportLines(report);
+      const sections = reportSections(report);
       expect(sections.map(({ title }) => title.replace(' (emulated)', ''))).toEqual([
         'Device',
         'Noise at rest',
@@ -29,7 +29,8 @@ test('any report has a card, and each of its figures has a unit', () => {
 test('losses are counted by length in words', () => {
   const [sample] = fc.sample(anyReport, { numRuns: 1, seed: 2 });
   const losses = { hand: 'left', source: 'hand', observedSeconds: 20.2, openEnd: true } as const;
-  const lineOf = (lengthsMs: number[]) => reportLines({ ...sample!, losses: [{ ...losses, lengthsMs }] })[2]!.lines[0]!;
+  const lineOf = (lengthsMs: number[]) =>
+    reportSections({ ...sample!, losses: [{ ...losses, lengthsMs }] })[2]!.lines[0]!;
   expect(lineOf([30, 120, 240, 9000])).toEqual({
     label: 'Left hand (hand)',
     value: 'Losses in 20 s: 1 up to 50 ms, 2 of 100 to 250 ms, 1 over 2000 ms; lost at the end',

@@ -3,7 +3,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply, type Quat } from 'threepoint/core/math/quat';
 import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
 import { length, normalise, vec3 } from 'threepoint/core/math/vec3';
-import { type NoiseFigures, NoiseRecorder } from 'threepoint-page/check/noise';
+import { type NoiseFigures, TrackerNoise } from 'threepoint-page/check/tracker-noise';
 import { expect, test } from 'vitest';
 
 /** A tracker that is held for 15 s: white noise by axis, and slow movement. */
@@ -42,7 +42,7 @@ function poseOf(held: Held, time: number, noise: readonly number[]): Pose<'floor
 function figuresOf(held: Held): NoiseFigures | null {
   const { rateHz, mm, degrees, smoothing = 0, seed = 7, skip = () => false } = held;
   const normal = normalNumbers(seed);
-  const recorder = new NoiseRecorder();
+  const recorder = new TrackerNoise();
   const sizes = [mm, mm, mm]
     .map((each) => each / 1000)
     .concat([degrees, degrees, degrees].map((d) => (d * Math.PI) / 180));
@@ -121,7 +121,7 @@ test('a device that does not move at all has no noise and repeats itself', () =>
 });
 
 test('fewer than two seconds give no figure', () => {
-  const recorder = new NoiseRecorder();
+  const recorder = new TrackerNoise();
   expect(recorder.figures()).toBeNull();
   for (let row = 0; row < 100; row++) recorder.add(row / 72, { position: vec3(0, 1, 0), orientation: start });
   expect(recorder.figures()).toBeNull();

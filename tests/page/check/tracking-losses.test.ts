@@ -1,9 +1,9 @@
-import { histogramOf, LossLengths } from 'threepoint-page/check/loss-lengths';
+import { histogramOf, TrackingLosses } from 'threepoint-page/check/tracking-losses';
 import { expect, test } from 'vitest';
 
 /** Plays a hand at 100 Hz: each letter is a frame; t tracked, l lost, m a menu of the system. */
 function played(frames: string) {
-  const lengths = new LossLengths();
+  const lengths = new TrackingLosses();
   [...frames].forEach((frame, row) => {
     if (frame === 'm') lengths.interrupt();
     else lengths.add(row / 100, frame === 't');

@@ -8,7 +8,7 @@ import {
   MeshLambertMaterial,
   type Object3D,
 } from 'three';
-import { mergeAlike } from 'threepoint-page/scene/merge-alike';
+import { mergeMeshes } from 'threepoint-page/scene/merge-meshes';
 import { painted } from 'threepoint-page/scene/painted-geometry';
 import { describe, expect, test } from 'vitest';
 
@@ -37,7 +37,7 @@ describe('scenery that looks alike', () => {
     deep.add(box(10));
     scenery.add(box(-4), deep);
     const before = new Box3().setFromObject(scenery, true);
-    mergeAlike(scenery);
+    mergeMeshes(scenery);
     const [whole, ...others] = meshesBelow(scenery);
     expect(others).toEqual([]);
     expect(whole?.geometry.getAttribute('position').count).toBe(2 * 36);
@@ -60,7 +60,7 @@ describe('scenery that looks alike', () => {
       new Mesh(new BoxGeometry(), new MeshLambertMaterial()),
     ];
     scenery.add(box(0), ...others);
-    mergeAlike(scenery);
+    mergeMeshes(scenery);
     expect(meshesBelow(scenery)).toHaveLength(6);
     for (const mesh of others) expect(mesh.parent).toBe(scenery);
   });

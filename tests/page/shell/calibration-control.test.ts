@@ -4,7 +4,7 @@ import { vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { createActor } from 'threepoint-page/emulator/actor';
 import type { Emulator } from 'threepoint-page/emulator/emulator';
-import { Measuring } from 'threepoint-page/shell/controls/measuring';
+import { CalibrationControl } from 'threepoint-page/shell/controls/calibration-control';
 import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
@@ -54,7 +54,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const settings = { actor };
   const headset = { worn: false, emulator, tracking: null };
   const body = { wearerCalibration: defaultCalibration };
-  const measuring = new Measuring({
+  const measuring = new CalibrationControl({
     settings,
     headset,
     body,
@@ -89,7 +89,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
     /** Replays a person of 1.9 m at the eyes. */
     replay() {
       const frames = [0, 1, 2, 3, 4, 5, 6, 7].map((time) => standing(time, 1.9));
-      recorder.take('tall.json', { device: 'a test', rateHz: 1, calibration: null, frames });
+      recorder.load('tall.json', { device: 'a test', rateHz: 1, calibration: null, frames });
       recorder.replay();
     },
   };

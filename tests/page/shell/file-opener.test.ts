@@ -1,7 +1,7 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { writeRecording } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { OpenedFiles } from 'threepoint-page/shell/controls/opened-files';
+import { FileOpener } from 'threepoint-page/shell/controls/file-opener';
 import { Recorder } from 'threepoint-page/studio/recorder';
 import type { Notice } from 'threepoint-ui/notices';
 import { describe, expect, test } from 'vitest';
@@ -62,7 +62,7 @@ function files() {
     opened,
     mocap,
     recorder,
-    files: new OpenedFiles({
+    files: new FileOpener({
       recorder,
       notices: { show: (level, text) => void notices.push({ level, text }) },
       avatar: {

@@ -1,4 +1,4 @@
-import { wakeSound } from 'threepoint-page/shell/activities/wake-sound';
+import { unlockSound } from 'threepoint-page/shell/activities/unlock-sound';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 
 let page = new EventTarget();
@@ -34,7 +34,7 @@ function gameSound() {
 describe('the sound of a game on a page that no one has touched', () => {
   test('wakes with the first touch or key', () => {
     const sound = gameSound();
-    wakeSound(sound, true, notices);
+    unlockSound(sound, true, notices);
     expect(sound.times()).toBe(0);
     press(['pointerdown']);
     expect(sound.times()).toBe(1);
@@ -42,7 +42,7 @@ describe('the sound of a game on a page that no one has touched', () => {
 
   test('wakes when a finger is lifted, which counts, not when it comes down', () => {
     const sound = gameSound();
-    wakeSound(sound, true, notices);
+    unlockSound(sound, true, notices);
     press(['keydown', 'pointerdown'], false);
     expect(sound.times()).toBe(0);
     press(['pointerup']);
@@ -51,7 +51,7 @@ describe('the sound of a game on a page that no one has touched', () => {
 
   test('stays asleep once the game is left', () => {
     const sound = gameSound();
-    const leave = wakeSound(sound, true, notices);
+    const leave = unlockSound(sound, true, notices);
     leave();
     press(['pointerdown', 'keydown']);
     expect(sound.times()).toBe(0);
@@ -62,7 +62,7 @@ describe('the sound of a game that the system has suspended', () => {
   test('wakes with each touch, and when the page is seen again', () => {
     const sound = gameSound();
     userActivation.hasBeenActive = true;
-    wakeSound(sound, true, notices);
+    unlockSound(sound, true, notices);
     expect(sound.times()).toBe(1);
     press(['pointerup']);
     expect(sound.times()).toBe(2);
@@ -78,7 +78,7 @@ describe('the sound of a game that the system has suspended', () => {
     const shown: string[] = [];
     const sound = { setMuted: () => undefined, unlock: () => Promise.reject(new Error('no audio device')) };
     userActivation.hasBeenActive = true;
-    wakeSound(sound, true, { show: (_, text) => shown.push(text) });
+    unlockSound(sound, true, { show: (_, text) => shown.push(text) });
     press(['pointerup']);
     press(['pointerup']);
     await vi.waitFor(() => expect(shown).toEqual(['Sound could not be started: no audio device']));
@@ -87,8 +87,8 @@ describe('the sound of a game that the system has suspended', () => {
   test('stays asleep where it is off, or once the game is left', () => {
     const sound = gameSound();
     userActivation.hasBeenActive = true;
-    wakeSound(sound, false, notices);
-    const leave = wakeSound(sound, true, notices);
+    unlockSound(sound, false, notices);
+    const leave = unlockSound(sound, true, notices);
     leave();
     press(['pointerup']);
     pageDocument.dispatchEvent(new Event('visibilitychange'));

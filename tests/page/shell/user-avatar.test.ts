@@ -7,9 +7,9 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { distance } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { KnownBones } from 'threepoint-page/shell/known-bones';
+import { BoneMapStore } from 'threepoint-page/shell/bone-map-store';
 import { createPreferenceStore } from 'threepoint-page/shell/preferences';
-import { ShownAvatar } from 'threepoint-page/shell/shown-avatar';
+import { UserAvatar } from 'threepoint-page/shell/user-avatar';
 import { describe, expect, test, vi } from 'vitest';
 import { builtRig, rigJoints } from '../../threepoint/avatar/built-rig';
 import { smallOldVrm, smallVrm } from '../../threepoint/avatar/small-vrms';
@@ -20,16 +20,16 @@ const bytes = () =>
   Promise.resolve(file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer);
 const clothes = (palette: string) => palettes.find(({ name }) => name === palette)?.color;
 
-const noBones = () => new KnownBones(createPreferenceStore(null));
+const noBones = () => new BoneMapStore(createPreferenceStore(null));
 
 test('a body of ours keeps the colours of its seat when another takes its place, and its tone of skin', async () => {
   const scene = new Scene();
-  const avatar = new ShownAvatar({
+  const avatar = new UserAvatar({
     scene,
     settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: 'dark' },
     body: { calibration: defaultCalibration },
     notices: { show: (_, text) => expect(text).toBeNull() },
-    knownBones: noBones(),
+    boneMaps: noBones(),
     prepare: () => Promise.resolve(),
     onChange: () => undefined,
   });
@@ -41,11 +41,11 @@ test('a body of ours keeps the colours of its seat when another takes its place,
   };
   await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('porcelain'), skinColors.dark]);
-  avatar.wear('ember');
+  avatar.setSeatPalette('ember');
   await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('ember'), skinColors.dark]);
   expect(avatar.worn).toBe('woman-dark');
-  avatar.wear(null);
+  avatar.setSeatPalette(null);
   expect(colourOf('Top')).toBe(clothes('porcelain'));
 });
 
@@ -81,14 +81,14 @@ const unknownNames = (name: string) => {
   return new File([builtRig({ nameOf: (bone) => [...bone].reverse().join(''), parents })], name);
 };
 
-function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve(), knownBones = noBones()) {
+function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve(), boneMaps = noBones()) {
   const told: string[] = [];
-  const avatar = new ShownAvatar({
+  const avatar = new UserAvatar({
     scene: new Scene(),
     settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
     body: { calibration: defaultCalibration },
     notices: { show: (_, text) => void told.push(text) },
-    knownBones,
+    boneMaps,
     prepare,
     onChange: () => undefined,
   });
@@ -153,7 +153,7 @@ describe('a file that is worn with a wrong bone', () => {
    * Returns the distance of a bone of the file from the left hand of the body that is drawn [m]: up to 2 cm where a
    * constraint of the file turns the bone above it.
    */
-  function fromHand({ current }: ShownAvatar, bone: string): number {
+  function fromHand({ current }: UserAvatar, bone: string): number {
     current!.setPose(pose, 0);
     const node = current!.object.getObjectByName(PropertyBinding.sanitizeNodeName(bone))!;
     return distance(node.getWorldPosition(new Vector3()), current!.jointPositions().leftHand!);
@@ -166,7 +166,7 @@ describe('a file that is worn with a wrong bone', () => {
   ])('as %s is corrected, keeps the correction, and goes back', async (_, name, content, prefix) => {
     checkFilesHere();
     const store = createPreferenceStore(null);
-    const { avatar, told } = wardrobe(undefined, new KnownBones(store));
+    const { avatar, told } = wardrobe(undefined, new BoneMapStore(store));
     const open = () => avatar.open(new File([content], name));
     const named = (map: Readonly<Record<string, string>>) =>
       Object.fromEntries(Object.entries(map).map(([part, bone]) => [part, bone.replace('the ', prefix)]));

@@ -1,21 +1,21 @@
 import { Group } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { ink } from '../../scene/boards/lettering';
+import { ink } from '../../scene/boards/board-style';
+import { FloatingText } from '../../scene/floating-text';
 import type { Quality } from '../../scene/renderer';
-import { RisingWord } from '../../scene/rising-word';
 
 const seconds = 1.5;
 const atOnce = 2;
 
 /** Points that rise from a target for a moment when it is hit; arena frame. */
-export class ScorePops {
+export class ScorePopups {
   readonly object = new Group();
-  readonly #words: readonly RisingWord[];
+  readonly #words: readonly FloatingText[];
 
   constructor(quality: Quality) {
     this.object.name = 'score pops';
-    this.#words = Array.from({ length: atOnce }, () => new RisingWord({ quality, seconds, lift: 1.4 }));
+    this.#words = Array.from({ length: atOnce }, () => new FloatingText({ quality, seconds, lift: 1.4 }));
     this.object.add(...this.#words.map(({ object }) => object));
   }
 

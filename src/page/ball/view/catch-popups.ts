@@ -1,22 +1,22 @@
 import { Group } from 'three';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { ink } from '../../scene/boards/lettering';
+import { ink } from '../../scene/boards/board-style';
+import { FloatingText } from '../../scene/floating-text';
 import type { Quality } from '../../scene/renderer';
-import { RisingWord } from '../../scene/rising-word';
 
 const seconds = 1.3;
 const atOnce = 2;
 
 /** "+1" that rises from the basket for a moment at each catch; arena frame. */
-export class CatchPops {
+export class CatchPopups {
   readonly object = new Group();
-  readonly #catches: readonly { readonly word: RisingWord; readonly at: MutableVec3; from: number }[];
+  readonly #catches: readonly { readonly word: FloatingText; readonly at: MutableVec3; from: number }[];
   #next = 0;
 
   constructor(quality: Quality) {
     this.object.name = 'catches';
     this.#catches = Array.from({ length: atOnce }, () => ({
-      word: new RisingWord({ quality, seconds, lift: 1.2 }),
+      word: new FloatingText({ quality, seconds, lift: 1.2 }),
       at: vec3(0, 0, 0),
       from: Number.NEGATIVE_INFINITY,
     }));

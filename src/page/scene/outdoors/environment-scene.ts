@@ -11,7 +11,7 @@ import {
 } from 'three';
 
 /** Sky above, grass below, the sun at its place, as a bow's varnish or an avatar's eyes reflect them. */
-export function createReflected(sun: Vector3): Scene {
+export function createEnvironmentScene(sun: Vector3): Scene {
   const reflected = new Scene();
   const dome = new Mesh(
     new SphereGeometry(10, 24, 16),

@@ -10,7 +10,7 @@ const touches = ['pointerdown', 'pointerup', 'keydown'];
  * may suspend it at any time: each touch and each return to the page wakes it again. Call the returned function to
  * stop.
  */
-export function wakeSound(sound: ActivitySound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
+export function unlockSound(sound: ActivitySound, wanted: boolean, notices: Pick<Notices, 'show'>): () => void {
   const stopped = new AbortController();
   const stop = () => stopped.abort();
   sound.setMuted(!wanted);

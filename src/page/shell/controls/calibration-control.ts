@@ -14,7 +14,7 @@ import type { Headset } from '../headset';
 import type { Settings } from '../settings';
 import type { UserCalibration } from '../user-calibration';
 
-export interface MeasuringOptions {
+export interface CalibrationControlOptions {
   readonly body: Pick<BodySolver, 'wearerCalibration'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly settings: Pick<Settings, 'actor'>;
@@ -24,15 +24,15 @@ export interface MeasuringOptions {
 }
 
 /** The guided calibration of this page: a dialog on the desktop, the menu in the headset. */
-export class Measuring {
+export class CalibrationControl {
   /** Each step of it; null: it is over. */
   readonly steps = new Emitter<[step: CalibrationStep | null]>();
-  readonly #options: MeasuringOptions;
+  readonly #options: CalibrationControlOptions;
   readonly #dialog: CalibrationDialog;
   readonly #guide: CalibrationGuide;
   #step: CalibrationStep | null = null;
 
-  constructor(options: MeasuringOptions) {
+  constructor(options: CalibrationControlOptions) {
     const { body, headset, userCalibration } = options;
     this.#options = options;
     this.#dialog = createCalibrationDialog(

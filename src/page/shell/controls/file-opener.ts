@@ -2,18 +2,18 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
-import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { PageMocap } from '../page-mocap';
-import type { ShownAvatar } from '../shown-avatar';
+import type { UserAvatar } from '../user-avatar';
 
 /** Twice what the recorder keeps at most. */
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
-export interface OpenedFilesOptions {
-  readonly avatar: Pick<ShownAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name' | 'waiting'>;
-  readonly recorder: Pick<Recorder, 'ask' | 'open' | 'replay'>;
+export interface FileOpenerOptions {
+  readonly avatar: Pick<UserAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name' | 'waiting'>;
+  readonly recorder: Pick<Recorder, 'nextRequest' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
   readonly mocap: Pick<PageMocap, 'open'>;
@@ -28,10 +28,10 @@ const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma|gltf)$/i.test(
 const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
 
 /** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
-export class OpenedFiles {
-  readonly #options: OpenedFilesOptions;
+export class FileOpener {
+  readonly #options: FileOpenerOptions;
 
-  constructor(options: OpenedFilesOptions) {
+  constructor(options: FileOpenerOptions) {
     this.#options = options;
   }
 
@@ -52,7 +52,7 @@ export class OpenedFiles {
    * notice.
    */
   async open(file: File): Promise<void> {
-    const asked = this.#options.recorder.ask();
+    const asked = this.#options.recorder.nextRequest();
     if (!isJson(file)) await this.openAvatar(file);
     else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#options.mocap.open([file]);
     else await this.openRecording(file, asked);
@@ -88,9 +88,9 @@ export class OpenedFiles {
    * Replays what the file keeps, with the body of the person in it. `asked`: the recorder's place for this wish. Never
    * rejects: what goes wrong becomes a notice.
    */
-  async openRecording(source: string | File, asked = this.#options.recorder.ask()): Promise<void> {
+  async openRecording(source: string | File, asked = this.#options.recorder.nextRequest()): Promise<void> {
     const { recorder, notices } = this.#options;
-    const name = nameOf(source);
+    const name = fileNameOf(source);
     try {
       recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), asked);
       this.replay();

@@ -5,23 +5,23 @@ import type { Headset } from '../headset';
 import type { UserCalibration } from '../user-calibration';
 
 /** The farthest that a user is lowered and raised [m]. */
-const lowest = -0.5;
-const highest = 1;
+const minRaise = -0.5;
+const maxRaise = 1;
 
-export interface ComfortOptions {
+export interface UserHeightOptions {
   readonly headset: Pick<Headset, 'raised' | 'raise'>;
   readonly body: Pick<BodySolver, 'calibration'>;
   readonly userCalibration: Pick<UserCalibration, 'recentre'>;
 }
 
 /** The height at which a session shows its user: as tracked, standing for a user who sits, or overridden by hand. */
-export class Comfort {
-  readonly #options: ComfortOptions;
+export class UserHeight {
+  readonly #options: UserHeightOptions;
   #seated = false;
   /** The height of the head as shown [m]; null: not seen yet. */
   #headHeight: number | null = null;
 
-  constructor(options: ComfortOptions) {
+  constructor(options: UserHeightOptions) {
     this.#options = options;
   }
 
@@ -64,7 +64,7 @@ export class Comfort {
   #raise(height: number): void {
     const { headset } = this.#options;
     const before = headset.raised;
-    headset.raise(clamp(height, lowest, highest));
+    headset.raise(clamp(height, minRaise, maxRaise));
     if (this.#headHeight !== null) this.#headHeight += headset.raised - before;
   }
 }
