@@ -1,13 +1,13 @@
 // npm run check:headset -- FILE …: validates the files of headset checks and prints their figures.
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { reportLines } from 'threepoint-page/check/report-lines';
+import { reportSections } from 'threepoint-page/check/report-sections';
 import { readCheckFile } from './checked-headset';
 
 for (const file of process.argv.slice(2)) {
   try {
     const report = readCheckFile(file);
     console.log(`${file}: valid`);
-    for (const { title, lines } of reportLines(report)) {
+    for (const { title, lines } of reportSections(report)) {
       console.log(`  ${title}`);
       for (const { label, value } of lines) console.log(`    ${label.padEnd(36)} ${value}`);
     }

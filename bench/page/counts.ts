@@ -11,7 +11,7 @@ import { requestVrSession } from 'threepoint/xr/session';
 import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
 import { type Emulator, installEmulator } from 'threepoint-page/emulator/emulator';
-import { type Shot, Stage } from 'threepoint-page/shell/stage';
+import { type Picture, Stage } from 'threepoint-page/shell/stage';
 import type { DrawnCounts, World, WorldCounts } from '../counts';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
@@ -74,7 +74,7 @@ class CountedStage {
         const frame = frameAt(index);
         this.#emulator.drive(frame);
         this.#avatar.setPose(this.#estimator.update(frame).pose, frame.time);
-        const shot: Shot = {
+        const shot: Picture = {
           time: frame.time,
           frame,
           avatar: this.#avatar,

@@ -1,4 +1,4 @@
-import { allowOwnScripts } from 'threepoint-ui/own-scripts';
+import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
 
 declare global {
   interface Window {
@@ -11,7 +11,7 @@ declare global {
 export async function reportOutcome(work: () => Promise<unknown>): Promise<void> {
   try {
     // The browser refuses the build's workers otherwise.
-    allowOwnScripts();
+    installTrustedTypesPolicy();
     window.benchOutcome = { result: await work() };
   } catch (error) {
     window.benchOutcome = { error: error instanceof Error ? (error.stack ?? error.message) : String(error) };

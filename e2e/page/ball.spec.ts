@@ -1,7 +1,7 @@
 import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
-import type { CourtProbe } from 'threepoint-page/ball/court-activity';
+import type { BallActivityProbe } from 'threepoint-page/ball/ball-activity';
 import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, goOn, holdAt } from '../driven-time';
@@ -84,7 +84,7 @@ test('without a headset a mouse takes a ball, aims and throws it @full', async (
   await until(page, ({ aim }) => (aim ?? 0) > 5.5);
   await keepPicture(page, 'ball-mouse');
   // Frame by frame: the next ball is soon in the hand.
-  const gone = holdAt<CourtProbe>(page, { phase: 'running', aim: null, held: { left: null, right: null } });
+  const gone = holdAt<BallActivityProbe>(page, { phase: 'running', aim: null, held: { left: null, right: null } });
   await Promise.all([gone, page.mouse.up()]);
   await goOn(page);
   await page.getByRole('button', { name: 'Let the computer play' }).click();

@@ -1,5 +1,5 @@
 import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
-import type { CourtProbe } from 'threepoint-page/ball/court-activity';
+import type { BallActivityProbe } from 'threepoint-page/ball/ball-activity';
 import { driveTime, holdAt, pass } from '../driven-time';
 import { card, choose, errors } from '../mocap-card';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
@@ -51,7 +51,7 @@ freshTest('the ball game: a ball in flight between three players @nightly', asyn
     await page.goto(`${server.origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
     await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, { timeout: 120_000 });
     await driveTime(page);
-    await holdAt<CourtProbe>(page, { phase: 'running', score: 2 });
+    await holdAt<BallActivityProbe>(page, { phase: 'running', score: 2 });
     await expect
       .poll(async () => {
         await pass(page, 4);

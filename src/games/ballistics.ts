@@ -45,7 +45,7 @@ const ascending = (first: number, second: number): number => first - second;
  * Returns the seconds until the flight comes down through a height [m]; 0 if it starts below, or at the height without
  * rising.
  */
-export function fallsTo({ position, velocity }: Launch, height: number): number {
+export function fallTime({ position, velocity }: Launch, height: number): number {
   const above = position.y - height;
   if (above < 0 || (above === 0 && velocity.y <= 0)) return 0;
   const root = Math.sqrt(velocity.y * velocity.y + 2 * gravity * above);
@@ -58,7 +58,7 @@ const offset = vec3(0, 0, 0);
  * Writes into `direction` the unit direction of a launch at `from` with `speed` [m/s] through `target`, the flatter of
  * two parabolas. Returns null if the target is out of reach.
  */
-export function launchTowards(
+export function launchDirection(
   target: Vec3,
   from: Vec3,
   speed: number,

@@ -7,13 +7,13 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
  * Arm length (shoulder to wrist) and half the shoulder width, as shares of the standing eye height (averages of the
  * body model).
  */
-export const armShare = 0.36;
-export const shoulderShare = 0.114;
+export const armRatio = 0.36;
+export const halfShoulderRatio = 0.114;
 /**
  * Distances of the shoulders below the eyes and behind them, as shares of the arm length, for a gaze along the trunk.
  */
-export const shoulderDrop = 0.35;
-export const shoulderBehind = 0.19;
+export const shoulderDropRatio = 0.35;
+export const shoulderBehindRatio = 0.19;
 
 /** Returns the minimum-jerk interpolation from 0 to 1, by which hands move (Flash & Hogan 1985). */
 export const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t);

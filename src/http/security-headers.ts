@@ -1,6 +1,6 @@
 /**
  * Returns the policy of a page. Scripts are our own files and nothing evaluates text; WebAssembly may compile. Trusted
- * Types refuse text as markup or code and other addresses of scripts than those that src/ui/own-scripts.ts lets
+ * Types refuse text as markup or code and other addresses of scripts than those that src/ui/trusted-types.ts lets
  * through. The emulator's panels set style attributes. Textures inside a VRM become blob: URLs. `filesFrom` lists the
  * sources beyond the page's own server from which it may read files that are named by address: avatars, recordings,
  * motion capture.

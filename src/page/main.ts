@@ -1,7 +1,7 @@
 import { pageElement } from 'threepoint-ui/element';
 import { createEnterButton, type EnterButton } from 'threepoint-ui/enter-button';
 import { createNotices } from 'threepoint-ui/notices';
-import { allowOwnScripts } from 'threepoint-ui/own-scripts';
+import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
 import { createPage, type Page } from './shell/create-page';
 import { createFrameLoop } from './shell/frame/frame-loop';
 import type { Headset } from './shell/headset';
@@ -45,7 +45,7 @@ async function showFirstBody({ avatarShown, frame, loading }: Page): Promise<voi
  */
 async function openFromAddress({ activities, controls, mocap, recorder, switches }: Page): Promise<void> {
   // Before anything that the user opens meanwhile.
-  const [replay, motion] = [recorder.ask(), recorder.ask()];
+  const [replay, motion] = [recorder.nextRequest(), recorder.nextRequest()];
   await activities.goTo(switches.play);
   if (switches.panel) controls.setPanelOpen(true);
   if (switches.replay) void controls.openRecording(switches.replay, replay);
@@ -72,7 +72,7 @@ function storeOfflineCopy({ kept, switches }: Page): void {
 
 /** Builds the page and opens it; resolves when everything has loaded. */
 async function start(): Promise<void> {
-  allowOwnScripts();
+  installTrustedTypesPolicy();
   const notices = createNotices(pageElement('notices', HTMLElement));
   reportFaults(notices);
   const loading = new PageLoading();

@@ -9,7 +9,7 @@ import { nameOfAddress } from 'threepoint/core/files';
 export type { FileKind } from 'threepoint/avatar/file/limited-download';
 
 /** What sentences call a file: its name, of an address the last part. */
-export const nameOf = (source: string | File): string =>
+export const fileNameOf = (source: string | File): string =>
   typeof source === 'string' ? nameOfAddress(source) : source.name;
 
 /**

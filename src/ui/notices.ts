@@ -17,7 +17,7 @@ interface Shown {
 
 /** Milliseconds that an information stays: long enough to read twice. */
 const infoDurationMs = 6000;
-const most = 4;
+const maxNotices = 4;
 
 /** Sentences for the user, in the region given; trouble is announced at once, the rest politely. */
 export function createNotices(region: HTMLElement) {
@@ -39,7 +39,7 @@ export function createNotices(region: HTMLElement) {
     const opened = { notice: { level, text }, node };
     shown.set(text, opened);
     const oldest = shown.keys().next().value;
-    if (shown.size > most && oldest !== undefined) close(oldest);
+    if (shown.size > maxNotices && oldest !== undefined) close(oldest);
     return opened;
   };
   return {

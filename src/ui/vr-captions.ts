@@ -3,7 +3,7 @@ import { dampVec3 } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createVrPanel, fillRounded, vrColors, widthOf, write } from './vr-panel';
+import { createVrPanel, drawText, fillRoundedRect, textWidth, vrColors } from './vr-panel';
 
 const [width, height] = [1000, 96];
 /** How far away [m], and how far below the gaze [m] there: 13 degrees. */
@@ -33,10 +33,10 @@ export function createVrCaptions() {
       current = text === '' ? null : { text, until: null };
       if (current === null) return;
       draw((context) => {
-        const wide = Math.min(width, widthOf(context, text, '600 46px') + 64);
-        fillRounded(context, [(width - wide) / 2, 4, wide, height - 8], 28, vrColors.glass);
+        const wide = Math.min(width, textWidth(context, text, '600 46px') + 64);
+        fillRoundedRect(context, [(width - wide) / 2, 4, wide, height - 8], 28, vrColors.glass);
         const writing = { font: '600 46px', color: vrColors.ink, align: 'center', baseline: 'middle' } as const;
-        write(context, text, [width / 2, height / 2 + 2], { ...writing, most: width - 48 });
+        drawText(context, text, [width / 2, height / 2 + 2], { ...writing, maxWidth: width - 48 });
       });
     },
     /** At this time [s] before these eyes, floor frame; null: no one reads. */

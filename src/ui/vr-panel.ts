@@ -66,7 +66,7 @@ export const vrColors = {
 export const vrFont = 'Inter, "Segoe UI", system-ui, Roboto, sans-serif';
 
 /** How a text is written on a canvas. */
-export interface Writing {
+export interface TextStyle {
   /** Weight and size. */
   readonly font: string;
   readonly color: string;
@@ -75,47 +75,47 @@ export interface Writing {
   /** Default: alphabetic. */
   readonly baseline?: CanvasTextBaseline;
   /** The greatest width [pixels]; a longer text is compressed. */
-  readonly most?: number;
+  readonly maxWidth?: number;
 }
 
 /** Writes a text at a place of a canvas [pixels]. */
-export function write(
+export function drawText(
   context: CanvasRenderingContext2D,
   text: string,
   [x, y]: readonly [number, number],
-  { font, color, align = 'left', baseline = 'alphabetic', most }: Writing,
+  { font, color, align = 'left', baseline = 'alphabetic', maxWidth }: TextStyle,
 ): void {
   context.font = `${font} ${vrFont}`;
   context.fillStyle = color;
   context.textAlign = align;
   context.textBaseline = baseline;
-  context.fillText(text, x, y, most);
+  context.fillText(text, x, y, maxWidth);
 }
 
 /**
  * Writes a text in lines of at most `width` pixels, broken at spaces, the first at (x, y) and each `step` below the one
  * before. `mostLines`: further ones are left out.
  */
-export function writeLines(
+export function drawTextLines(
   context: CanvasRenderingContext2D,
   text: string,
   [x, y, width]: readonly [number, number, number],
   step: number,
-  writing: Writing,
+  writing: TextStyle,
   mostLines?: number,
 ): void {
   context.font = `${writing.font} ${vrFont}`;
-  const lines = wrap(context, text, width).slice(0, mostLines);
-  for (const [index, line] of lines.entries()) write(context, line, [x, y + index * step], writing);
+  const lines = wrapText(context, text, width).slice(0, mostLines);
+  for (const [index, line] of lines.entries()) drawText(context, line, [x, y + index * step], writing);
 }
 
 /** Returns the width of a text in a weight and size [pixels]. */
-export function widthOf(context: CanvasRenderingContext2D, text: string, font: string): number {
+export function textWidth(context: CanvasRenderingContext2D, text: string, font: string): number {
   context.font = `${font} ${vrFont}`;
   return context.measureText(text).width;
 }
 
-export function fillRounded(
+export function fillRoundedRect(
   context: CanvasRenderingContext2D,
   [x, y, width, height]: readonly [number, number, number, number],
   radius: number,
@@ -134,7 +134,7 @@ export function fillRounded(
 }
 
 /** Lines of at most `most` pixels, broken at spaces. */
-export function wrap(context: CanvasRenderingContext2D, text: string, most: number): string[] {
+export function wrapText(context: CanvasRenderingContext2D, text: string, most: number): string[] {
   const lines: string[] = [];
   let line = '';
   for (const word of text.split(' ')) {

@@ -14,7 +14,7 @@ import {
 import type { Pointer } from 'threepoint/core/input/pointer';
 
 /** Two hands, a pinch of each and a gaze. */
-const mostPointers = 5;
+const maxPointers = 5;
 /** A gaze that meets nothing shows its dot this far away [m]: the user must see where the head points. */
 const gazeDistance = 2;
 const dotRadius = 0.007;
@@ -83,7 +83,7 @@ class DrawnPointer {
 /** Shows where pointers point; in the space that they are given in. */
 export function createVrPointers() {
   const objects = new Group();
-  const drawn = Array.from({ length: mostPointers }, () => new DrawnPointer());
+  const drawn = Array.from({ length: maxPointers }, () => new DrawnPointer());
   for (const { object } of drawn) objects.add(object);
   return {
     objects,

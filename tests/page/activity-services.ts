@@ -8,7 +8,7 @@ import { ServerPresence } from 'threepoint-http/server-presence';
 import type { ActivityServices } from 'threepoint-page/activity/activity-context';
 import type { Surroundings } from 'threepoint-page/scene/surroundings';
 import { fetchBuiltInAvatar } from 'threepoint-page/shell/avatar-loader';
-import { createSettings, type LastingSettings, SettingsWriter } from 'threepoint-page/shell/settings';
+import { createSettings, SettingsWriter, type StoredSettings } from 'threepoint-page/shell/settings';
 import { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import type { Notice } from 'threepoint-ui/notices';
@@ -22,10 +22,10 @@ export const noPointers = { follow: () => undefined, steering: null };
 export function activityServices(address = '?seed=5&quality=low') {
   const { switches } = readSwitches(address);
   const settings = createSettings({ ...switches, actor: false }, { preferences: { sound: false } });
-  const kept: LastingSettings[] = [];
+  const kept: StoredSettings[] = [];
   const writer = new SettingsWriter(
     settings,
-    { remember: (part) => void kept.push(part as LastingSettings) },
+    { remember: (part) => void kept.push(part as StoredSettings) },
     () => undefined,
   );
   const places: (Surroundings | null)[] = [];

@@ -3,10 +3,10 @@ import { otherSide, type Side } from 'threepoint/core/math/side';
 import { archeryRules } from 'threepoint-games/archery/rules';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { BallGestures } from 'threepoint-games/ball/gestures';
-import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { ballRules } from 'threepoint-games/ball/rules';
+import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
+import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { stations } from 'threepoint-games/ball/stations';
-import { createThrower } from 'threepoint-games/ball/thrower-motion';
 import { expect, test } from 'vitest';
 import { shotWithOneHand } from '../games/archery/one-handed-round';
 import { playRound, steady } from '../games/archery/playing';
@@ -51,8 +51,8 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
   let state: BallState = ballRules.start(['ann', 'ben', 'cal'], 3, { balls: 8, seconds: 60 });
   const bots = stations.map((arenaFromFloor, player) =>
     player === 2
-      ? createHolder({ eyeHeight, arenaFromFloor })
-      : createThrower({ eyeHeight, arenaFromFloor }, 3 + player),
+      ? createSimulatedHolder({ eyeHeight, arenaFromFloor })
+      : createSimulatedThrower({ eyeHeight, arenaFromFloor }, 3 + player),
   );
   const gestures = stations.map(
     (arenaFromFloor, player) => new BallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),

@@ -7,7 +7,7 @@ import { add, addScaled, distance, type Vec3, vec3 } from 'threepoint/core/math/
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { arrowLength } from 'threepoint-games/archery/bow';
-import { releaseTowards } from 'threepoint-games/archery/flight';
+import { releaseDirection } from 'threepoint-games/archery/flight';
 import { archeryRules, delayed } from 'threepoint-games/archery/rules';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { HandVelocity } from 'threepoint-games/ball/hand-velocity';
@@ -34,7 +34,7 @@ test('arrows fly and land the same at every rate', () => {
     for (const time of framesOf(rate, drop, 6)) {
       const shots = due.splice(0, due.filter((shot) => shot.time <= time).length).map(({ target }) => {
         const nock = add(match.state.head, vec3(0.1, -0.1, -0.1));
-        const direction = releaseTowards(match.state.targets[target]!.centre, nock, 0.5)!;
+        const direction = releaseDirection(match.state.targets[target]!.centre, nock, 0.5)!;
         const position = addScaled(nock, direction, arrowLength);
         return { type: 'release', position, direction, draw: 0.5, delay: 0 } as const;
       });

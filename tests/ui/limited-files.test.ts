@@ -1,7 +1,7 @@
 import type { RequestListener } from 'node:http';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import { afterEach, describe, expect, test } from 'vitest';
 import { reportFigures } from '../reliability/report-figures';
 
@@ -121,7 +121,7 @@ describe('what an address answers', () => {
 });
 
 test('a file is called by its name, an address by its last part', () => {
-  expect(nameOf(new File([], 'a.vrm'))).toBe('a.vrm');
-  expect(nameOf('https://elsewhere.test/bodies/b.vrm?x=1#y')).toBe('b.vrm');
-  expect(nameOf('https://elsewhere.test/')).toBe('https://elsewhere.test/');
+  expect(fileNameOf(new File([], 'a.vrm'))).toBe('a.vrm');
+  expect(fileNameOf('https://elsewhere.test/bodies/b.vrm?x=1#y')).toBe('b.vrm');
+  expect(fileNameOf('https://elsewhere.test/')).toBe('https://elsewhere.test/');
 });

@@ -21,17 +21,17 @@ import {
 } from 'threepoint/core/math/vec3';
 import { wristAround } from '../fist';
 import {
-  armShare,
+  armRatio,
+  halfShoulderRatio,
   lookAlong,
   type PlayerInput,
-  shoulderBehind,
-  shoulderDrop,
-  shoulderShare,
+  shoulderBehindRatio,
+  shoulderDropRatio,
   swayAt,
   yawOf,
 } from '../simulated-body';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
-import { releaseTowards } from './flight';
+import { releaseDirection } from './flight';
 
 /** The body of an archer. */
 export interface ArcherBody {
@@ -75,7 +75,7 @@ const mixHold = (a: Hold, b: Hold, share: number): Hold => ({
   draw: a.draw + (b.draw - a.draw) * share,
 });
 
-export const mix = (a: Posture, b: Posture, share: number): Posture => ({
+export const mixPostures = (a: Posture, b: Posture, share: number): Posture => ({
   gaze: slerp(a.gaze, b.gaze, share),
   trunkYaw: a.trunkYaw + (b.trunkYaw - a.trunkYaw) * share,
   hold: mixHold(a.hold, b.hold, share),
@@ -98,12 +98,12 @@ export class ArcherPostures {
   /** The sign of x on the side of the string hand. */
   readonly #aside: -1 | 1;
 
-  constructor({ bowSide, eyeHeight, armLength = armShare * eyeHeight }: ArcherBody) {
+  constructor({ bowSide, eyeHeight, armLength = armRatio * eyeHeight }: ArcherBody) {
     this.eyes = vec3(0, eyeHeight, 0);
     this.#bowSide = bowSide;
     this.#stringSide = otherSide(bowSide);
     this.#arm = armLength;
-    this.#halfShoulders = (shoulderShare / armShare) * armLength;
+    this.#halfShoulders = (halfShoulderRatio / armRatio) * armLength;
     this.#aside = bowSide === 'left' ? 1 : -1;
   }
 
@@ -169,7 +169,7 @@ export class ArcherPostures {
     let direction = normalise(to);
     // Draw and direction depend on each other: a longer draw is faster and flies flatter.
     for (let round = 0; round < 6; round++) {
-      direction = releaseTowards(target, atNock, draw) ?? normalise(to);
+      direction = releaseDirection(target, atNock, draw) ?? normalise(to);
       draw = this.#drawOf(nock, shoulder, direction);
     }
     return {
@@ -197,7 +197,7 @@ export class ArcherPostures {
    * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button,
    * 0 to 1. `swing`: outward offset of that hand [m].
    */
-  seen(now: Posture, time: number, pressure: number, swing: number): PlayerInput {
+  inputFor(now: Posture, time: number, pressure: number, swing: number): PlayerInput {
     const head = add(this.eyes, swayAt(time));
     const bowHand = this.#inFloor(head, this.#bowWrist(now));
     const stringHand = this.#inFloor(head, this.#stringWrist(now, swing));
@@ -230,7 +230,7 @@ export class ArcherPostures {
   #shoulderOf(side: Side, gaze: Quat, trunkYaw: number): Vec3 {
     const arm = this.#arm;
     const half = this.#halfShoulders;
-    const neck = this.#facing(yawOf(rotate(gaze, forward)), 0, -shoulderDrop * arm, -shoulderBehind * arm);
+    const neck = this.#facing(yawOf(rotate(gaze, forward)), 0, -shoulderDropRatio * arm, -shoulderBehindRatio * arm);
     return add(neck, this.#facing(trunkYaw, side === this.#stringSide ? half : -half, 0, 0));
   }
 

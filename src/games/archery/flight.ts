@@ -1,5 +1,5 @@
 import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { fallsTo, gravity, type Launch, launchTowards, positionAt, roots } from '../ballistics';
+import { fallTime, gravity, type Launch, launchDirection, positionAt, roots } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
 
@@ -27,7 +27,7 @@ const point = vec3(0, 0, 0);
 const crossings: number[] = [];
 
 /** Returns the seconds until the tip passes through the disc from its painted side; null: it never does. */
-export function reachesTarget(launch: Launch, { centre, normal, radius }: Target): number | null {
+export function timeToTarget(launch: Launch, { centre, normal, radius }: Target): number | null {
   const towards = dot(normal, launch.velocity);
   const away = dot(normal, subtract(launch.position, centre, point));
   for (const time of roots(-0.5 * gravity * normal.y, towards, away, crossings)) {
@@ -38,10 +38,10 @@ export function reachesTarget(launch: Launch, { centre, normal, radius }: Target
 }
 
 /** Returns the seconds until the tip is at y = 0; 0 if it starts in the ground. */
-export const reachesGround = (launch: Launch): number => (launch.position.y <= 0 ? 0 : fallsTo(launch, 0));
+export const timeToGround = (launch: Launch): number => (launch.position.y <= 0 ? 0 : fallTime(launch, 0));
 
 /** Returns the seconds until the tip reaches the net from the inside; null: it flies over, along or away from it. */
-export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall): number | null {
+export function timeToWall(launch: Launch, { axis, at, inward, height }: Wall): number | null {
   const inside = (launch.position[axis] - at) * inward;
   const approach = -launch.velocity[axis] * inward;
   if (inside < 0 || approach <= 0) return null;
@@ -51,13 +51,13 @@ export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall):
 
 /** Returns the first hit of the tip on its parabola. It is solved instead of stepped, so that nothing tunnels. */
 export function firstHit(launch: Launch, targets: readonly Target[], walls: readonly Wall[]): Hit {
-  let first: Hit = { after: reachesGround(launch), on: 'ground', target: null };
+  let first: Hit = { after: timeToGround(launch), on: 'ground', target: null };
   for (const wall of walls) {
-    const after = reachesWall(launch, wall);
+    const after = timeToWall(launch, wall);
     if (after !== null && after < first.after) first = { after, on: 'wall', target: null };
   }
   for (let target = 0; target < targets.length; target++) {
-    const after = reachesTarget(launch, targets[target]!);
+    const after = timeToTarget(launch, targets[target]!);
     if (after !== null && after < first.after) first = { after, on: 'target', target };
   }
   return first;
@@ -67,17 +67,17 @@ export function firstHit(launch: Launch, targets: readonly Target[], walls: read
  * Writes into `result` the unit direction in which an arrow with its nock at `nock` and this draw [m] hits `target`;
  * the tip is an arrow's length ahead. Returns null if the target is out of reach.
  */
-export function releaseTowards(
+export function releaseDirection(
   target: Vec3,
   nock: Vec3,
   draw: number,
   result: MutableVec3 = vec3(0, 0, 0),
 ): MutableVec3 | null {
   const speed = arrowSpeed(draw);
-  let direction = launchTowards(target, nock, speed, result);
+  let direction = launchDirection(target, nock, speed, result);
   // Each iteration shrinks the error to a tenth or less: the tip moves only with the change of direction.
   for (let round = 0; round < 12 && direction; round++) {
-    direction = launchTowards(target, addScaled(nock, direction, arrowLength, point), speed, result);
+    direction = launchDirection(target, addScaled(nock, direction, arrowLength, point), speed, result);
   }
   return direction;
 }

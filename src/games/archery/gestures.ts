@@ -17,7 +17,7 @@ import { fistOf } from '../fist';
 import type { HapticPulse } from '../haptic-pulse';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, maximumDraw, minimumDraw } from './bow';
-import { forwardOf, stringAtRest, turnBow } from './bow-hand';
+import { bowDirection, nockingPointOf, turnBow } from './bow-pose';
 import { HeldBow, holdSeconds } from './held-bow';
 import { NockedArrow } from './nocked-arrow';
 import { releaseInterval } from './rules';
@@ -221,7 +221,7 @@ export class ArcheryGestures {
     this.#requestedSide = bowSide;
     if (bowSide === this.#bow.side) return;
     this.#cancel(this.#bow.side);
-    this.#bow.giveTo(bowSide);
+    this.#bow.moveToHand(bowSide);
   }
 
   /** Lets a free hand take the bow out of the other one while no arrow is nocked. */
@@ -232,7 +232,7 @@ export class ArcheryGestures {
       if (!this.#pressed[taker].some((button) => button !== 'trigger')) continue;
       const fist = fistOf(hand, this.#fist);
       if (!this.#isAtBow(fist)) continue;
-      this.#bow.giveTo(taker);
+      this.#bow.moveToHand(taker);
       this.#wasNear = true;
       this.#cue('taken', taker, fist);
       this.#pulse(taker, 0.5, 0.04);
@@ -264,7 +264,7 @@ export class ArcheryGestures {
   #nock(hand: TrackedPose, stringSide: Side): void {
     const { oneHanded } = this.#now;
     const bow = this.#bow.empty();
-    const string = stringAtRest(bow, this.#point);
+    const string = nockingPointOf(bow, this.#point);
     const reach = nockReach + (this.#wasNear ? nearMargin : 0);
     const near = oneHanded || distance(fistOf(hand, this.#fist), string) <= reach;
     const button = near ? this.#pressed[stringSide][0] : undefined;
@@ -274,7 +274,7 @@ export class ArcheryGestures {
     }
     this.#wasNear = near;
     if (!button) return;
-    this.#nocked = new NockedArrow(button, stringSide, forwardOf(bow));
+    this.#nocked = new NockedArrow(button, stringSide, bowDirection(bow));
     this.#cue('nocked', stringSide, string);
     this.#pulse(stringSide, 0.4, 0.03);
   }
@@ -362,7 +362,7 @@ export class ArcheryGestures {
       copyVec3(arrow.direction, this.#arrowView.direction);
     } else {
       copyPose(this.#bow.empty(), view.bow);
-      stringAtRest(view.bow, view.nockPoint);
+      nockingPointOf(view.bow, view.nockPoint);
     }
     return view;
   }

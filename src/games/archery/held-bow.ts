@@ -2,7 +2,7 @@ import { smoothingFactor } from 'threepoint/core/math/damper';
 import { makePose, type Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { bowInHand, forwardOf, stringAtRest, turnBow, turnTowards } from './bow-hand';
+import { bowDirection, bowInHand, nockingPointOf, turnBow, turnTowards } from './bow-pose';
 
 /** A press takes the bow out of the other hand within this distance of the fist from its grip [m]. */
 export const takeReach = 0.1;
@@ -34,7 +34,7 @@ export class HeldBow {
     return this.#heldAt !== null;
   }
 
-  giveTo(side: Side): void {
+  moveToHand(side: Side): void {
     this.side = side;
     this.#heldAt = null;
     this.#settling = null;
@@ -47,7 +47,7 @@ export class HeldBow {
   isInHandAt(fist: Vec3, side: Side, giver: Pose<'floor'>): boolean {
     const bow = bowInHand(side, giver, this.#turned);
     const toGrip = distance(fist, bow.position);
-    return toGrip <= takeReach && toGrip <= distance(fist, stringAtRest(bow, string));
+    return toGrip <= takeReach && toGrip <= distance(fist, nockingPointOf(bow, string));
   }
 
   /**
@@ -79,7 +79,7 @@ export class HeldBow {
   /** Continues the return by `delta` seconds. */
   settle(delta: number): void {
     if (!this.#settling) return;
-    forwardOf(this.inHand, ahead);
+    bowDirection(this.inHand, ahead);
     turnTowards(this.#settling, ahead, smoothingFactor(settleHalfLife, delta), this.#settling);
     if (dot(this.#settling, ahead) > settled) this.#settling = null;
   }

@@ -15,7 +15,7 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { BowView } from './archery-state';
 import { braceHeight, maximumDraw } from './bow';
-import { arrowRestOf, forwardOf, turnBow, turnTowards } from './bow-hand';
+import { arrowRestOf, bowDirection, turnBow, turnTowards } from './bow-pose';
 
 /** Half-life of a drawn arrow's direction [s]. */
 export const aimHalfLife = 0.05;
@@ -85,7 +85,7 @@ export class NockedArrow {
   /** Draws the string to the fist of the string hand. Returns whether this frame anchors the draw. */
   drawWithHand(inHand: Pose<'floor'>, fist: Vec3, delta: number): boolean {
     const { direction } = this;
-    this.#leap(forwardOf(inHand, held));
+    this.#leap(bowDirection(inHand, held));
     const reference = this.draw < drawingFrom ? held : direction;
     // The arrow rest lies above the fist, orthogonal to the arrow, whatever the direction of the knuckles.
     normalise(subtract(arrowRestOf(inHand, rest), fist, line), reference, line);
@@ -103,7 +103,7 @@ export class NockedArrow {
 
   /** Draws with the button, while the bow hand aims. Returns whether this frame anchors the draw. */
   drawWithButton(inHand: Pose<'floor'>, delta: number): boolean {
-    this.#leap(forwardOf(inHand, held));
+    this.#leap(bowDirection(inHand, held));
     turnTowards(this.direction, held, this.#smoothing(oneHandedAimHalfLife, delta), this.direction);
     this.draw = Math.min(oneHandedDraw, this.draw + oneHandedDrawSpeed * delta);
     if (this.draw < oneHandedDraw) this.stage = this.#stageOfDraw();

@@ -1,7 +1,7 @@
 import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import { minimumJerk, type PlayerInput, yawOf } from '../simulated-body';
-import { type ArcherBody, ArcherPostures, mix, type Posture } from './archer-postures';
+import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';
 
 /** What a pointer asks of an archer. */
 export interface Steering {
@@ -47,7 +47,7 @@ export function createSteeredArcher(body: ArcherBody) {
 
   return {
     /** The hands return from a shot, and a press is not heeded yet. */
-    get recovers(): boolean {
+    get isRecovering(): boolean {
       return phase === 'loosing' || phase === 'following' || phase === 'returning' || phase === 'lowering';
     },
     /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
@@ -62,7 +62,7 @@ export function createSteeredArcher(body: ArcherBody) {
 
       if (phase === 'ready' && pressed) enter('nocking', time);
       else if (phase === 'nocking' && !pressed) {
-        left = mix(taking, nocking, done(nockSeconds));
+        left = mixPostures(taking, nocking, done(nockSeconds));
         enter('returning', time);
       } else if (phase === 'nocking' && over(nockSeconds)) enter('grabbing', time);
       else if (phase === 'grabbing' && over(grabSeconds)) {
@@ -77,29 +77,29 @@ export function createSteeredArcher(body: ArcherBody) {
         enter('returning', time);
       } else if (phase === 'loosing' && over(looseSeconds)) enter('following', time);
       else if (phase === 'following' && over(followSeconds)) {
-        left = postures.followedThrough(mix(nocking, full, share));
+        left = postures.followedThrough(mixPostures(nocking, full, share));
         enter('returning', time);
         // A new shot begins with a new press.
       } else if (phase === 'returning' && over(returnSeconds) && !pressed) enter('ready', time);
 
-      const bent = mix(nocking, full, share);
+      const bent = mixPostures(nocking, full, share);
       switch (phase) {
         case 'nocking':
-          return postures.seen(mix(taking, nocking, done(nockSeconds)), time, 0, 0);
+          return postures.inputFor(mixPostures(taking, nocking, done(nockSeconds)), time, 0, 0);
         case 'grabbing':
-          return postures.seen(nocking, time, done(grabSeconds), 0);
+          return postures.inputFor(nocking, time, done(grabSeconds), 0);
         case 'drawing':
-          return postures.seen(bent, time, 1, 0);
+          return postures.inputFor(bent, time, 1, 0);
         case 'lowering':
-          return postures.seen(mix(nocking, full, share * (1 - done(returnSeconds))), time, 1, 0);
+          return postures.inputFor(mixPostures(nocking, full, share * (1 - done(returnSeconds))), time, 1, 0);
         case 'loosing':
-          return postures.seen(bent, time, 1 - done(looseSeconds), 0);
+          return postures.inputFor(bent, time, 1 - done(looseSeconds), 0);
         case 'following':
-          return postures.seen(mix(bent, postures.followedThrough(bent), done(followSeconds)), time, 0, 0);
+          return postures.inputFor(mixPostures(bent, postures.followedThrough(bent), done(followSeconds)), time, 0, 0);
         case 'returning':
-          return postures.seen(mix(left ?? taking, taking, done(returnSeconds)), time, 0, 0);
+          return postures.inputFor(mixPostures(left ?? taking, taking, done(returnSeconds)), time, 0, 0);
         default:
-          return postures.seen(taking, time, 0, 0);
+          return postures.inputFor(taking, time, 0, 0);
       }
     },
   };

@@ -17,13 +17,13 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
-import { fallsTo, type Launch, positionAt } from '../ballistics';
+import { fallTime, type Launch, positionAt } from '../ballistics';
 import { fistOf, thumbOf } from '../fist';
 import { ballRadius, basketRadius } from './flight';
 
 /** Returns whether the middle of a launched ball goes into a level basket whose opening is here (arena frame). */
 export function landsIn(launch: Launch, basket: Vec3): boolean {
-  const lands = positionAt(launch, fallsTo(launch, basket.y));
+  const lands = positionAt(launch, fallTime(launch, basket.y));
   return Math.hypot(lands.x - basket.x, lands.z - basket.z) < basketRadius - ballRadius / 2;
 }
 

@@ -1,6 +1,6 @@
 import type { BallAction, BallEvent, BallPlace, BallState } from './ball-state';
 import { withBall, withPlayer } from './state-changes';
-import { ballInHand, tickSeconds } from './state-readings';
+import { ballInHand, tickSeconds } from './state-selectors';
 
 const throwerOf = (place: BallPlace | undefined): number =>
   place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;

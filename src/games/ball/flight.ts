@@ -16,7 +16,7 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
-import { fallsTo, positionAt, velocityAt } from '../ballistics';
+import { fallTime, positionAt, velocityAt } from '../ballistics';
 import type { Basket, TimedLaunch } from './ball-state';
 
 /** Radius of every ball [m]. */
@@ -51,7 +51,7 @@ export const ballOnFloor = (launch: TimedLaunch, time: number, target?: MutableV
   );
 
 /** Returns the match time at which a flying ball touches the floor [s]. */
-export const touchesFloor = (launch: TimedLaunch): number => launch.time + fallsTo(launch, ballRadius);
+export const floorContactTime = (launch: TimedLaunch): number => launch.time + fallTime(launch, ballRadius);
 
 /** Returns the launch after a bounce on the floor at `time`. `rolls`: the ball stays on the floor. */
 export function floorBounceOf(
@@ -81,11 +81,11 @@ function basketAt(from: Basket, to: Basket, time: number, target: MutableOpening
 }
 
 /** The position of a ball relative to the basket. */
-interface Nearness {
+interface Clearance {
   /**
    * Distance of the ball's surface from the basket, or of its centre from the opening above it [m]; negative: inside.
    */
-  far: number;
+  distance: number;
   /** Distance that the ball can move at least before it meets the basket or its opening [m]. */
   free: number;
   /** Direction from the basket to the ball, unit. */
@@ -99,7 +99,7 @@ const outward = vec3(0, 0, 0);
 const sideways = vec3(0, 0, 0);
 const askew = vec3(0, 0, 0);
 
-function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearness): void {
+function measure(ball: Vec3, { position, normal }: MutableOpening, near: Clearance): void {
   const from = subtract(ball, position, outward);
   const height = dot(from, normal);
   reject(from, normal, sideways);
@@ -107,7 +107,7 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   normalise(sideways, setVec3(askew, normal.y, normal.z, normal.x), outward);
   near.overOpening = height > 0 && radial <= basketRadius;
   if (near.overOpening) {
-    near.far = height;
+    near.distance = height;
     // Sideways the ball meets the rim only if its centre is at most its radius above the opening.
     near.free = Math.min(height, Math.max(height - ballRadius, basketRadius - radial));
     copyVec3(normal, near.out);
@@ -118,7 +118,7 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   const above = Math.max(height, -basketDepth - height);
   if (beyond <= 0 && above <= 0) {
     // Inside the walls: take the shorter way out.
-    near.far = near.free = Math.max(beyond, above) - ballRadius;
+    near.distance = near.free = Math.max(beyond, above) - ballRadius;
     if (beyond > above) copyVec3(outward, near.out);
     else scale(normal, height > -basketDepth / 2 ? 1 : -1, near.out);
     return;
@@ -126,12 +126,12 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   const aside = Math.max(beyond, 0);
   const over = Math.max(above, 0) * (height > 0 ? 1 : -1);
   addScaled(scale(outward, aside, near.out), normal, over, near.out);
-  near.far = near.free = length(near.out) - ballRadius;
+  near.distance = near.free = length(near.out) - ballRadius;
   normalise(near.out, outward, near.out);
 }
 
 /** A catch by the basket, or a bounce off it. */
-export type BasketMeeting =
+export type BasketContact =
   | { readonly kind: 'caught'; readonly time: number }
   | { readonly kind: 'bounced'; readonly launch: TimedLaunch };
 
@@ -145,7 +145,7 @@ const middle = vec3(0, 0, 0);
 const flown = vec3(0, 0, 0);
 const relative = vec3(0, 0, 0);
 const opening: MutableOpening = { position: vec3(0, 0, 0), normal: vec3(0, 0, 0) };
-const near: Nearness = { far: 0, free: 0, out: vec3(0, 0, 0), overOpening: false };
+const near: Clearance = { distance: 0, free: 0, out: vec3(0, 0, 0), overOpening: false };
 
 /** Returns an upper bound of the closing speed of ball and basket [m/s]. */
 function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: number, end: number): number {
@@ -166,9 +166,9 @@ function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: numb
  * descends through the opening; rim, walls and bottom bounce. Steps are as long as the distance permits at the closing
  * speed (conservative advancement), so that nothing tunnels.
  */
-export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): BasketMeeting | null {
+export function firstBasketContact(launch: TimedLaunch, from: Basket, to: Basket): BasketContact | null {
   const start = Math.max(launch.time, from.at);
-  const end = Math.min(to.at, touchesFloor(launch));
+  const end = Math.min(to.at, floorContactTime(launch));
   if (!(end > start)) return null;
   const closing = closingSpeed(launch, from, to, start, end);
   let time = start;
@@ -176,7 +176,7 @@ export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): Bask
     ballInAir(launch, time, middle);
     basketAt(from, to, time, opening);
     measure(middle, opening, near);
-    if (near.far > touching) {
+    if (near.distance > touching) {
       time += Math.max(near.free, touching) / closing;
       continue;
     }
@@ -186,7 +186,7 @@ export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): Bask
     if (!near.overOpening && into < 0) {
       const velocity = addScaled(flown, near.out, -(1 + basketBounce) * into);
       // Start just outside, so that the same contact is not found again.
-      const position = addScaled(middle, near.out, 1.2 * touching - near.far);
+      const position = addScaled(middle, near.out, 1.2 * touching - near.distance);
       return { kind: 'bounced', launch: { time, position, velocity } };
     }
     time += partingStep;

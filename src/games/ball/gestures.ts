@@ -23,11 +23,11 @@ import type { Mutable } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
 import type { HapticPulse } from '../haptic-pulse';
-import { slowestThrow } from './actions';
+import { slowestThrow } from './action-rules';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';
 import { HandVelocity } from './hand-velocity';
-import { ballInHand } from './state-readings';
+import { ballInHand } from './state-selectors';
 import { rackPosition } from './stations';
 
 /** The player and the match, which the gestures read in every frame. */
@@ -88,7 +88,7 @@ interface Holding {
 }
 
 /** The state of one hand. */
-interface HandMemory {
+interface HandState {
   readonly speed: HandVelocity;
   holding: Holding | null;
   /** The newest throw, until it is refused: then the match still has the ball in the hand. */
@@ -105,7 +105,7 @@ interface HandMemory {
   readonly pose: MutablePose<'arena'>;
 }
 
-const makeHandMemory = (): HandMemory => ({
+const makeHandState = (): HandState => ({
   speed: new HandVelocity(),
   holding: null,
   thrown: null,
@@ -126,7 +126,7 @@ export class BallGestures {
   /** Since when a ball may be in a hand only by the match's state [s]; null: none is. */
   private strayedAt: number | null = null;
   private readonly presses: ButtonPresses = createButtonPresses();
-  private readonly hands: Readonly<Record<Side, HandMemory>> = { left: makeHandMemory(), right: makeHandMemory() };
+  private readonly hands: Readonly<Record<Side, HandState>> = { left: makeHandState(), right: makeHandState() };
   private readonly near: Record<Side, number | null> = { left: null, right: null };
   private readonly held: Record<Side, number | null> = { left: null, right: null };
   private slipped: BallCue[] = [];

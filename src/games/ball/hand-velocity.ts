@@ -14,24 +14,24 @@ import {
 export const throwWindow = 0.08;
 
 /** Number of sample times on the path, which does not depend on the frame rate. */
-const places = 17;
+const sampleCount = 17;
 
 /** A gap longer than this [s] starts another path. */
 const longestGap = 0.25;
 
-interface Place {
+interface Sample {
   time: number;
   readonly position: MutableVec3;
 }
 
-const makePlace = (): Place => ({ time: 0, position: vec3(0, 0, 0) });
+const makeSample = (): Sample => ({ time: 0, position: vec3(0, 0, 0) });
 
 /** Measures the velocity of a hand over its recent path. */
 export class HandVelocity {
   /** Oldest first. */
-  readonly #path: Place[] = [];
+  readonly #path: Sample[] = [];
   /** Objects for reuse. */
-  readonly #spare: Place[] = [];
+  readonly #spare: Sample[] = [];
   readonly #at = vec3(0, 0, 0);
 
   /** Adds a position; it is copied. A time that does not rise is ignored. */
@@ -40,7 +40,7 @@ export class HandVelocity {
     const last = path.at(-1);
     if (last && !(time > last.time)) return;
     if (last && time - last.time > longestGap) this.reset();
-    const place = this.#spare.pop() ?? makePlace();
+    const place = this.#spare.pop() ?? makeSample();
     place.time = time;
     copyVec3(position, place.position);
     path.push(place);
@@ -59,8 +59,8 @@ export class HandVelocity {
     const sum = vec3(0, 0, 0);
     let squares = 0;
     let segment = 0;
-    for (let i = 0; i < places; i++) {
-      const time = start + (span * i) / (places - 1);
+    for (let i = 0; i < sampleCount; i++) {
+      const time = start + (span * i) / (sampleCount - 1);
       while (segment < path.length - 2 && path[segment + 1]!.time < time) segment += 1;
       const [a, b] = [path[segment]!, path[segment + 1]!];
       lerp(a.position, b.position, (time - a.time) / (b.time - a.time), this.#at);

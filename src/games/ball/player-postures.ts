@@ -23,11 +23,11 @@ import {
 } from 'threepoint/core/math/vec3';
 import { wristAround } from '../fist';
 import {
-  armShare,
+  armRatio,
+  halfShoulderRatio,
   type PlayerInput,
-  shoulderBehind,
-  shoulderDrop,
-  shoulderShare,
+  shoulderBehindRatio,
+  shoulderDropRatio,
   swayAt,
   yawOf,
 } from '../simulated-body';
@@ -95,8 +95,8 @@ export function copyPosture(posture: PlayerPosture, target: MutablePosture = mak
 }
 
 /** Limits of the head's yaw and pitch [rad]. */
-const mostYaw = 0.8;
-const mostPitch = 0.6;
+const maxYaw = 0.8;
+const maxPitch = 0.6;
 
 function mixGrasp(a: Grasp, b: Grasp, share: number, target: MutableGrasp): void {
   lerp(a.fist, b.fist, share, target.fist);
@@ -138,11 +138,11 @@ const ofBothSides = <T>(make: (sign: -1 | 1) => T): Readonly<Record<Side, T>> =>
  * Building blocks for the postures of throwers and holders. Creates the postures of a body that faces −Z of its floor
  * frame.
  */
-export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = armShare * eyeHeight }: PlayerBody) {
+export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = armRatio * eyeHeight }: PlayerBody) {
   const arm = armLength;
   const floorFromArena = invertTransform(arenaFromFloor);
-  const half = (shoulderShare / armShare) * arm;
-  const fromEyes = ofBothSides((sign) => vec3(sign * half, -shoulderDrop * arm, shoulderBehind * arm));
+  const half = (halfShoulderRatio / armRatio) * arm;
+  const fromEyes = ofBothSides((sign) => vec3(sign * half, -shoulderDropRatio * arm, shoulderBehindRatio * arm));
   const hanging = ofBothSides((sign) => vec3(sign * 0.27 * arm, -1.01 * arm, -0.2 * arm));
   const shoulder = (side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3 => add(eyes, fromEyes[side], target);
 
@@ -163,11 +163,11 @@ export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = ar
     /** Returns a shoulder for these eyes of a player that faces −Z. */
     shoulder,
     /** Returns the gaze from the eyes to a point. */
-    looking(eyes: Vec3, at: Vec3, target?: MutableQuat): MutableQuat {
+    gazeAt(eyes: Vec3, at: Vec3, target?: MutableQuat): MutableQuat {
       const { x, y, z } = subtract(at, eyes, sight);
       // The head turns only within its limits; the eyes would do the rest.
-      const yaw = clamp(yawOf(sight), -mostYaw, mostYaw);
-      const pitch = clamp(Math.atan2(y, Math.hypot(x, z)), -mostPitch, mostPitch);
+      const yaw = clamp(yawOf(sight), -maxYaw, maxYaw);
+      const pitch = clamp(Math.atan2(y, Math.hypot(x, z)), -maxPitch, maxPitch);
       const turn = fromAxisAngle(up, yaw, target);
       return multiply(turn, fromAxisAngle(right, pitch, nod), turn);
     },
@@ -178,7 +178,7 @@ export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = ar
       copyVec3(hangingThumb[side], target.thumb);
     },
     /** Returns head, hands and buttons of a posture at a time [s], with postural sway; pressures in [0, 1]. */
-    seen(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): PlayerInput {
+    inputFor(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): PlayerInput {
       swayAt(time, drift);
       const head = makeTrackedPose();
       add(posture.eyes, drift, head.position);

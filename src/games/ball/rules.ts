@@ -1,12 +1,12 @@
 import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
-import { applyAction, armReach, countOnce, longestDelay } from './actions';
+import { applyAction, armReach, maxDelay, recordSequence } from './action-rules';
 import type { BallEnd, BallEvent, BallInput, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';
 import { basketInHands, makeOpening } from './basket';
-import { decide } from './decided-flights';
+import { resolveFlights } from './resolve-flights';
 import { round, rounded, type Step, unchanged, withBall, withPlayer } from './state-changes';
-import { ballMatchTime, ballSecondsLeft, ballsLeft, tickSeconds } from './state-readings';
+import { ballMatchTime, ballSecondsLeft, ballsLeft, tickSeconds } from './state-selectors';
 import { holderStation, isInZone, stations } from './stations';
 
 /** The paper's game: 20 balls, 90 s. */
@@ -122,7 +122,7 @@ function pose(state: BallState, action: PoseAction): Step {
   if (!player.present || !isFiniteVec3(head) || !Number.isFinite(action.at) || length(head) > 50) {
     return unchanged(state);
   }
-  const at = round(Math.min(Math.max(action.at, now - longestDelay), now));
+  const at = round(Math.min(Math.max(action.at, now - maxDelay), now));
   if (at < player.at) return unchanged(state);
   const left = isReachable(action.left, head, fists.left) ? action.left : null;
   const right = isReachable(action.right, head, fists.right) ? action.right : null;
@@ -144,7 +144,7 @@ function carryBasket(state: BallState, at: number): Step {
   if (at <= before.at) return unchanged({ ...state, basket: { ...held, at: before.at } });
   const jumped = distance(held.position, before.position) > fastestBasket * (at - before.at);
   const from = jumped ? { ...held, at: before.at } : before;
-  return decide({ ...state, basket: from }, { ...held, at });
+  return resolveFlights({ ...state, basket: from }, { ...held, at });
 }
 
 function act(state: BallState, action: BallInput): Step {
@@ -172,7 +172,7 @@ function act(state: BallState, action: BallInput): Step {
         events: [{ type: 'refused', player: action.player, sequence: action.sequence, reason }],
       });
       if (!player.present) return refused(state, 'absent');
-      const counted = countOnce(player, action.sequence);
+      const counted = recordSequence(player, action.sequence);
       if (!counted) return refused(state, 'seen-before');
       const remembered = withPlayer(state, action.player, counted);
       const done = applyAction(remembered, action.player, action);
@@ -185,7 +185,7 @@ function act(state: BallState, action: BallInput): Step {
 
 /** Returns whether a throw from before the bell can no longer arrive. */
 const isPastThrows = (state: BallState): boolean =>
-  state.startedAt !== null && ballMatchTime(state) >= state.startedAt + state.options.seconds + longestDelay;
+  state.startedAt !== null && ballMatchTime(state) >= state.startedAt + state.options.seconds + maxDelay;
 
 /** Returns why the round is over; null: it continues, as it does while a ball is held or flies. */
 function roundEnd(state: BallState): BallEnd | null {
@@ -249,7 +249,7 @@ export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> 
       events.push({ type: 'started', at: startedAt });
     }
     const decided = round(ballMatchTime(next) + tickSeconds - basketPatience);
-    if (next.basket.at < decided) take(decide(next, { ...next.basket, at: decided }));
+    if (next.basket.at < decided) take(resolveFlights(next, { ...next.basket, at: decided }));
     next = { ...next, tick: next.tick + 1 };
     if (next.phase === 'running') {
       if (isPastThrows(next)) take(returnHeld(next, null));

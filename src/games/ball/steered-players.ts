@@ -17,7 +17,6 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { Launch } from '../ballistics';
 import { minimumJerk, type PlayerInput } from '../simulated-body';
-import { createHolder } from './holder-motion';
 import {
   copyPosture,
   createPlayerPostures,
@@ -27,10 +26,11 @@ import {
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
-import { ballInHand } from './state-readings';
+import { createSimulatedHolder } from './simulated-holder';
+import { type BallBot, type BotView, nearestBall } from './simulated-thrower';
+import { ballInHand } from './state-selectors';
 import { rackPosition } from './stations';
-import { type SwungThrow, ThrowPostures } from './throw-postures';
-import { type BallBot, type BotSight, nearestBall } from './thrower-motion';
+import { ThrowPostures, type UnderarmThrow } from './throw-postures';
 
 /** The mouse input that steers a player; own floor frame. */
 export interface BallSteering {
@@ -80,9 +80,9 @@ function ahead({ origin, direction }: Ray, z: number, target: MutableVec3): Muta
 type Phase = 'idle' | 'reaching' | 'taking' | 'ready' | 'drawing' | 'swinging' | 'following';
 
 /** The input of one frame. */
-interface Moment {
+interface SteeringFrame {
   time: number;
-  sight: BotSight;
+  sight: BotView;
   input: BallSteering;
   /** Whether the ball is in the throwing hand. */
   holds: boolean;
@@ -108,7 +108,7 @@ class SteeredThrower implements SteeredPlayer {
   readonly #goal = makePosture();
   #side: Side = 'right';
   #ball = 0;
-  readonly #swung: SwungThrow;
+  readonly #swung: UnderarmThrow;
   readonly #aim = { position: vec3(0, 0, 0), velocity: vec3(0, 0, 0) };
   #aims = false;
   /** Whether the current press has already thrown or been cancelled. */
@@ -131,7 +131,7 @@ class SteeredThrower implements SteeredPlayer {
     return this.#aims ? this.#aim : null;
   }
 
-  follow(time: number, sight: BotSight): PlayerInput {
+  follow(time: number, sight: BotView): PlayerInput {
     const input = this.#steering();
     const elapsed = this.#last === null ? 0 : clamp(time - this.#last, 0, 0.1);
     this.#last = time;
@@ -143,7 +143,7 @@ class SteeredThrower implements SteeredPlayer {
     this.#pose(time, sight, elapsed);
     const pressure = this.#pressure(time);
     const left = this.#side === 'left';
-    return this.#postures.seen(this.#posture, time, left ? pressure : 0, left ? 0 : pressure);
+    return this.#postures.inputFor(this.#posture, time, left ? pressure : 0, left ? 0 : pressure);
   }
 
   #enter(next: Phase, time: number): void {
@@ -153,7 +153,7 @@ class SteeredThrower implements SteeredPlayer {
   }
 
   /** Enters another phase if its condition is met. */
-  #decide(moment: Moment): void {
+  #decide(moment: SteeringFrame): void {
     const { time } = moment;
     switch (this.#phase) {
       case 'idle':
@@ -175,7 +175,7 @@ class SteeredThrower implements SteeredPlayer {
     }
   }
 
-  #choose({ time, sight }: Moment): void {
+  #choose({ time, sight }: SteeringFrame): void {
     const next = nearestBall(sight);
     if (next === null) return;
     this.#ball = next;
@@ -183,7 +183,7 @@ class SteeredThrower implements SteeredPlayer {
     this.#enter('reaching', time);
   }
 
-  #take({ time, sight, holds }: Moment): void {
+  #take({ time, sight, holds }: SteeringFrame): void {
     const { state } = sight;
     if (this.#phase === 'taking') {
       if (holds) this.#enter('ready', time);
@@ -193,7 +193,7 @@ class SteeredThrower implements SteeredPlayer {
       this.#enter('taking', time);
   }
 
-  #prepare({ time, input, holds }: Moment): void {
+  #prepare({ time, input, holds }: SteeringFrame): void {
     if (!holds) this.#enter('idle', time);
     else if (this.#phase === 'ready') {
       if (input.pressed && !input.cancelled && !this.#spent) this.#enter('drawing', time);
@@ -206,7 +206,7 @@ class SteeredThrower implements SteeredPlayer {
     }
   }
 
-  #pose(time: number, sight: BotSight, elapsed: number): void {
+  #pose(time: number, sight: BotView, elapsed: number): void {
     const moves = this.#moves;
     switch (this.#phase) {
       case 'reaching':
@@ -274,7 +274,7 @@ class SteeredThrower implements SteeredPlayer {
   }
 
   /** Returns the position of the player's ball in its rack. */
-  #findBall({ state }: BotSight): Vec3 {
+  #findBall({ state }: BotView): Vec3 {
     return this.#postures.inFloor(rackPosition(this.#ball, state.options.balls, rack), this.#rack);
   }
 }
@@ -285,7 +285,7 @@ export const createSteeredThrower = (body: PlayerBody, steering: () => BallSteer
 
 /** Creates a holder that carries the basket to where the ray points; it leans towards balls by itself. */
 export function createSteeredHolder(body: PlayerBody, steering: () => BallSteering): SteeredPlayer {
-  const holder = createHolder(body, (home, target) => {
+  const holder = createSimulatedHolder(body, (home, target) => {
     const { origin, direction } = steering().ray;
     // A ray into the sky aims as far as possible.
     const along = direction.y < -0.02 ? (home.y - origin.y) / direction.y : 20;

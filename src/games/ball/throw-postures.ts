@@ -31,7 +31,7 @@ const slowDown = 0.24;
 const outwardOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
 /** An underarm throw with a given velocity, floor frame; `aim` changes it. */
-export class SwungThrow {
+export class UnderarmThrow {
   readonly #postures: PlayerPostures;
   readonly #moves: ThrowPostures;
   readonly #wound = makePosture();
@@ -98,7 +98,7 @@ export class SwungThrow {
     const { eyes } = this.#postures;
     this.#moves.resting(at, target);
     add(eyes, this.#point, target.eyes);
-    this.#postures.looking(target.eyes, at, target.gaze);
+    this.#postures.gazeAt(target.eyes, at, target.gaze);
   }
 
   /** Computes the posture with the arm swung back: the body leans back, the other arm is ahead. */
@@ -206,13 +206,13 @@ export class ThrowPostures {
   }
 
   /** Creates a throw, which must be aimed. */
-  makeThrow(): SwungThrow {
-    return new SwungThrow(this.#postures, this);
+  makeThrow(): UnderarmThrow {
+    return new UnderarmThrow(this.#postures, this);
   }
 
   #rest(eyes: Vec3, at: Vec3, target: MutablePosture): MutablePosture {
     copyVec3(eyes, target.eyes);
-    this.#postures.looking(eyes, at, target.gaze);
+    this.#postures.gazeAt(eyes, at, target.gaze);
     this.#postures.hang('left', eyes, target.left);
     this.#postures.hang('right', eyes, target.right);
     return target;

@@ -17,7 +17,7 @@ import type { CameraScene } from '../scene/desktop-view';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
 import { ArcheryPlay, type ArcheryProbe, probeOf, roundOf } from './archery-play';
 import { type ArcheryView, createArcheryView } from './archery-view';
-import { lineOf } from './boards/scoreboard-drawing';
+import { statusLine } from './boards/scoreboard-drawing';
 import { eventHaptics } from './sound/archery-haptics';
 
 /** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
@@ -127,7 +127,7 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   sessionChanged(): void {
-    this.play.handedOver();
+    this.play.replaceHands();
   }
 
   createPanel(): ActivityPanel {
@@ -157,7 +157,7 @@ export class ArcheryActivity implements OpenActivity {
     if (!newest) return null;
     const { state, time } = newest;
     const waits = state.phase === 'ready' || (state.phase === 'running' && !state.inZone);
-    return { ...roundOf(newest), waiting: waits ? `${lineOf(state, time)}.` : null };
+    return { ...roundOf(newest), waiting: waits ? `${statusLine(state, time)}.` : null };
   }
 
   probe(): ArcheryProbe | null {

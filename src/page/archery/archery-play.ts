@@ -6,10 +6,10 @@ import type { TrackedPose } from 'threepoint/core/math/pose';
 import { add, subtract, type Vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { aimOf } from 'threepoint-games/archery/aim-point';
-import { type Archer, createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
 import { ArcheryGestures, type BowCue, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
+import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/archery/simulated-archer';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import { createMatch, type Match } from 'threepoint-games/match';
@@ -79,7 +79,7 @@ export class ArcheryPlay {
   readonly #seed: () => number;
   readonly #gestures: ArcheryGestures;
   #match!: Match<ArcheryState, ArcheryAction, ArcheryEvent>;
-  #archer!: Archer;
+  #archer!: SimulatedArcher;
   #steered!: SteeredArcher;
   #newest: ArcheryFrame | null = null;
   /** The time of the newest frame on the page's clock [s]. */
@@ -89,7 +89,7 @@ export class ArcheryPlay {
   /** The point that a pointer aimed at last, arena frame. */
   #aimedAt: Vec3 | null = null;
   #signalled = false;
-  #otherHands = false;
+  #handsReplaced = false;
 
   /** `seed` gives each round its own layout. */
   constructor(calibration: Calibration, settings: () => ArcherySettings, seed: () => number) {
@@ -116,9 +116,9 @@ export class ArcheryPlay {
 
   /** The tracked frame and its buttons become play. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame {
-    const followed = this.#otherHands ? { ...frame, suspended: true as const } : frame;
+    const followed = this.#handsReplaced ? { ...frame, suspended: true as const } : frame;
     const { bow, actions, cues, haptics } = this.#gestures.follow(followed, buttons);
-    this.#otherHands = false;
+    this.#handsReplaced = false;
     const signals: readonly ArcheryAction[] = this.#signalled ? [{ type: 'start' }] : [];
     this.#signalled = false;
     const match = this.#match;
@@ -149,7 +149,7 @@ export class ArcheryPlay {
     if (pressed) this.#drawnAt = aim.target;
     else if (cancelled) this.#drawnAt = null;
     // Until the hands are back from a shot, a gaze can rest on no other target: its hold would not be heeded.
-    const heeded = !this.#steered.recovers || aim.target === this.#drawnAt;
+    const heeded = !this.#steered.isRecovering || aim.target === this.#drawnAt;
     if (aim.target !== null && isArmed(state) && heeded) {
       pointer.pointAt({ distance: aim.distance, owner, id: `target ${aim.target}`, dwellSeconds });
     }
@@ -173,7 +173,7 @@ export class ArcheryPlay {
     };
     this.#match = createMatch(archeryRules, archeryRules.start(['archer'], this.#seed(), options), { delayed });
     const body = { bowSide, eyeHeight, armLength: chestSpaceBody(person).arm };
-    this.#archer = createArcher(body);
+    this.#archer = createSimulatedArcher(body);
     this.#steered = createSteeredArcher(body);
     this.#newest = null;
     this.#signalled = false;
@@ -185,8 +185,8 @@ export class ArcheryPlay {
   }
 
   /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
-  handedOver(): void {
-    this.#otherHands = true;
+  replaceHands(): void {
+    this.#handsReplaced = true;
   }
 
   /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */

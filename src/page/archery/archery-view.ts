@@ -7,7 +7,7 @@ import type { BowCue } from 'threepoint-games/archery/gestures';
 import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import { createResultPanel } from './boards/result-panel';
-import { ScorePops } from './boards/score-pops';
+import { ScorePopups } from './boards/score-popups';
 import { createScoreboard } from './boards/scoreboard';
 import { makeArrowPose } from './bow/arrow-pose';
 import { createArrows } from './bow/arrows';
@@ -15,7 +15,7 @@ import { createBow } from './bow/bow-model';
 import { createTrails } from './bow/trails';
 import { createRange } from './range/range';
 import { TargetStands } from './range/target-stands';
-import { Sounds } from './sound/archery-sounds';
+import { ArcherySounds } from './sound/archery-sounds';
 
 export interface ArcheryViewOptions {
   readonly quality: Quality;
@@ -35,9 +35,9 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
   const arrows = createArrows(arrowLength);
   const trails = createTrails(arrowLength);
   const scoreboard = createScoreboard(quality);
-  const pops = new ScorePops(quality);
+  const pops = new ScorePopups(quality);
   const result = createResultPanel(quality);
-  const sounds = new Sounds({ floorFromArena, onCaption });
+  const sounds = new ArcherySounds({ floorFromArena, onCaption });
   let shown: ArcheryState | null = null;
   const onString = makeArrowPose();
   const eyes = vec3(0, 0, 0);

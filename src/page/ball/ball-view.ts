@@ -13,21 +13,21 @@ import type { BallFrame, PlayerFrame } from './match/ball-frame';
 import { BallSounds } from './sound/ball-sounds';
 import { createAimArc } from './view/aim-arc';
 import { Balls } from './view/balls';
-import { lineOfEvent, type Person, type Standing, waitingLine } from './view/board-drawing';
+import { type DisplayedMatch, type DisplayedPlayer, eventLine, waitingLine } from './view/board-drawing';
 import { type Boards, createBoards } from './view/boards';
-import { CatchPops } from './view/catch-pops';
+import { CatchPopups } from './view/catch-popups';
 import { createLobbySheet, type LobbySheet } from './view/lobby-sheet';
 import { createNameLabels, type NameLabels } from './view/name-labels';
 import { createWickerBasket } from './view/wicker-basket';
 import type { SeatVoices } from './voices/seat-voices';
 
 /** A player at the court as they are drawn in this frame. */
-export type Attendant = Person & Pick<PlayerFrame, 'head' | 'palms' | 'opacity'>;
+export type DrawnPlayer = DisplayedPlayer & Pick<PlayerFrame, 'head' | 'palms' | 'opacity'>;
 
 /** One frame of a match as it is drawn. */
 export interface BallScene extends Pick<BallFrame, 'state' | 'time' | 'me' | 'rotate' | 'opening' | 'aim' | 'paused'> {
   /** By player; null: the seat is free. */
-  readonly attendants: readonly (Attendant | null)[];
+  readonly attendants: readonly (DrawnPlayer | null)[];
   /** Seconds until the bell; after a match what was left at its end. */
   readonly secondsLeft: number;
   /** The page's time [s], and whether it is still in the room. */
@@ -56,10 +56,10 @@ const origin: Transform<'floor', 'arena'> = {
   position: { x: 0, y: 0, z: 0 },
   orientation: { x: 0, y: 0, z: 0, w: 1 },
 };
-const unseenPalms: Attendant['palms'] = { left: null, right: null };
+const unseenPalms: DrawnPlayer['palms'] = { left: null, right: null };
 
 /** Picks what labels show of a player; a label is redrawn when any of it changes. */
-const writtenOf = (attendant: Attendant | null): Person | null =>
+const writtenOf = (attendant: DrawnPlayer | null): DisplayedPlayer | null =>
   attendant && { name: attendant.name, bot: attendant.bot, presence: attendant.presence, me: attendant.me };
 
 const stationOf = ({ players }: BallState, me: number | null): number | null =>
@@ -76,7 +76,7 @@ export class BallView {
   readonly #balls: Balls;
   readonly #basket = createWickerBasket();
   readonly #boards: Boards;
-  readonly #pops: CatchPops;
+  readonly #pops: CatchPopups;
   readonly #names: NameLabels;
   readonly #ring = createZoneRing();
   readonly #arc = createAimArc();
@@ -89,7 +89,7 @@ export class BallView {
     this.#court = createCourt(quality, balls);
     this.#balls = new Balls(balls, quality);
     this.#boards = createBoards(quality);
-    this.#pops = new CatchPops(quality);
+    this.#pops = new CatchPopups(quality);
     this.#names = createNameLabels(stations.length, quality);
     this.lobby = createLobbySheet(quality);
     this.own = this.lobby.object;
@@ -117,11 +117,11 @@ export class BallView {
     this.#sounds.setListener(head, this.#floorFromArena);
     this.#showBalls(scene);
     this.#pops.show(pageTime, eyes);
-    const people = attendants.map(writtenOf);
-    const standing: Standing = { state, seconds: Math.ceil(scene.secondsLeft), people, me, rotate, acting };
+    const players = attendants.map(writtenOf);
+    const standing: DisplayedMatch = { state, seconds: Math.ceil(scene.secondsLeft), players, me, rotate, acting };
     this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
     this.lobby.show(standing, head.position.y, pageTime, scene.inRoom);
-    this.#showNames(scene, people);
+    this.#showNames(scene, players);
     const station = stationOf(state, me);
     this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
   }
@@ -131,7 +131,7 @@ export class BallView {
     if (!this.#shown) return;
     const { state, pageTime, attendants: people, me, opening } = this.#shown;
     for (const event of events) {
-      const text = lineOfEvent(event, people);
+      const text = eventLine(event, people);
       if (text) this.#line = { text, until: pageTime + lineSeconds };
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, pageTime);
     }
@@ -153,12 +153,12 @@ export class BallView {
   }
 
   /** Returns the line of the board: the last event, or what the match waits for. */
-  #lineNow(standing: Standing, pageTime: number): string {
+  #lineNow(standing: DisplayedMatch, pageTime: number): string {
     const { text, until } = this.#line;
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }
 
-  #showNames({ state, attendants, voices, hidden }: BallScene, people: readonly (Person | null)[]): void {
+  #showNames({ state, attendants, voices, hidden }: BallScene, people: readonly (DisplayedPlayer | null)[]): void {
     this.#names.show(
       attendants.map((attendant, player) => {
         const person = people[player];

@@ -1,5 +1,5 @@
 import type { Activity } from '../activity/activity';
-import type { CourtActivity } from './court-activity';
+import type { BallActivity } from './ball-activity';
 
 export const ball = {
   name: 'ball',
@@ -7,11 +7,11 @@ export const ball = {
   place: 'The ball court',
   floor: { halfWidth: 1.75, ahead: 5.6, behind: 0.5 },
   async load(context) {
-    const { openCourt } = await import('./court-activity');
-    return openCourt(context);
+    const { openBallActivity } = await import('./ball-activity');
+    return openBallActivity(context);
   },
   async createRunner(host) {
     const { createBallRunner } = await import('./ball-runner');
     return createBallRunner(host);
   },
-} as const satisfies Activity<CourtActivity>;
+} as const satisfies Activity<BallActivity>;

@@ -3,7 +3,7 @@ import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { describeXrSupport } from 'threepoint/xr/session';
 import { element, pageElement } from 'threepoint-ui/element';
 import { createEnterButton } from 'threepoint-ui/enter-button';
-import { allowOwnScripts } from 'threepoint-ui/own-scripts';
+import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
 import { installEmulator } from '../emulator/emulator';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { fetchBuiltInAvatar } from '../shell/avatar-loader';
@@ -77,7 +77,7 @@ async function createBody(worlds: CheckWorlds, onProblem: (sentence: string) => 
 
 /** Builds the page; each click on the button is a check of its own. */
 async function start(): Promise<void> {
-  allowOwnScripts();
+  installTrustedTypesPolicy();
   const parts = regions();
   const { canvas, progress, result } = parts;
   const switches = readCheckSwitches(location.search);

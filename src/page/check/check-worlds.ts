@@ -26,7 +26,7 @@ const mirrorAhead = { x: 0, z: -1.5, turned: 0 };
 const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
 const archerySettings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
 /** The other players are this far apart in the actor's performance [s]. */
-const actorsApart = 7;
+const actorOffset = 7;
 
 const silent = () => undefined;
 
@@ -133,7 +133,7 @@ export class CheckWorlds {
     if (this.#world !== 'ball') return;
     this.#ball.show({ ...this.#ballScene, time, pageTime: time, head: frame.head });
     this.#others.forEach(({ avatar, estimator }, index) => {
-      const acted = { ...actorFrame(time + actorsApart * index, defaultCalibration), time };
+      const acted = { ...actorFrame(time + actorOffset * index, defaultCalibration), time };
       avatar.setPose(estimator.update(acted).pose, time);
     });
   }

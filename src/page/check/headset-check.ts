@@ -1,6 +1,6 @@
 import type { WebGLRenderer } from 'three';
 import type { BodySolver } from 'threepoint/api/body-solver';
-import { createHeadsetCamera, easeEmulatedPicture, type Quality } from '../scene/renderer';
+import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import type { FrameTiming } from '../shell/frame-timing';
 import { type CheckSession, enterSession, OfferedFeatures } from './check-session';
 import { type CheckStep, openingSteps, remainingSteps } from './check-steps';
@@ -72,7 +72,7 @@ export class HeadsetCheck {
       onDiscontinuity: () => this.#body.discontinuity(),
       onEnd: () => void this.#finish(),
     });
-    if (emulated) easeEmulatedPicture(renderer, quality);
+    if (emulated) reduceEmulatedResolution(renderer, quality);
     this.#options.worlds.scene.add(this.#caption.object);
     this.#session = session;
     this.#offered = new OfferedFeatures(session.xr);

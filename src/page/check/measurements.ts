@@ -10,8 +10,8 @@ import { DeviceDifference } from '../shell/frame/device-difference';
 import { type FrameSummary, quantilesIn } from '../shell/frame-timing';
 import type { Measured } from './check-steps';
 import type { HeadsetReport, WorldName } from './headset-report';
-import { LossLengths } from './loss-lengths';
-import { NoiseRecorder } from './noise';
+import { TrackerNoise } from './tracker-noise';
+import { TrackingLosses } from './tracking-losses';
 
 /** A frame of the session as it is measured. */
 export interface CheckFrame {
@@ -25,8 +25,8 @@ export interface CheckFrame {
 /** Collects the figures of a check from its frames. No frame is kept beyond the noise figures that it gives. */
 export class Measurements {
   readonly #body: Pick<BodySolver, 'calibration' | 'estimator'>;
-  readonly #noise = { head: new NoiseRecorder(), left: new NoiseRecorder(), right: new NoiseRecorder() };
-  readonly #losses = { left: new LossLengths(), right: new LossLengths() };
+  readonly #noise = { head: new TrackerNoise(), left: new TrackerNoise(), right: new TrackerNoise() };
+  readonly #losses = { left: new TrackingLosses(), right: new TrackingLosses() };
   readonly #noiseKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
   readonly #lossKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
   #compared = 0;

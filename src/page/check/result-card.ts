@@ -1,7 +1,7 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
 import { type HeadsetReport, writeHeadsetReport } from './headset-report';
-import { reportLines } from './report-lines';
+import { reportSections } from './report-sections';
 
 const fileName = 'headset-check.json';
 const fileType = 'application/json';
@@ -38,7 +38,7 @@ export function showResultCard(region: HTMLElement, report: HeadsetReport): void
     ),
     actions,
     failed,
-    ...reportLines(report).map(({ title, lines, note }) =>
+    ...reportSections(report).map(({ title, lines, note }) =>
       element(
         'section',
         {},

@@ -5,7 +5,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { headingOf } from 'threepoint/core/tracking/heading';
-import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+import { createVrPanel, fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr-panel';
 import { disposeTree } from '../scene/dispose-tree';
 
 const [width, height] = [900, 300];
@@ -38,19 +38,19 @@ export class StepCaption {
     if (drawn === this.#drawn) return;
     this.#drawn = drawn;
     this.#panel.draw((context) => {
-      fillRounded(context, [4, 4, width - 8, height - 8], 32, vrColors.glass, vrColors.line);
+      fillRoundedRect(context, [4, 4, width - 8, height - 8], 32, vrColors.glass, vrColors.line);
       context.textBaseline = 'middle';
       context.textAlign = 'left';
       context.fillStyle = vrColors.ink;
       context.font = `600 46px ${vrFont}`;
-      wrap(context, sentence, width - 96).forEach((line, index) => {
+      wrapText(context, sentence, width - 96).forEach((line, index) => {
         context.fillText(line, 48, 66 + 56 * index);
       });
       context.fillStyle = vrColors.inkSoft;
       context.font = `500 34px ${vrFont}`;
       context.fillText(progress, 48, height - 66);
-      fillRounded(context, [48, height - 34, width - 96, 10], 5, vrColors.liftMore);
-      fillRounded(context, [48, height - 34, Math.max(10, (width - 96) * share), 10], 5, vrColors.accent);
+      fillRoundedRect(context, [48, height - 34, width - 96, 10], 5, vrColors.liftMore);
+      fillRoundedRect(context, [48, height - 34, Math.max(10, (width - 96) * share), 10], 5, vrColors.accent);
     });
   }
 

@@ -16,7 +16,7 @@ const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec
  */
 export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, XRReferenceSpace: ReferenceSpace, metaQuest3 } = await import('iwer');
-  mendOffsetSpaces(ReferenceSpace.prototype);
+  fixOffsetSpaces(ReferenceSpace.prototype);
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   markAsTracked(device);
@@ -122,7 +122,7 @@ interface OffsetSpaces {
 }
 
 /** Gives iwer the matrix of an offset, which it takes the transform itself for: every pose in such a space is NaN. */
-function mendOffsetSpaces(spaces: OffsetSpaces): void {
+function fixOffsetSpaces(spaces: OffsetSpaces): void {
   const { getOffsetReferenceSpace } = spaces;
   spaces.getOffsetReferenceSpace = function (this: OffsetSpaces, origin) {
     return getOffsetReferenceSpace.call(this, (origin as XRRigidTransform).matrix);

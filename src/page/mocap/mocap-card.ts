@@ -4,7 +4,7 @@ import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { button, element } from 'threepoint-ui/element';
 import { labelled } from 'threepoint-ui/fields';
-import { createRunningLine } from 'threepoint-ui/running-line';
+import { createStatusLine } from 'threepoint-ui/status-line';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';
@@ -88,7 +88,7 @@ function createErrorTable(labels: Labels) {
   const rows = ['Mean', ...estimatedJoints.map((joint) => jointLabels[joint])].map((label) =>
     element('tr', {}, element('th', { scope: 'row' }, label)),
   );
-  const line = createRunningLine({ class: 'hint' });
+  const line = createStatusLine({ class: 'hint' });
   const doubt = element('p', { class: 'complaint', role: 'status', hidden: true });
   const cell = (errors: MethodErrors['mean'] | null, row: number): string => {
     if (!(errors instanceof Float64Array)) return none;
@@ -198,7 +198,7 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
   const link = button('Copy link', () => actions.copyLink());
   const title = element('h2');
   const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of reading' });
-  const told = createRunningLine();
+  const told = createStatusLine();
   const reading = element(
     'div',
     { class: 'reading', hidden: true },

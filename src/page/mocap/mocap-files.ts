@@ -1,4 +1,4 @@
-import { nameOf } from 'threepoint-ui/limited-files';
+import { fileNameOf } from 'threepoint-ui/limited-files';
 
 /** A file of this device, or the address of one. */
 export type MocapFile = File | string;
@@ -15,7 +15,7 @@ export interface MocapFiles {
   readonly map: MocapFile | null;
 }
 
-const endingOf = (file: MocapFile): string => nameOf(file).split('.').at(-1)!.toLowerCase();
+const endingOf = (file: MocapFile): string => fileNameOf(file).split('.').at(-1)!.toLowerCase();
 
 /** Whether a file is a map of a skeleton. */
 export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
@@ -29,13 +29,14 @@ export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly 
   const [map = null] = files.filter(isMap);
   const skeletons = files.filter((file) => endingOf(file) === 'asf');
   if (!motion && map)
-    throw new Error(`${nameOf(map)}: a skeleton map without motion; open it together with the motion`);
-  if (!motion) throw new Error(`${nameOf(skeletons[0]!)}: a skeleton without motion; open it together with its .amc`);
-  const without = (taken: readonly MocapFile[]) => files.filter((file) => !taken.includes(file)).map(nameOf);
+    throw new Error(`${fileNameOf(map)}: a skeleton map without motion; open it together with the motion`);
+  if (!motion)
+    throw new Error(`${fileNameOf(skeletons[0]!)}: a skeleton without motion; open it together with its .amc`);
+  const without = (taken: readonly MocapFile[]) => files.filter((file) => !taken.includes(file)).map(fileNameOf);
   const given = map ? [map] : [];
   if (endingOf(motion) !== 'amc') return { motion, skeleton: null, map, others: without([motion, ...given]) };
-  const name = nameOf(motion);
-  const stemOf = (file: MocapFile): string => nameOf(file).replace(/\.asf$/i, '');
+  const name = fileNameOf(motion);
+  const stemOf = (file: MocapFile): string => fileNameOf(file).replace(/\.asf$/i, '');
   // Both 10.asf and 105.asf match the start of 105_01.amc: the longer name is right.
   const likely = skeletons.filter((file) => name.startsWith(stemOf(file)));
   const [own = skeletons[0]] = likely.sort((a, b) => stemOf(b).length - stemOf(a).length);

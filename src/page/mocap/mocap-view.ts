@@ -8,7 +8,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { MocapClip, PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
 import type { Replayable } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { nameOf } from 'threepoint-ui/limited-files';
+import { fileNameOf } from 'threepoint-ui/limited-files';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
@@ -119,7 +119,7 @@ export class MocapView {
     const reading = new AbortController();
     const { signal } = reading;
     this.#reading = reading;
-    const name = nameOf(sources[0]!);
+    const name = fileNameOf(sources[0]!);
     const onProgress = (progress: Parameters<MocapCard['showProgress']>[1]) => this.#card.showProgress(name, progress);
     try {
       onProgress({ fraction: 0, secondsLeft: null });
@@ -128,7 +128,7 @@ export class MocapView {
       await this.#prepared;
       signal.throwIfAborted();
       const addresses = sources.every((source) => typeof source === 'string') ? sources : null;
-      const motion = nameOf(files.motion);
+      const motion = fileNameOf(files.motion);
       this.#show(motion, prepared, addresses, outlook, asked);
       for (const note of prepared.notes) tell('info', `${motion}: ${note}.`);
       if (others.length > 0) tell('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);

@@ -1,7 +1,7 @@
 import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 
 /** The worker's messages: progress [0, 1], the result, or the reason of a failure. */
@@ -18,10 +18,10 @@ const mocapFile: FileKind = { what: 'a motion capture file', megabytes: 200 };
 const bytesOf = (file: MocapFile): Promise<ArrayBuffer> => readLimited(file, mocapFile);
 const textOf = async (file: MocapFile): Promise<string> => new TextDecoder().decode(await bytesOf(file));
 
-const named = async (file: MocapFile) => ({ name: nameOf(file), text: await textOf(file) });
+const named = async (file: MocapFile) => ({ name: fileNameOf(file), text: await textOf(file) });
 
 async function sourceOf({ motion, skeleton, map }: MocapFiles): Promise<MocapSource> {
-  const name = nameOf(motion);
+  const name = fileNameOf(motion);
   const mapped = map ? { map: await named(map) } : {};
   if (skeleton) return { format: 'amc', ...(await named(motion)), skeleton: await named(skeleton), ...mapped };
   if (isGltfMotion(name)) return { name, ...(await readGltfMotion(await bytesOf(motion), name)), ...mapped };

@@ -1,7 +1,7 @@
 import type { WorkOptions } from 'threepoint/api/run-work';
 import type { PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { secondsLeft } from 'threepoint/core/motion/work';
-import { nameOf } from 'threepoint-ui/limited-files';
+import { fileNameOf } from 'threepoint-ui/limited-files';
 import type { MocapFile, MocapFiles } from './mocap-files';
 import type { MocapAnswer } from './mocap-worker';
 
@@ -31,7 +31,7 @@ export function readMocap(
       }
     });
     worker.addEventListener('error', ({ message }) => {
-      reject(new Error(`${nameOf(motion)}: it could not be read (${message || 'its reader did not start'})`));
+      reject(new Error(`${fileNameOf(motion)}: it could not be read (${message || 'its reader did not start'})`));
     });
     const files: MocapFiles = {
       motion: forWorker(motion),

@@ -20,7 +20,7 @@ function contains(polygon: readonly FloorPoint[], { x, z }: FloorPoint): boolean
 const step = 0.25;
 
 /** Returns whether a floor has the space that an activity needs about the origin, which looks along −Z. */
-export function holds(polygon: readonly FloorPoint[], { halfWidth, ahead, behind }: FloorNeeds): boolean {
+export function hasSpace(polygon: readonly FloorPoint[], { halfWidth, ahead, behind }: FloorNeeds): boolean {
   for (let x = -halfWidth; x <= halfWidth; x += step)
     for (let z = -ahead; z <= behind; z += step) if (!contains(polygon, { x, z })) return false;
   return polygon.length > 2;

@@ -19,9 +19,9 @@ interface PersistentAnchor extends XRAnchor {
 }
 
 /** The handle of the anchor that the browser keeps from one visit to the next; undefined: there is none. */
-export interface KeptAnchor {
+export interface StoredAnchor {
   readonly handle: string | undefined;
-  keep(handle: string | undefined): void;
+  store(handle: string | undefined): void;
 }
 
 export interface MirrorStandOptions {
@@ -30,7 +30,7 @@ export interface MirrorStandOptions {
   floorSpace(): XRReferenceSpace | null;
   /** Something else lies under the hands' rays: it is pressed, and the mirror is not grabbed. */
   isCovered(): boolean;
-  readonly kept: KeptAnchor;
+  readonly kept: StoredAnchor;
 }
 
 /** The place of the mirror until a floor is found: ahead of the origin [m]. */
@@ -156,7 +156,7 @@ export class MirrorStand {
         this.#hold(await restorePersistentAnchor.call(session, kept.handle));
       } catch {
         // reason: the room was forgotten, or is another one; the mirror is placed as on a first visit
-        kept.keep(undefined);
+        kept.store(undefined);
       }
     }
     if (!this.#fixed) await this.#requestHitTest();
@@ -259,7 +259,7 @@ export class MirrorStand {
     this.#hold(anchor);
     if (!anchor.requestPersistentHandle) return;
     const before = kept.handle;
-    kept.keep(await anchor.requestPersistentHandle());
+    kept.store(await anchor.requestPersistentHandle());
     if (before !== undefined) await (session as PersistingSession).deletePersistentAnchor?.(before);
   }
 }

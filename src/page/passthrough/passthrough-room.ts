@@ -6,8 +6,8 @@ import type { Activity, FloorNeeds } from '../activity/activity';
 import type { Quality } from '../scene/renderer';
 import type { Surroundings } from '../scene/surroundings';
 import type { Studio } from '../studio/studio';
-import { detectedFloors, holds } from './floor-space';
-import { type KeptAnchor, MirrorStand } from './mirror-stand';
+import { detectedFloors, hasSpace } from './floor-space';
+import { MirrorStand, type StoredAnchor } from './mirror-stand';
 import { RoomLight } from './room-light';
 
 export interface PassthroughOptions {
@@ -17,7 +17,7 @@ export interface PassthroughOptions {
   readonly quality: Quality;
   readonly studio: Studio;
   readonly notices: Pick<Notices, 'show'>;
-  readonly kept: KeptAnchor;
+  readonly kept: StoredAnchor;
   floorSpace(): XRReferenceSpace | null;
   /** The current activity; null: the user is at the mirror. */
   activity(): Pick<Activity, 'place' | 'floor'> | null;
@@ -135,7 +135,7 @@ export class PassthroughRoom {
 
   #hasFloor(needs: FloorNeeds, frame: XRFrame, floor: XRReferenceSpace): boolean {
     const floors = detectedFloors(frame, floor);
-    if (floors.length > 0) return floors.some((polygon) => holds(polygon, needs));
+    if (floors.length > 0) return floors.some((polygon) => hasSpace(polygon, needs));
     const { room } = this.#options;
     return room !== null && room.width >= 2 * needs.halfWidth && room.depth >= needs.ahead + needs.behind;
   }

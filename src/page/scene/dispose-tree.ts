@@ -1,5 +1,5 @@
 import { InstancedMesh, Mesh, type Object3D, Sprite } from 'three';
-import { texturesOf } from './surface-textures';
+import { texturesOf } from './material-textures';
 
 /**
  * Removes an object, and gives back what the graphics card holds for it and all below it: geometries, materials and

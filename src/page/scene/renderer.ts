@@ -53,23 +53,23 @@ export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): Web
 }
 
 /** Share of the window's pixels, in each direction, that are drawn in low quality. */
-const lowPixelShare = 0.66;
+const lowPixelRatio = 0.66;
 
 /**
  * An emulated headset draws into the whole window, however large that is: in low quality it gets fewer pixels. Call it
  * in a session.
  */
-export function easeEmulatedPicture(renderer: WebGLRenderer, quality: Quality): void {
+export function reduceEmulatedResolution(renderer: WebGLRenderer, quality: Quality): void {
   if (quality === 'high') return;
   const { domElement } = renderer;
-  domElement.width = Math.round(window.innerWidth * lowPixelShare);
-  domElement.height = Math.round(window.innerHeight * lowPixelShare);
+  domElement.width = Math.round(window.innerWidth * lowPixelRatio);
+  domElement.height = Math.round(window.innerHeight * lowPixelRatio);
 }
 
 /** Fits the drawing buffer to the window; a headset's own buffer is none of its business. */
 export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
   if (renderer.xr.isPresenting) return;
-  renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : lowPixelShare);
+  renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : lowPixelRatio);
   renderer.setSize(window.innerWidth, window.innerHeight, false);
 }
 

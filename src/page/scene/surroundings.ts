@@ -39,8 +39,8 @@ export interface Lighting {
   };
   readonly fog: { readonly color: string; readonly near: number; readonly far: number };
   /** The reflections on shiny surfaces, built by each call; never drawn itself. */
-  readonly reflected: () => Scene;
-  readonly reflectedIntensity: number;
+  readonly environment: () => Scene;
+  readonly environmentIntensity: number;
   /** How dark the soft disc under a body is, 0 to 1. */
   readonly contactShadow: number;
 }

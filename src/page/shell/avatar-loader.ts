@@ -11,9 +11,9 @@ import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
-import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
-import type { KnownBones } from './known-bones';
+import type { BoneMapStore } from './bone-map-store';
 
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 
@@ -46,7 +46,7 @@ export interface LoadedUserAvatar {
 
 export interface AvatarLoaderOptions {
   /** The bone maps that users gave for files. */
-  readonly knownBones: Pick<KnownBones, 'of' | 'keep' | 'forget'>;
+  readonly boneMaps: Pick<BoneMapStore, 'of' | 'keep' | 'forget'>;
   /** Uploads an avatar to the graphics device before it is shown. */
   prepare(object: Avatar['object']): Promise<void>;
 }
@@ -88,7 +88,7 @@ export class AvatarLoader {
     options: { readonly onProgress: (share: number) => void; readonly signal: AbortSignal },
   ): Promise<CheckedAvatar> {
     const bytes = await readLimited(source, avatarFile, options);
-    return checkInWorker(bytes, { name: nameOf(source), unpacked: Object.keys(decoders) });
+    return checkInWorker(bytes, { name: fileNameOf(source), unpacked: Object.keys(decoders) });
   }
 
   /**
@@ -96,7 +96,7 @@ export class AvatarLoader {
    * they are unknown.
    */
   build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
-    return this.#build(checked, name, checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash));
+    return this.#build(checked, name, checked.hash === null ? undefined : this.#options.boneMaps.of(checked.hash));
   }
 
   /**
@@ -105,9 +105,9 @@ export class AvatarLoader {
    */
   async buildWith(checked: AvatarFile, name: string, bones: BoneMap | null): Promise<LoadedUserAvatar> {
     const loaded = await this.#build(await withBytes(checked), name, bones ?? undefined);
-    const { knownBones } = this.#options;
-    if (checked.hash !== null && bones) knownBones.keep(checked.hash, bones);
-    else if (checked.hash !== null) knownBones.forget(checked.hash);
+    const { boneMaps } = this.#options;
+    if (checked.hash !== null && bones) boneMaps.keep(checked.hash, bones);
+    else if (checked.hash !== null) boneMaps.forget(checked.hash);
     return loaded;
   }
 

@@ -8,12 +8,13 @@ import type { Notices } from 'threepoint-ui/notices';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createActor } from '../emulator/actor';
 import { OfflineCopy } from '../offline/offline-copy';
-import { prepareFirstPicture } from '../scene/first-picture';
+import { uploadToGpu } from '../scene/gpu-upload';
 import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities/activities';
 import { activities as registeredActivities } from './activity-registry';
 import { fetchBuiltInAvatar } from './avatar-loader';
+import { BoneMapStore } from './bone-map-store';
 import { Controls } from './controls/controls';
 import { Emitter } from './emitter';
 import { DeviceDifference } from './frame/device-difference';
@@ -24,7 +25,6 @@ import { pressSheetsByMouse } from './frame/sheet-pointing';
 import { TrackingSource } from './frame/tracking-source';
 import { FrameTiming } from './frame-timing';
 import { Headset } from './headset';
-import { KnownBones } from './known-bones';
 import { createPageBody } from './page-body';
 import type { PageContext } from './page-context';
 import { handleLostGraphics } from './page-faults';
@@ -33,9 +33,9 @@ import { PageMocap } from './page-mocap';
 import { exposeProbe, readProbe } from './probe';
 import { PassthroughHost } from './session/passthrough-host';
 import { SessionChanges } from './session/session-changes';
-import { ShownAvatar } from './shown-avatar';
 import { Stage } from './stage';
 import { PageStudy } from './study/page-study';
+import { UserAvatar } from './user-avatar';
 import { UserCalibration } from './user-calibration';
 
 export interface PageOptions extends PageContext {
@@ -59,10 +59,10 @@ function createBase(options: PageOptions) {
 
   const { renderer, studio, view } = stage;
   const { scene } = studio;
-  const prepare = (object: Object3D) => prepareFirstPicture(renderer, scene, object);
+  const prepare = (object: Object3D) => uploadToGpu(renderer, scene, object);
   const onChange = changes.emit;
   const parts = { ...options, ...pageBody, timing, canvas, quality, stage, renderer, studio, view, scene, prepare };
-  const avatar = new ShownAvatar({ ...parts, knownBones: new KnownBones(store), onChange });
+  const avatar = new UserAvatar({ ...parts, boneMaps: new BoneMapStore(store), onChange });
   const avatarShown = avatar.openBuiltIn(builtInAvatar);
   const recorder = new Recorder(onChange);
   return { ...parts, onChange, avatar, avatarShown, recorder, headset: new Headset(parts) };
@@ -94,7 +94,7 @@ function createPlay(base: ReturnType<typeof createBase>) {
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     mouse,
     study,
-    wear: (palette) => avatar.wear(palette),
+    setPalette: (palette) => avatar.setSeatPalette(palette),
     onArrival: arrivals.emit,
   });
   const userCalibration = new UserCalibration(base);

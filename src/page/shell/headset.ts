@@ -17,7 +17,7 @@ import {
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { Notices } from 'threepoint-ui/notices';
 import { type Emulator, installEmulator } from '../emulator/emulator';
-import { easeEmulatedPicture, type Quality } from '../scene/renderer';
+import { type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import type { Settings } from './settings';
 import type { Stage } from './stage';
 import type { Switches } from './switches';
@@ -270,7 +270,7 @@ export class Headset {
     const { deviceBody } = settings;
     const xr = await (passthrough ? requestPassthroughSession(deviceBody) : requestVrSession(deviceBody));
     const room = await drawSession(xr, renderer.xr, () => {
-      if (this.#emulator) easeEmulatedPicture(renderer, quality);
+      if (this.#emulator) reduceEmulatedResolution(renderer, quality);
       return roomOf(xr);
     });
     this.#follow(xr, room, passthrough);

@@ -48,7 +48,7 @@ export class PageMocap {
   async open(
     sources: readonly (File | string)[],
     outlook: Outlook = {},
-    asked = this.#options.recorder.ask(),
+    asked = this.#options.recorder.nextRequest(),
   ): Promise<void> {
     try {
       const { MocapView } = await import('../mocap/mocap-view');
@@ -139,7 +139,7 @@ export class PageMocap {
       },
       begin(name, recording, asked) {
         changed(() => {
-          recorder.take(name, recording, asked);
+          recorder.load(name, recording, asked);
           recorder.replay();
         });
       },

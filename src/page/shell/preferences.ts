@@ -101,7 +101,7 @@ export function createPreferenceStore(
 ) {
   const read = parsePreferences(storage?.getItem(key) ?? null);
   let preferences = read.preferences;
-  let told = false;
+  let reported = false;
   /** Whether the storage has taken what this window last wrote. */
   let kept = true;
 
@@ -112,11 +112,11 @@ export function createPreferenceStore(
     return text === null || complaint !== null ? null : preferences;
   }
 
-  function tellOfDenial(): void {
-    if (!told) onDenied(denied);
-    told = true;
+  function reportDenial(): void {
+    if (!reported) onDenied(denied);
+    reported = true;
   }
-  if (storage === null) tellOfDenial();
+  if (storage === null) reportDenial();
 
   return {
     get preferences(): Preferences {
@@ -135,7 +135,7 @@ export function createPreferenceStore(
       } catch (error) {
         // A full or forbidden storage costs the memory of the next visit, nothing of this one.
         if (!(error instanceof DOMException)) throw error;
-        tellOfDenial();
+        reportDenial();
       }
     },
   };

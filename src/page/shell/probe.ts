@@ -14,9 +14,9 @@ import type { Headset } from './headset';
 import type { PageLoading } from './page-loading';
 import type { PassthroughHost } from './session/passthrough-host';
 import type { Settings } from './settings';
-import type { ShownAvatar } from './shown-avatar';
 import type { Stage } from './stage';
 import type { PageStudy } from './study/page-study';
+import type { UserAvatar } from './user-avatar';
 
 /** A point of the floor frame [m]. */
 type Triple = readonly [number, number, number];
@@ -31,7 +31,7 @@ export interface ProbeParts {
   readonly frame: { readonly count: number };
   readonly source: Pick<TrackingSource, 'newest'>;
   readonly body: Pick<BodySolver, 'estimator' | 'provider' | 'calibration'>;
-  readonly avatar: Pick<ShownAvatar, 'current' | 'name'>;
+  readonly avatar: Pick<UserAvatar, 'current' | 'name'>;
   readonly headset: Pick<Headset, 'worn' | 'visibility' | 'emulator'>;
   readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;
   readonly activities: Pick<Activities, 'current'>;

@@ -75,7 +75,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
 }
 
 /** The settings that a browser keeps for later visits. */
-export type LastingSettings = Partial<Pick<Settings, keyof Settings & keyof Preferences>>;
+export type StoredSettings = Partial<Pick<Settings, keyof Settings & keyof Preferences>>;
 
 /** The only writer of the settings. Every change is reported, so that it appears on the screen. */
 export class SettingsWriter {
@@ -96,7 +96,7 @@ export class SettingsWriter {
   }
 
   /** For this visit and, on this device, for later ones. */
-  keep(part: LastingSettings): void {
+  keep(part: StoredSettings): void {
     this.#store.remember(part);
     this.change(part);
   }

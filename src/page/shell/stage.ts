@@ -24,7 +24,7 @@ const longestStep = 0.1;
 const pelvisShare = 0.58;
 
 /** One picture: its people and its viewer. */
-export interface Shot {
+export interface Picture {
   readonly time: number;
   /** null: the head is not seen. */
   readonly frame: TrackingFrame | null;
@@ -115,7 +115,7 @@ export class Stage {
   }
 
   /** Moves light and camera to where the body is: before anything is drawn that depends on the camera. */
-  look({ time, frame, avatar, inSession, aside, watched, beside }: Shot): void {
+  look({ time, frame, avatar, inSession, aside, watched, beside }: Picture): void {
     const { view, studio } = this;
     const elapsed = Math.min(longestStep, Math.max(0, time - this.#lastTime));
     this.#lastTime = time;
@@ -132,7 +132,7 @@ export class Stage {
     }
   }
 
-  draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted, savings }: Shot): void {
+  draw({ time, frame, avatar, inSession, watched, beside, mirror: wanted, savings }: Picture): void {
     const { renderer, view } = this;
     this.#save(savings);
     const inside = inSession || view.view === 'first-person';

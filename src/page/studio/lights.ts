@@ -124,14 +124,14 @@ export class Lights {
     shadow.map = null;
   }
 
-  #setReflections({ reflected, reflectedIntensity }: Lighting): void {
+  #setReflections({ environment, environmentIntensity }: Lighting): void {
     const generator = new PMREMGenerator(this.#renderer);
-    const room = reflected();
+    const room = environment();
     // A target keeps its texture on the device until it is disposed of itself.
     this.#reflections?.dispose();
     this.#reflections = generator.fromScene(room, reflectionBlur);
     this.#scene.environment = this.#reflections.texture;
-    this.#scene.environmentIntensity = reflectedIntensity;
+    this.#scene.environmentIntensity = environmentIntensity;
     generator.dispose();
     // Materials hold nothing but programs, which the next place draws with too.
     room.traverse((node) => (node as Mesh).geometry?.dispose());

@@ -13,7 +13,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
  * Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by
  * themselves.
  */
-const most = 108_000;
+const maxFrames = 108_000;
 
 /** Keeps tracked frames and replays them, one recording at a time. Times are seconds of the caller's clock. */
 export class Recorder {
@@ -32,7 +32,7 @@ export class Recorder {
   /** The number of recordings made. */
   #count = 0;
   /** The number of requests for a recording, and that of the current one. */
-  #asked = 0;
+  #requests = 0;
   #newest = 0;
   readonly #onEnd: () => void;
 
@@ -90,7 +90,7 @@ export class Recorder {
   /** Starts a new recording, which replaces the current one. `source`: its header. */
   record(source: Omit<Replayable, 'frames'>): void {
     this.stop();
-    this.#newest = this.ask();
+    this.#newest = this.nextRequest();
     this.#about = source;
     this.#recording = null;
     this.#name = null;
@@ -109,7 +109,7 @@ export class Recorder {
       ...(deviceBody && { deviceBody: deviceBody.slice() }),
     });
     this.#seconds = frame.time - (this.#frames[0]?.time ?? frame.time);
-    if (this.#frames.length >= most) this.#end();
+    if (this.#frames.length >= maxFrames) this.#end();
   }
 
   /** Ends recording or replay. */
@@ -127,7 +127,7 @@ export class Recorder {
   }
 
   /** Another moves the body: a replay is over. */
-  giveWay(): void {
+  endReplay(): void {
     if (this.#mode === 'replaying') this.#end();
   }
 
@@ -175,11 +175,11 @@ export class Recorder {
    * Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and where `take`
    * does.
    */
-  open(name: string, text: string, asked = this.ask()): Replayable {
+  open(name: string, text: string, asked = this.nextRequest()): Replayable {
     const recording = parseRecording(text);
     const complaint = recording.calibration && calibrationProblem(recording.calibration);
     if (complaint) throw new Error(complaint);
-    this.take(name, recording, asked);
+    this.load(name, recording, asked);
     return recording;
   }
 
@@ -187,16 +187,16 @@ export class Recorder {
    * The place of a wish for a recording among all of them: what it brings may take a while, and comes too late for a
    * newer one.
    */
-  ask(): number {
-    this.#asked += 1;
-    return this.#asked;
+  nextRequest(): number {
+    this.#requests += 1;
+    return this.#requests;
   }
 
   /**
    * Takes a recording, which replaces the current one. Throws while another is being recorded, and if a later request
    * has been met.
    */
-  take(name: string, recording: Replayable, asked = this.ask()): void {
+  load(name: string, recording: Replayable, asked = this.nextRequest()): void {
     if (this.#mode === 'recording') throw new Error('a recording is in progress; stop it first');
     if (asked < this.#newest) throw new Error('a newer recording was opened');
     this.stop();

@@ -139,8 +139,8 @@ const studioLighting = (quality: Quality): Lighting => ({
   fill: { sky: '#cfdcf5', ground: '#3a4354', intensity: quality === 'high' ? 0.35 : 1.1 },
   shadow: { halfSize: 1.7, resolution: 1024, softness: 5, centre: null },
   fog: { color: '#3a475d', near: 3, far: floorRadius - 6 },
-  reflected: createLightRoom,
-  reflectedIntensity: 0.38,
+  environment: createLightRoom,
+  environmentIntensity: 0.38,
   contactShadow: quality === 'high' ? 0.45 : 0.7,
 });
 

@@ -1,5 +1,5 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { sentence } from 'threepoint-ui/phrase-parts';
+import { formatSentence } from 'threepoint-ui/text-format';
 import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
 import { inLanguage } from '../model/phrases/words';
@@ -186,7 +186,7 @@ export class StudyVisit {
           return null;
         }
         if ('why' in taken) {
-          return `${sentence(reasonFor(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
+          return `${formatSentence(reasonFor(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
         }
         this.#begin(taken);
         return null;

@@ -10,9 +10,9 @@ import {
   minimumDraw,
   stiffness,
 } from 'threepoint-games/archery/bow';
-import { firstHit, reachesGround, reachesTarget, reachesWall, releaseTowards } from 'threepoint-games/archery/flight';
+import { firstHit, releaseDirection, timeToGround, timeToTarget, timeToWall } from 'threepoint-games/archery/flight';
 import { walls } from 'threepoint-games/archery/rules';
-import { gravity, type Launch, launchTowards, positionAt, velocityAt } from 'threepoint-games/ballistics';
+import { gravity, type Launch, launchDirection, positionAt, velocityAt } from 'threepoint-games/ballistics';
 import { describe, expect, test } from 'vitest';
 import { direction, evenly, seed } from '../../threepoint/core/arbitraries';
 
@@ -44,7 +44,7 @@ const upright = (z: number, radius = 0.5): Target => ({
 describe('a flight', () => {
   test('is a parabola: 30 m/s level from 1.5 m is 16.59 m long and 0.553 s', () => {
     const level: Launch = { position: vec3(0, 1.5, 0), velocity: vec3(0, 0, -30) };
-    const after = reachesGround(level);
+    const after = timeToGround(level);
     expect(after).toBeCloseTo(Math.sqrt((2 * 1.5) / gravity), 12);
     expect(positionAt(level, after).z).toBeCloseTo(-30 * Math.sqrt(3 / gravity), 10);
     expect(positionAt(level, after).y).toBeCloseTo(0, 12);
@@ -97,15 +97,15 @@ describe('a target', () => {
     const shot: Launch = { position: vec3(0, 1.6, 0), velocity: vec3(0, 0, -20) };
     // 0.785 m lower than it began after 0.4 s: 0.685 m below the centre.
     expect(positionAt(shot, 0.4).y).toBeCloseTo(1.6 - 0.5 * gravity * 0.16, 12);
-    expect(reachesTarget(shot, upright(-8, 0.68))).toBeNull();
-    expect(reachesTarget(shot, upright(-8, 0.69))).toBeCloseTo(0.4, 12);
+    expect(timeToTarget(shot, upright(-8, 0.68))).toBeNull();
+    expect(timeToTarget(shot, upright(-8, 0.69))).toBeCloseTo(0.4, 12);
   });
 
   test('stops nothing that comes from behind or flies away', () => {
     const fromBehind: Launch = { position: vec3(0, 1.5, -10), velocity: vec3(0, 1, 20) };
-    expect(reachesTarget(fromBehind, upright(-8))).toBeNull();
-    expect(reachesTarget({ position: vec3(0, 1.5, 0), velocity: vec3(0, 0, 20) }, upright(-8))).toBeNull();
-    expect(reachesTarget({ position: vec3(0, 1.5, -8.2), velocity: vec3(0, 0, -20) }, upright(-8))).toBeNull();
+    expect(timeToTarget(fromBehind, upright(-8))).toBeNull();
+    expect(timeToTarget({ position: vec3(0, 1.5, 0), velocity: vec3(0, 0, 20) }, upright(-8))).toBeNull();
+    expect(timeToTarget({ position: vec3(0, 1.5, -8.2), velocity: vec3(0, 0, -20) }, upright(-8))).toBeNull();
   });
 
   test('is never tunnelled: stepping finely finds the same crossing', () => {
@@ -118,9 +118,9 @@ describe('a target', () => {
         fc.constantFrom(true, true, false),
         fc.record({ x: evenly(-0.4, 0.4), y: evenly(-0.4, 0.4), z: fc.constant(0) }),
         (any, target, aimed, miss) => {
-          const aim = launchTowards(addScaled(target.centre, miss, 1), any.position, length(any.velocity));
+          const aim = launchDirection(addScaled(target.centre, miss, 1), any.position, length(any.velocity));
           const shot = aimed && aim ? { ...any, velocity: scale(aim, length(any.velocity)) } : any;
-          const found = reachesTarget(shot, target);
+          const found = timeToTarget(shot, target);
           const side = (time: number) => dot(target.normal, subtract(positionAt(shot, time), target.centre));
           const step = 0.0005;
           let marched: number | null = null;
@@ -148,7 +148,7 @@ describe('a target', () => {
 
   test('a lofted arrow comes down on a disc that lies flat', () => {
     const flat: Target = { ...upright(-5), centre: vec3(0, 1, -5), normal: vec3(0, 1, 0) };
-    const time = reachesTarget({ position: vec3(0, 1.5, 0), velocity: vec3(0, 10, -2.4) }, flat);
+    const time = timeToTarget({ position: vec3(0, 1.5, 0), velocity: vec3(0, 10, -2.4) }, flat);
     expect(time).toBeCloseTo((10 + Math.sqrt(100 + 2 * gravity * 0.5)) / gravity, 10);
   });
 
@@ -174,8 +174,8 @@ describe('ground and nets', () => {
   });
 
   test('a net stops nothing that comes back from outside', () => {
-    expect(reachesWall({ position: vec3(0, 1, -15), velocity: vec3(0, 0, 9) }, walls[0]!)).toBeNull();
-    expect(reachesWall({ position: vec3(0, 1, -15), velocity: vec3(0, 0, -9) }, walls[0]!)).toBeNull();
+    expect(timeToWall({ position: vec3(0, 1, -15), velocity: vec3(0, 0, 9) }, walls[0]!)).toBeNull();
+    expect(timeToWall({ position: vec3(0, 1, -15), velocity: vec3(0, 0, -9) }, walls[0]!)).toBeNull();
   });
 
   test('a tip in the ground at the release stays there', () => {
@@ -216,7 +216,7 @@ describe('aiming', () => {
     fc.assert(
       fc.property(fc.record(within), evenly(15, 55), (target, speed) => {
         const from = vec3(0.1, 1.4, -0.6);
-        const way = launchTowards(target, from, speed)!;
+        const way = launchDirection(target, from, speed)!;
         expect(length(way)).toBeCloseTo(1, 12);
         const shot: Launch = { position: from, velocity: scale(way, speed) };
         const time = Math.hypot(target.x - from.x, target.z - from.z) / (speed * Math.hypot(way.x, way.z));
@@ -231,7 +231,7 @@ describe('aiming', () => {
     fc.assert(
       fc.property(fc.record(within), evenly(0.25, maximumDraw), evenly(0.5, 1.9), (target, draw, height) => {
         const nock = vec3(0.1, height, 0.1);
-        const way = releaseTowards(target, nock, draw)!;
+        const way = releaseDirection(target, nock, draw)!;
         const shot = { position: addScaled(nock, way, arrowLength), velocity: scale(way, arrowSpeed(draw)) };
         expect(distance(shot.position, nock)).toBeCloseTo(arrowLength, 9);
         const time =
@@ -244,8 +244,8 @@ describe('aiming', () => {
   });
 
   test('says so when the target is out of reach', () => {
-    expect(releaseTowards(vec3(0, 1.5, -40), vec3(0, 1.5, 0), minimumDraw)).toBeNull();
-    expect(launchTowards(vec3(0, 30, 0), vec3(0, 0, 0), 10)).toBeNull();
-    expect(launchTowards(vec3(0, 3, 0), vec3(0, 0, 0), 10)).toEqual(vec3(0, 1, 0));
+    expect(releaseDirection(vec3(0, 1.5, -40), vec3(0, 1.5, 0), minimumDraw)).toBeNull();
+    expect(launchDirection(vec3(0, 30, 0), vec3(0, 0, 0), 10)).toBeNull();
+    expect(launchDirection(vec3(0, 3, 0), vec3(0, 0, 0), 10)).toEqual(vec3(0, 1, 0));
   });
 });

@@ -2,7 +2,7 @@ import { otherSide, type Side } from 'threepoint/core/math/side';
 import { addScaled, normalise, reject, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
-import { releaseTowards } from 'threepoint-games/archery/flight';
+import { releaseDirection } from 'threepoint-games/archery/flight';
 import { oneHandedDraw } from 'threepoint-games/archery/nocked-arrow';
 import { archeryRules } from 'threepoint-games/archery/rules';
 import { bowman } from './bowman';
@@ -13,7 +13,7 @@ function knucklesTowards(target: Vec3, bowAt: Vec3): Vec3 {
   let knuckles = vec3(0, 0, -1);
   for (let round = 0; round < 6; round++) {
     const rest = addScaled(bowAt, normalise(reject(up, knuckles)), arrowRestHeight);
-    knuckles = releaseTowards(target, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
+    knuckles = releaseDirection(target, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
   }
   return knuckles;
 }

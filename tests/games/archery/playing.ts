@@ -1,6 +1,5 @@
 import type { Buttons } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createArcher } from 'threepoint-games/archery/archer-motion';
 import type { ArcherBody } from 'threepoint-games/archery/archer-postures';
 import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
 import {
@@ -10,6 +9,7 @@ import {
   type GestureFrame,
 } from 'threepoint-games/archery/gestures';
 import { archeryRules, delayed, isArmed } from 'threepoint-games/archery/rules';
+import { createSimulatedArcher } from 'threepoint-games/archery/simulated-archer';
 import { createMatch } from 'threepoint-games/match';
 
 /** What happened in a round that was played. */
@@ -43,7 +43,7 @@ export function playRound({ archer: body, seed = 1, options = {}, times, spoil }
   const start = archeryRules.start(['archer'], seed, { eyeHeight: body.eyeHeight, ...options });
   const ticks: (readonly ArcheryAction[])[] = [];
   const match = createMatch(archeryRules, start, { delayed, onTick: (actions) => ticks.push(actions) });
-  const archer = createArcher(body);
+  const archer = createSimulatedArcher(body);
   const gestures = new ArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
     bowSide: body.bowSide,

@@ -1,7 +1,7 @@
 import { add, addScaled, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
 import { arrowLength } from 'threepoint-games/archery/bow';
-import { releaseTowards } from 'threepoint-games/archery/flight';
+import { releaseDirection } from 'threepoint-games/archery/flight';
 import { archeryRules } from 'threepoint-games/archery/rules';
 
 export const { tickSeconds } = archeryRules;
@@ -14,7 +14,7 @@ export const nockOf = (state: ArcheryState): Vec3 => add(state.head, vec3(0.1, -
 /** A release that hits the middle of a target, or `miss` [m] beside it. */
 export function shotAt(state: ArcheryState, target: number, miss = vec3(0, 0, 0), draw = 0.5): ArcheryAction {
   const nock = nockOf(state);
-  const direction = releaseTowards(add(state.targets[target]!.centre, miss), nock, draw)!;
+  const direction = releaseDirection(add(state.targets[target]!.centre, miss), nock, draw)!;
   return { type: 'release', position: addScaled(nock, direction, arrowLength), direction, draw, delay: 0 };
 }
 

@@ -5,10 +5,10 @@ import { distance, length, subtract, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { BallGestures } from 'threepoint-games/ball/gestures';
-import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { ballRules } from 'threepoint-games/ball/rules';
+import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
+import { type BallBot, createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { stations, zoneRadius } from 'threepoint-games/ball/stations';
-import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
 import { describe, expect, it } from 'vitest';
 
 interface Match {
@@ -27,7 +27,7 @@ function play({
   let state = ballRules.start(['ann', 'ben', 'cal'], seed);
   const bots: BallBot[] = stations.map((arenaFromFloor, index) => {
     const body = { eyeHeight: eyeHeights[index] ?? 1.6, arenaFromFloor, button };
-    return index === 2 ? createHolder(body) : createThrower(body, seed + index);
+    return index === 2 ? createSimulatedHolder(body) : createSimulatedThrower(body, seed + index);
   });
   let time = 0;
   const gestures: BallGestures[] = stations.map(

@@ -3,7 +3,7 @@ import { nextRandom } from 'threepoint/core/math/random';
 import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallInput } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { ballMatchTime } from 'threepoint-games/ball/state-readings';
+import { ballMatchTime } from 'threepoint-games/ball/state-selectors';
 import { rackPosition } from 'threepoint-games/ball/stations';
 import { expect, test } from 'vitest';
 import { evenly, seed } from '../../threepoint/core/arbitraries';

@@ -20,9 +20,9 @@ import {
   ballRadius,
   basketDepth,
   basketRadius,
+  firstBasketContact,
   floorBounceOf,
-  meetsBasket,
-  touchesFloor,
+  floorContactTime,
 } from 'threepoint-games/ball/flight';
 import { gravity, positionAt, velocityAt } from 'threepoint-games/ballistics';
 import { describe, expect, test } from 'vitest';
@@ -41,18 +41,18 @@ describe('a basket that stands still', () => {
   const [from, to] = still(vec3(0, 1, 0));
 
   test('catches what falls into its opening, when it goes through', () => {
-    const meeting = meetsBasket(falling(vec3(0.1, 2, 0.05)), from, to);
+    const meeting = firstBasketContact(falling(vec3(0.1, 2, 0.05)), from, to);
     expect(meeting?.kind).toBe('caught');
     expect(meeting?.kind === 'caught' && meeting.time).toBeCloseTo(Math.sqrt(2 / gravity), 3);
   });
 
   test('does not see what falls past it', () => {
-    expect(meetsBasket(falling(vec3(basketRadius + ballRadius + 0.01, 2, 0)), from, to)).toBeNull();
+    expect(firstBasketContact(falling(vec3(basketRadius + ballRadius + 0.01, 2, 0)), from, to)).toBeNull();
   });
 
   test('throws off its rim what hits it from outside: upward and away, with less speed', () => {
     const launch = falling(vec3(basketRadius + 0.03, 2, 0));
-    const meeting = meetsBasket(launch, from, to);
+    const meeting = firstBasketContact(launch, from, to);
     if (meeting?.kind !== 'bounced') throw new Error('no bounce');
     expect(meeting.launch.velocity.y).toBeGreaterThan(0);
     expect(meeting.launch.velocity.x).toBeGreaterThan(0);
@@ -61,26 +61,26 @@ describe('a basket that stands still', () => {
   });
 
   test('throws off its wall what comes from the side', () => {
-    const meeting = meetsBasket(falling(vec3(2, 0.95, 0), vec3(-15, 0, 0)), from, to);
+    const meeting = firstBasketContact(falling(vec3(2, 0.95, 0), vec3(-15, 0, 0)), from, to);
     if (meeting?.kind !== 'bounced') throw new Error('no bounce');
     expect(meeting.launch.velocity.x).toBeGreaterThan(0);
     expect(meeting.launch.position.x).toBeCloseTo(basketRadius + ballRadius, 2);
   });
 
   test('cannot be filled from below', () => {
-    const meeting = meetsBasket(falling(vec3(0, 0.2, 0), vec3(0, 12, 0)), from, to);
+    const meeting = firstBasketContact(falling(vec3(0, 0.2, 0), vec3(0, 12, 0)), from, to);
     if (meeting?.kind !== 'bounced') throw new Error('no bounce');
     expect(meeting.launch.position.y).toBeCloseTo(1 - basketDepth - ballRadius, 2);
     expect(meeting.launch.velocity.y).toBeLessThan(0);
   });
 
   test('catches nothing upside down', () => {
-    expect(meetsBasket(falling(vec3(0, 2, 0)), ...still(vec3(0, 1, 0), vec3(0, -1, 0)))?.kind).toBe('bounced');
+    expect(firstBasketContact(falling(vec3(0, 2, 0)), ...still(vec3(0, 1, 0), vec3(0, -1, 0)))?.kind).toBe('bounced');
   });
 
   test('that looks at the thrower catches a flat throw', () => {
     const launch = falling(vec3(0, 1.1, 5), vec3(0, 1.2, -18));
-    expect(meetsBasket(launch, ...still(vec3(0, 1, 0), vec3(0, 0, 1)))?.kind).toBe('caught');
+    expect(firstBasketContact(launch, ...still(vec3(0, 1, 0), vec3(0, 0, 1)))?.kind).toBe('caught');
   });
 });
 
@@ -122,7 +122,7 @@ describe('a basket that moves', () => {
     let caught = 0;
     fc.assert(
       fc.property(through, ({ launch, from, to }) => {
-        const meeting = meetsBasket(launch, from, to);
+        const meeting = firstBasketContact(launch, from, to);
         expect(meeting).not.toBeNull();
         if (meeting?.kind === 'caught') {
           caught += 1;
@@ -157,7 +157,7 @@ describe('a basket that moves', () => {
         const looked = lookOften(launch, from, to, 2e-5);
         if (looked === 'inside') return;
         runs += 1;
-        const found = meetsBasket(launch, from, to)?.kind ?? null;
+        const found = firstBasketContact(launch, from, to)?.kind ?? null;
         if (found) met += 1;
         if (found === looked) agreed += 1;
       }),
@@ -193,14 +193,14 @@ describe('a basket that moves', () => {
     const launch = falling(vec3(0, 1.3, 0));
     const from: Basket = { at: 0, position: vec3(0, 1.2, 0), normal: vec3(0, 1, 0) };
     const to: Basket = { at: 1 / 30, position: vec3(0, 1.4, 0), normal: vec3(0, 1, 0) };
-    expect(meetsBasket(launch, from, to)?.kind).toBe('caught');
+    expect(firstBasketContact(launch, from, to)?.kind).toBe('caught');
   });
 
   test('that hits a ball with its wall passes its speed on', () => {
     const launch = falling(vec3(0.4, 1.4, 0));
     const from: Basket = { at: 0, position: vec3(0, 1.5, 0), normal: vec3(0, 1, 0) };
     const to: Basket = { at: 1 / 30, position: vec3(0.2, 1.5, 0), normal: vec3(0, 1, 0) };
-    const meeting = meetsBasket(launch, from, to);
+    const meeting = firstBasketContact(launch, from, to);
     if (meeting?.kind !== 'bounced') throw new Error('no bounce');
     expect(meeting.launch.velocity.x).toBeGreaterThan(6);
   });
@@ -211,7 +211,7 @@ describe('the floor', () => {
     fc.assert(
       fc.property(vector(8), evenly(0.2, 2), (velocity, height) => {
         const launch: TimedLaunch = { time: 3, position: vec3(1, height, 2), velocity };
-        expect(ballInAir(launch, touchesFloor(launch)).y).toBeCloseTo(ballRadius, 9);
+        expect(ballInAir(launch, floorContactTime(launch)).y).toBeCloseTo(ballRadius, 9);
       }),
       { seed },
     );
@@ -222,7 +222,7 @@ describe('the floor', () => {
     let rolls = false;
     let bounces = 0;
     while (!rolls) {
-      const next = floorBounceOf(launch, touchesFloor(launch));
+      const next = floorBounceOf(launch, floorContactTime(launch));
       expect(energyOf(next.launch)).toBeLessThan(energyOf(launch));
       expect(next.launch.time).toBeGreaterThan(launch.time);
       ({ launch, rolls } = next);

@@ -1,11 +1,11 @@
 import fc from 'fast-check';
 import { add, distance, length, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { armReach, fastestThrow, longestDelay } from 'threepoint-games/ball/actions';
+import { armReach, fastestThrow, maxDelay } from 'threepoint-games/ball/action-rules';
 import type { BallInput } from 'threepoint-games/ball/ball-state';
 import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { ballPosition, ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings';
+import { ballPosition, ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-selectors';
 import { rackPosition, stations, throwingDistance } from 'threepoint-games/ball/stations';
 import { wristAround } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
@@ -131,7 +131,7 @@ describe('a match', () => {
     match.toss(rightThrower, 11, inFront);
     expect(match.refusals()).toEqual(['time', 'time']);
     expect(match.happened('returned')).toEqual([]);
-    match.pass(longestDelay);
+    match.pass(maxDelay);
     expect(match.happened('returned')).toEqual([{ type: 'returned', ball: 11, player: rightThrower }]);
     match.pass(2);
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'time', score: 1 }]);

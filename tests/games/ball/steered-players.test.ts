@@ -2,9 +2,10 @@ import { transformPoint } from 'threepoint/core/math/pose';
 import { distance, normalise, subtract, vec3 } from 'threepoint/core/math/vec3';
 import type { BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
 import { BallGestures } from 'threepoint-games/ball/gestures';
-import { createHolder } from 'threepoint-games/ball/holder-motion';
 import type { PlayerBody } from 'threepoint-games/ball/player-postures';
 import { ballRules } from 'threepoint-games/ball/rules';
+import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
+import { type BallBot, createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { stations } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
@@ -12,8 +13,7 @@ import {
   createSteeredThrower,
   type SteeredPlayer,
 } from 'threepoint-games/ball/steered-players';
-import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
-import { fallsTo, positionAt } from 'threepoint-games/ballistics';
+import { fallTime, positionAt } from 'threepoint-games/ballistics';
 import { describe, expect, test } from 'vitest';
 
 const bodyAt = (player: number): PlayerBody => ({ eyeHeight: 1.6, arenaFromFloor: stations[player]! });
@@ -41,7 +41,11 @@ function playing(seat: number, steer: (seen: Seen) => BallSteering, others: 'idl
   const player = (seat === 2 ? createSteeredHolder : createSteeredThrower)(bodyAt(seat), () => told.now);
   const seats = [0, 1, 2].map((index) => {
     const bot: BallBot =
-      index === seat ? player : index === 2 ? createHolder(bodyAt(2)) : createThrower(bodyAt(index), 3);
+      index === seat
+        ? player
+        : index === 2
+          ? createSimulatedHolder(bodyAt(2))
+          : createSimulatedThrower(bodyAt(index), 3);
     const gestures = new BallGestures(() => ({
       player: index,
       state,
@@ -97,7 +101,7 @@ describe.each([0, 1])('with a mouse on seat %i', (seat) => {
       const basket = state.basket.position;
       const { aim } = player;
       // A person lets go as soon as the dots reach the opening.
-      const lands = aim && positionAt(aim, fallsTo(aim, basket.y));
+      const lands = aim && positionAt(aim, fallTime(aim, basket.y));
       const far = lands !== null && Math.hypot(lands.x - basket.x, lands.z - basket.z) < 0.12;
       const at = transformPoint(
         { position: vec3(-stations[seat]!.position.x, 0, 0), orientation: stations[seat]!.orientation },
@@ -120,7 +124,7 @@ describe.each([0, 1])('with a mouse on seat %i', (seat) => {
     match.pass(2.9);
     const [launch] = match.launches;
     if (!launch || !shown) throw new Error('nothing thrown');
-    const there = (of: typeof launch) => positionAt(of, fallsTo(of, 1));
+    const there = (of: typeof launch) => positionAt(of, fallTime(of, 1));
     expect(distance(there(launch), there({ ...launch, ...(shown as object) }))).toBeLessThan(0.1);
   });
 
@@ -171,7 +175,7 @@ describe('with a mouse at the basket', () => {
         let at = home;
         if (coming?.on === 'air') {
           const { launch } = coming;
-          const arena = positionAt(launch, fallsTo(launch, state.basket.position.y));
+          const arena = positionAt(launch, fallTime(launch, state.basket.position.y));
           const { position } = stations[2]!;
           // The holder looks back at the throwers.
           at = vec3(position.x - arena.x, arena.y, position.z - arena.z);

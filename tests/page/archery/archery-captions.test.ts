@@ -3,8 +3,8 @@ import { up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { Arrow, Landing, Target } from 'threepoint-games/archery/archery-state';
 import { archeryRules } from 'threepoint-games/archery/rules';
 import { eventCaption } from 'threepoint-page/archery/sound/archery-captions';
-import { Sounds } from 'threepoint-page/archery/sound/archery-sounds';
-import { directionOf } from 'threepoint-page/scene/directions';
+import { ArcherySounds } from 'threepoint-page/archery/sound/archery-sounds';
+import { directionText } from 'threepoint-page/scene/direction-text';
 import { describe, expect, it } from 'vitest';
 
 const target = (x: number, z: number, points: number): Target => ({
@@ -44,11 +44,11 @@ describe('captions', () => {
 
   it('say where things are for the head as it is turned', () => {
     const turnedLeft = { ...head, orientation: fromAxisAngle(up, Math.PI / 2) };
-    expect(directionOf(head, vec3(0, 0, -5))).toBe('ahead');
-    expect(directionOf(head, vec3(-5, 0, 0))).toBe('to the left');
-    expect(directionOf(turnedLeft, vec3(-5, 0, 0))).toBe('ahead');
-    expect(directionOf(turnedLeft, vec3(0, 0, -5))).toBe('to the right');
-    expect(directionOf(head, vec3(0.1, 0, 5))).toBe('behind you');
+    expect(directionText(head, vec3(0, 0, -5))).toBe('ahead');
+    expect(directionText(head, vec3(-5, 0, 0))).toBe('to the left');
+    expect(directionText(turnedLeft, vec3(-5, 0, 0))).toBe('ahead');
+    expect(directionText(turnedLeft, vec3(0, 0, -5))).toBe('to the right');
+    expect(directionText(head, vec3(0.1, 0, 5))).toBe('behind you');
   });
 
   it('say where the deck is for an archer who left it', () => {
@@ -66,7 +66,7 @@ describe('captions', () => {
 describe('sounds before the browser allows any', () => {
   it('are captions all the same, a creaking bow only once in a draw', () => {
     const captions: string[] = [];
-    const sounds = new Sounds({
+    const sounds = new ArcherySounds({
       floorFromArena: { position: vec3(0, 0, 0), orientation: identity },
       onCaption: (text) => captions.push(text),
       createContext: () => {
@@ -83,7 +83,7 @@ describe('sounds before the browser allows any', () => {
 
   it('are heard from the floor even when the range is turned in the room: directions are for the head in it', () => {
     const captions: string[] = [];
-    const sounds = new Sounds({
+    const sounds = new ArcherySounds({
       floorFromArena: { position: vec3(2, 0, 0), orientation: fromAxisAngle(up, Math.PI / 2) },
       onCaption: (text) => captions.push(text),
     });

@@ -1,6 +1,6 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
-import { ballInAir, touchesFloor } from 'threepoint-games/ball/flight';
+import { ballInAir, floorContactTime } from 'threepoint-games/ball/flight';
 import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
 import { Balls } from 'threepoint-page/ball/view/balls';
 import { describe, expect, test } from 'vitest';
@@ -51,7 +51,7 @@ describe('a ball that has not been told to be caught', () => {
     const mesh = view.object.children[0] as InstancedMesh;
     const matrix = new Matrix4();
     let most = 0;
-    for (let time = 1; time < touchesFloor(launch); time += 1 / 72) {
+    for (let time = 1; time < floorContactTime(launch); time += 1 / 72) {
       view.show({ ...fresh, balls }, time, () => null, opening);
       mesh.getMatrixAt(0, matrix);
       const drawnAt = new Vector3().setFromMatrixPosition(matrix);

@@ -1,7 +1,7 @@
-import { hideLabel, muteLabel, otherPlayers, type Seated } from 'threepoint-page/ball/panel/other-players';
+import { hideLabel, muteLabel, otherPlayers, type SeatRow } from 'threepoint-page/ball/panel/other-players';
 import { describe, expect, it } from 'vitest';
 
-const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({
+const seated = (seat: number, change: Partial<SeatRow> = {}): SeatRow => ({
   ...{ seat, name: `Player ${seat}`, role: 'Right thrower' },
   voice: 'open',
   link: 'connected',
@@ -11,7 +11,7 @@ const seated = (seat: number, change: Partial<Seated> = {}): Seated => ({
 });
 
 /** Returns the entry of the only other player; `inVoices`: the page plays voices. */
-const listed = (change: Partial<Seated>, inVoices = true) =>
+const listed = (change: Partial<SeatRow>, inVoices = true) =>
   otherPlayers({ seat: 0, people: [seated(0), seated(1, change)] }, inVoices)[0];
 
 describe('the other players', () => {

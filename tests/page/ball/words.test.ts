@@ -2,25 +2,25 @@ import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { createMatchClock } from 'threepoint-page/ball/match/displayed-clock';
+import { createDisplayedClock } from 'threepoint-page/ball/match/displayed-clock';
 import { cueCaption, eventCaption } from 'threepoint-page/ball/sound/ball-captions';
 import { eventHaptics } from 'threepoint-page/ball/sound/ball-haptics';
 import {
   catchesOf,
-  lineOfEvent,
+  type DisplayedMatch,
+  type DisplayedPlayer,
+  displayName,
+  eventLine,
   lobbyButtons,
-  nameOf,
-  type Person,
-  type Standing,
   seatOfButton,
-  waitingFor,
   waitingLine,
+  waitingSentence,
 } from 'threepoint-page/ball/view/board-drawing';
 import { labelScale } from 'threepoint-page/ball/view/name-labels';
 import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { describe, expect, it } from 'vitest';
 
-const person = (name: string, more: Partial<Person> = {}): Person => ({
+const person = (name: string, more: Partial<DisplayedPlayer> = {}): DisplayedPlayer => ({
   name,
   bot: false,
   presence: 'here',
@@ -30,10 +30,14 @@ const person = (name: string, more: Partial<Person> = {}): Person => ({
 const fresh = ballRules.start(['a', 'b', 'c'], 1);
 const launch = { time: 1, position: vec3(0, 1.5, 0), velocity: vec3(0, 4, -5) };
 
-const standing = (people: Standing['people'], state: BallState = fresh, me: number | null = 0): Standing => ({
+const standing = (
+  players: DisplayedMatch['players'],
+  state: BallState = fresh,
+  me: number | null = 0,
+): DisplayedMatch => ({
   state,
   seconds: 90,
-  people,
+  players,
   me,
   rotate: false,
   acting: false,
@@ -55,30 +59,30 @@ describe('the board', () => {
 
   it('beside the player: says who is waited for, by name, and what to press', () => {
     const all = [person('ann', { me: true }), person('Max', { bot: true }), person('cal')];
-    const told = (...ready: boolean[]) => waitingFor(standing(all, withReady(...ready)));
-    expect(waitingFor(standing([person('ann', { me: true }), null, null]))).toBe('Waiting for a basket holder.');
+    const told = (...ready: boolean[]) => waitingSentence(standing(all, withReady(...ready)));
+    expect(waitingSentence(standing([person('ann', { me: true }), null, null]))).toBe('Waiting for a basket holder.');
     expect(told(false, true, true)).toBe('Waiting for you: press Ready.');
     expect(told(false, false, false)).toBe('Waiting for you, Max (bot) and cal: press Ready.');
     expect(told(true, false, false)).toBe('Waiting for Max (bot) and cal.');
     expect(told(true, true, true)).toBe('The match starts in a moment.');
     const over = { ...withReady(false, true, true), phase: 'over' as const, end: 'balls' as const };
-    expect(waitingFor(standing(all, over))).toBe('Waiting for you: press Play again.');
-    expect(waitingFor({ ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
-    expect(waitingFor(standing(all, { ...over, phase: 'running' }))).toBeNull();
+    expect(waitingSentence(standing(all, over))).toBe('Waiting for you: press Play again.');
+    expect(waitingSentence({ ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
+    expect(waitingSentence(standing(all, { ...over, phase: 'running' }))).toBeNull();
     const throwers = standing([all[0]!, all[1]!, null], over);
-    expect(waitingFor(throwers)).toBe('Waiting for a basket holder.');
-    expect(waitingFor({ ...throwers, rotate: true })).toBe('Waiting for you: press Play again.');
+    expect(waitingSentence(throwers)).toBe('Waiting for a basket holder.');
+    expect(waitingSentence({ ...throwers, rotate: true })).toBe('Waiting for you: press Play again.');
   });
 
   it('speaks to the player of their own throws', () => {
     const people = [person('ann', { me: true }), null, null];
-    expect(lineOfEvent({ type: 'caught', ball: 3, player: 0, at: 2, score: 1 }, people)).toBe('In! Thrown by you');
-    expect(lineOfEvent({ type: 'missed', ball: 3, player: 0 } as BallEvent, people)).toBe('Your ball is on the floor');
+    expect(eventLine({ type: 'caught', ball: 3, player: 0, at: 2, score: 1 }, people)).toBe('In! Thrown by you');
+    expect(eventLine({ type: 'missed', ball: 3, player: 0 } as BallEvent, people)).toBe('Your ball is on the floor');
   });
 
   it('names the thrower of a ball that was caught, and counts by thrower', () => {
     const event: BallEvent = { type: 'caught', ball: 3, player: 1, at: 2, score: 1 };
-    expect(lineOfEvent(event, [null, person('ben'), null])).toBe('In! Thrown by ben');
+    expect(eventLine(event, [null, person('ben'), null])).toBe('In! Thrown by ben');
     const balls: BallPlace[] = [
       { on: 'basket', thrower: 0 },
       { on: 'basket', thrower: 1 },
@@ -90,9 +94,9 @@ describe('the board', () => {
   });
 
   it('a bot is marked, once', () => {
-    expect(nameOf(person('Ada', { bot: true }))).toBe('Ada (bot)');
-    expect(nameOf(person('Bot 7', { bot: true }))).toBe('Bot 7');
-    expect(nameOf(person('Ada'))).toBe('Ada');
+    expect(displayName(person('Ada', { bot: true }))).toBe('Ada (bot)');
+    expect(displayName(person('Bot 7', { bot: true }))).toBe('Bot 7');
+    expect(displayName(person('Ada'))).toBe('Ada');
   });
 });
 
@@ -153,7 +157,7 @@ describe('names over heads', () => {
 
 describe('the clock of a match', () => {
   it('stands after its end, however long the result is read, and is whole again before the next', () => {
-    const clock = createMatchClock();
+    const clock = createDisplayedClock();
     const at = (tick: number, more: Partial<BallState>) => clock.follow({ ...fresh, tick, startedAt: 0, ...more });
     at(60 * 30, { phase: 'running' });
     expect(clock.secondsLeft).toBeCloseTo(60, 6);

@@ -1,4 +1,4 @@
-import { detectedFloors, holds } from 'threepoint-page/passthrough/floor-space';
+import { detectedFloors, hasSpace } from 'threepoint-page/passthrough/floor-space';
 import { describe, expect, test } from 'vitest';
 
 const rectangle = (halfWidth: number, ahead: number, behind: number) => [
@@ -18,7 +18,7 @@ describe('a floor', () => {
     ['large enough, with a corner cut off where the game is', [...rectangle(2, 6, 1), { x: 0, z: -2 }], false],
     ['that was not detected', [], false],
   ])('%s', (_, polygon, enough) => {
-    expect(holds(polygon, needs)).toBe(enough);
+    expect(hasSpace(polygon, needs)).toBe(enough);
   });
 });
 

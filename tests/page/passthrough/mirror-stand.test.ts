@@ -64,7 +64,7 @@ function room({ floorHeight = 0.02, hitTest = true, anchors = true, handle = und
   });
   const kept = {
     handle,
-    keep(next: string | undefined) {
+    store(next: string | undefined) {
       kept.handle = next;
     },
   };

@@ -75,7 +75,7 @@ function page(listed: readonly Activity[] = registered) {
     recorder,
     body: services.body,
     study,
-    wear(palette) {
+    setPalette(palette) {
       seen.palette = palette;
     },
     onArrival: () => undefined,
@@ -213,7 +213,7 @@ describe('a round', () => {
     const ofRecording = wearer(1, 1.9);
     const recording = { device: 'a test', rateHz: 60, calibration: null, frames: [ofRecording, wearer(2, 1.9)] };
     for (const shooter of ['mouse', 'actor'] as const) {
-      recorder.take('tall.json', recording);
+      recorder.load('tall.json', recording);
       recorder.replay();
       expect(tracked(10)?.head).toEqual(ofRecording.head);
       archery().chooseShooter(shooter);

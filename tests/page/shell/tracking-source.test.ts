@@ -69,7 +69,7 @@ test('with the actor off before a real headset is put on, the body stands still'
 test('a replay that arrives paused while a headset is worn does not hold its wearer still', () => {
   const { recorder, wristAt } = worn();
   wristAt(10);
-  recorder.take('dance.json', {
+  recorder.load('dance.json', {
     device: 'a test',
     rateHz: 60,
     calibration: defaultCalibration,

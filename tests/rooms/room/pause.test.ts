@@ -1,4 +1,4 @@
-import { ballMatchTime, ballSecondsLeft } from 'threepoint-games/ball/state-readings';
+import { ballMatchTime, ballSecondsLeft } from 'threepoint-games/ball/state-selectors';
 import { poseRetentionSeconds } from 'threepoint-rooms/room/pose-validator';
 import { describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';

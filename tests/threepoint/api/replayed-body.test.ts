@@ -24,7 +24,7 @@ const answeringLater = ({ runNow: _, ...regressor }: PoseRegressor): PoseRegress
 /** A body that replays a moving person, frame by frame of a page at 60 Hz. */
 async function replaying(method: EstimatorName, later = false) {
   const recorder = new Recorder();
-  recorder.take('walk.json', { device: 'a test', rateHz, calibration, frames });
+  recorder.load('walk.json', { device: 'a test', rateHz, calibration, frames });
   recorder.replay();
   const networks = async () => (later ? answeringLater(await openPlainModel()) : openPlainModel());
   const body = new Body({ networks, calibration, estimator: method });

@@ -9,12 +9,12 @@ import { makeTransform, type Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, dot, forward, normalise, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { bowInHand } from 'threepoint-games/archery/bow-hand';
+import { bowInHand } from 'threepoint-games/archery/bow-pose';
 import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
 import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball/flight';
-import { createHolder } from 'threepoint-games/ball/holder-motion';
 import { createPlayerPostures, makePosture } from 'threepoint-games/ball/player-postures';
 import { ballRules } from 'threepoint-games/ball/rules';
+import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
 import { stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, wristAround } from 'threepoint-games/fist';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
@@ -73,7 +73,7 @@ function basketIn(wrists: Thing['wrists']): Thing {
 /** A player who holds the basket before the belly, as others see one. */
 function holder(): Thing['wrists'] {
   const station = stations[2]!;
-  const bot = createHolder({ eyeHeight: wearer.eyeHeight, arenaFromFloor: station });
+  const bot = createSimulatedHolder({ eyeHeight: wearer.eyeHeight, arenaFromFloor: station });
   const { leftHand, rightHand } = bot.follow(0, { state: ballRules.start(['ann', 'ben', 'cal'], 1), player: 2 }).frame;
   return { left: leftHand!, right: rightHand! };
 }
@@ -93,7 +93,7 @@ function hanging(time: number): PlayerInput {
   const posture = makePosture();
   copyVec3(postures.eyes, posture.eyes);
   for (const side of sides) postures.hang(side, posture.eyes, posture[side]);
-  return postures.seen(posture, time, 1, 1);
+  return postures.inputFor(posture, time, 1, 1);
 }
 
 /** How near the skin of some bones of one hand comes to a thing, below 0 inside [mm]. */

@@ -9,7 +9,7 @@ import { createIk } from 'threepoint/core/estimation/estimators';
 import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { KnownBones } from 'threepoint-page/shell/known-bones';
+import { BoneMapStore } from 'threepoint-page/shell/bone-map-store';
 import { BoneChoices } from 'threepoint-page/shell/panel/bone-choices';
 import { createPreferenceStore } from 'threepoint-page/shell/preferences';
 import { describe, expect, test } from 'vitest';
@@ -154,11 +154,11 @@ describe('a map of bones that the user makes', () => {
 
   test('is remembered by the file’s hash over a reload, of the newest twenty files', () => {
     const storage = memory();
-    const first = new KnownBones(createPreferenceStore(storage));
+    const first = new BoneMapStore(createPreferenceStore(storage));
     for (let i = 0; i < 21; i++) first.keep(hashOf(i), { ...bones, head: `daeh${i}` });
     const store = createPreferenceStore(storage);
     expect(store.complaint).toBeNull();
-    const later = new KnownBones(store);
+    const later = new BoneMapStore(store);
     expect(later.of(hashOf(0))).toBeUndefined();
     expect(later.of(hashOf(20))?.head).toBe('daeh20');
     expect(later.of('unknown')).toBeUndefined();
@@ -168,7 +168,7 @@ describe('a map of bones that the user makes', () => {
     const storage = memory();
     const store = createPreferenceStore(storage);
     store.remember({ mirror: false });
-    new KnownBones(store).keep(hashOf(1), { ...bones, head: 'head '.repeat(50) });
+    new BoneMapStore(store).keep(hashOf(1), { ...bones, head: 'head '.repeat(50) });
     const next = createPreferenceStore(storage);
     expect(next.complaint).toBeNull();
     expect(next.preferences).toEqual({ mirror: false });

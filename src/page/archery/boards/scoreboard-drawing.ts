@@ -1,7 +1,7 @@
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { fullScore, secondsLeft } from 'threepoint-games/archery/rules';
-import { widthOf, write } from 'threepoint-ui/vr-panel';
-import { ink, paintCard, paintGround } from '../../scene/boards/lettering';
+import { drawText, textWidth } from 'threepoint-ui/vr-panel';
+import { ink, paintCard, paintGround } from '../../scene/boards/board-style';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton } from '../../scene/boards/sheet';
 
@@ -31,7 +31,7 @@ export function arrowResult(state: ArcheryState, index: number): string {
 }
 
 /** The last sentence of the board at a time of the match [s]. */
-export function lineOf(state: ArcheryState, time: number): string {
+export function statusLine(state: ArcheryState, time: number): string {
   if (!state.inZone) return 'Step back onto the deck';
   if (state.phase === 'ready')
     return state.options.startedBy === 'signal' ? 'Wait for the start' : 'First arrow starts the clock';
@@ -62,7 +62,7 @@ export function boardText(state: ArcheryState, time: number): BoardText {
     seconds: Math.ceil(left),
     phase: state.phase,
     inZone: state.inZone,
-    line: lineOf(state, time),
+    line: statusLine(state, time),
   };
 }
 
@@ -102,18 +102,18 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
   const { score, maximum, seconds, phase } = text;
   paintScoreHeading(context, { score, of: maximum, seconds, running: phase === 'running' });
 
-  write(context, 'ARROWS', [64, 444], { font: '700 54px', color: ink.soft });
+  drawText(context, 'ARROWS', [64, 444], { font: '700 54px', color: ink.soft });
   for (let i = 0; i < text.arrows; i++)
     pip(context, 370 + i * Math.min(66, 330 / text.arrows), 378, 100, i < text.arrowsLeft);
   const left = `${text.arrowsLeft} of ${text.arrows}`;
-  write(context, left, [width - 64, 452], { font: '800 76px', color: ink.text, align: 'right' });
+  drawText(context, left, [width - 64, 452], { font: '800 76px', color: ink.text, align: 'right' });
 
   if (!text.inZone) {
     context.fillStyle = ink.warning;
     context.fillRect(0, 516, width, height - 516);
   }
   const [line, color] = text.inZone ? [text.line, ink.text] : [`⚠ ${text.line}`, ink.accentInk];
-  write(context, line, [64, 598], { font: '700 64px', color, most: width - 128 });
+  drawText(context, line, [64, 598], { font: '700 64px', color, maxWidth: width - 128 });
 }
 
 export const resultSize = { width: 1024, height: 768 } as const;
@@ -135,24 +135,24 @@ export function paintResult(context: CanvasRenderingContext2D, state: ArcherySta
   const maximum = fullScore(state);
   const percent = maximum > 0 ? Math.round((100 * state.score) / maximum) : 0;
   const ending = state.end ? headline[state.end] : '';
-  write(context, ending, [width / 2, 92], { font: '700 44px', color: ink.soft, align: 'center' });
+  drawText(context, ending, [width / 2, 92], { font: '700 44px', color: ink.soft, align: 'center' });
 
   const score = String(state.score);
   const rest = `/ ${maximum}`;
   const share = `${percent} %`;
-  const scoreWidth = widthOf(context, score, '800 210px');
-  const restWidth = widthOf(context, rest, '700 80px');
-  const shareWidth = widthOf(context, share, '800 80px') + 64;
+  const scoreWidth = textWidth(context, score, '800 210px');
+  const restWidth = textWidth(context, rest, '700 80px');
+  const shareWidth = textWidth(context, share, '800 80px') + 64;
   let x = (width - (scoreWidth + 26 + restWidth + 56 + shareWidth)) / 2;
-  write(context, score, [x, 296], { font: '800 210px', color: ink.text });
+  drawText(context, score, [x, 296], { font: '800 210px', color: ink.text });
   x += scoreWidth + 26;
-  write(context, rest, [x, 296], { font: '700 80px', color: ink.soft });
+  drawText(context, rest, [x, 296], { font: '700 80px', color: ink.soft });
   x += restWidth + 56;
   context.fillStyle = ink.accent;
   context.beginPath();
   context.roundRect(x, 196, shareWidth, 112, 56);
   context.fill();
-  write(context, share, [x + 32, 281], { font: '800 80px', color: ink.accentInk });
+  drawText(context, share, [x + 32, 281], { font: '800 80px', color: ink.accentInk });
 
   const count = Math.max(1, state.options.arrows);
   const gap = 16;
@@ -169,9 +169,9 @@ export function paintResult(context: CanvasRenderingContext2D, state: ArcherySta
     context.fill();
     context.stroke();
     const number = { font: '700 32px', color: ink.soft, align: 'center', most: card - 12 } as const;
-    write(context, `Arrow ${i + 1}`, [left + card / 2, 418], number);
+    drawText(context, `Arrow ${i + 1}`, [left + card / 2, 418], number);
     const look = scored ? { font: '800 84px', color: ink.text } : { font: '600 40px', color: ink.soft };
-    write(context, result, [left + card / 2, scored ? 510 : 490], { ...look, align: 'center', most: card - 16 });
+    drawText(context, result, [left + card / 2, scored ? 510 : 490], { ...look, align: 'center', maxWidth: card - 16 });
   }
 
   paintButton(context, restartButton, 'Restart', { primary: true, hovered, font: '800 56px' });

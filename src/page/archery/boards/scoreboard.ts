@@ -1,7 +1,7 @@
 import { Group } from 'three';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';
-import { createDrawnTexture } from '../../scene/drawn-texture';
+import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import { boardSize, boardText, paintBoard } from './scoreboard-drawing';
 
@@ -16,7 +16,7 @@ export function createScoreboard(quality: Quality) {
   // High beside the field, turned to the archer: a glance away from the targets, in front of none.
   object.position.set(place.x, 0, place.z);
   object.rotation.y = Math.atan2(-place.x, -place.z);
-  const { texture, draw } = createDrawnTexture(boardSize.width, boardSize.height, quality);
+  const { texture, draw } = createCanvasTexture(boardSize.width, boardSize.height, quality);
   object.add(createWoodenBoard({ width, height, middle: 3.6 }, texture));
   let shown = '';
   return {

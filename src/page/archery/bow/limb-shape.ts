@@ -61,10 +61,10 @@ function tipOf(bend: number, target: MutableVec3): MutableVec3 {
 }
 
 /** The bend [rad], to a thousandth of a degree, beyond which a limb is bent too far. */
-const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(leastBend, mostBend, tooFar, 21);
+const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(minBend, maxBend, tooFar, 21);
 
-const leastBend = -0.5;
-const mostBend = 2.2;
+const minBend = -0.5;
+const maxBend = 2.2;
 
 /** The two ends of the string. */
 interface Tips {

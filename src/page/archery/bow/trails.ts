@@ -13,7 +13,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Arrow } from 'threepoint-games/archery/archery-state';
-import { bothSides } from '../../scene/both-sides';
+import { doubleSided } from '../../scene/double-sided';
 import { arrowPose, makeArrowPose } from './arrow-pose';
 
 /** The duration of a trail [s], after which it has faded. */
@@ -28,7 +28,7 @@ const trailMaterial = (): ShaderMaterial =>
   new ShaderMaterial({
     transparent: true,
     depthWrite: false,
-    ...bothSides,
+    ...doubleSided,
     fog: false,
     vertexShader: `attribute float strength; varying float alpha;
       void main() {

@@ -16,10 +16,10 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import { walls } from 'threepoint-games/archery/rules';
-import { bothSides } from '../../scene/both-sides';
-import { woodColor } from '../../scene/outdoors/wood';
+import { createDataTexture } from '../../scene/data-texture';
+import { doubleSided } from '../../scene/double-sided';
+import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted } from '../../scene/painted-geometry';
-import { createPixelTexture } from '../../scene/pixel-texture';
 import type { Quality } from '../../scene/renderer';
 import { field } from './field';
 
@@ -35,7 +35,7 @@ function netTexture(quality: Quality): DataTexture {
       pixels[at + 3] = fromCord < 3 ? 225 : 0;
     }
   }
-  const texture = createPixelTexture(pixels, side, quality);
+  const texture = createDataTexture(pixels, side, quality);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   return texture;
 }
@@ -69,7 +69,7 @@ function createNets(quality: Quality): Group {
       transparent: true,
       opacity: wall.axis === 'z' ? 0.75 : 0.34,
       depthWrite: false,
-      ...bothSides,
+      ...doubleSided,
     });
     nets.add(new Mesh(geometry, material));
   }

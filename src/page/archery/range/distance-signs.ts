@@ -1,9 +1,9 @@
 import { BoxGeometry, type BufferGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
-import { write } from 'threepoint-ui/vr-panel';
+import { drawText } from 'threepoint-ui/vr-panel';
 import { createLabelQuad } from '../../scene/boards/label-quad';
-import { createDrawnTexture } from '../../scene/drawn-texture';
-import { woodColor } from '../../scene/outdoors/wood';
+import { createCanvasTexture } from '../../scene/canvas-texture';
+import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
 
@@ -23,7 +23,7 @@ function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[
     context.lineWidth = 7;
     context.strokeRect(9, y + 9, cell.width - 18, cell.height - 18);
     const writing = { font: '700 74px', color: '#14202a', align: 'center', baseline: 'middle' } as const;
-    write(context, label, [cell.width / 2, y + cell.height / 2 + 5], { ...writing, most: cell.width - 46 });
+    drawText(context, label, [cell.width / 2, y + cell.height / 2 + 5], { ...writing, maxWidth: cell.width - 46 });
   });
 }
 
@@ -62,7 +62,7 @@ function faces(places: readonly Place[], rows: number): BufferGeometry {
 
 /** Signs on both sides of the field at each distance [m] from the archer. Arena frame. */
 export function createDistanceSigns(distances: readonly number[], quality: Quality): Group {
-  const { texture, draw } = createDrawnTexture(cell.width, cell.height * distances.length, quality);
+  const { texture, draw } = createCanvasTexture(cell.width, cell.height * distances.length, quality);
   draw((context) => paintLabels(context, distances.map(distanceLabel)));
   const places = placesOf(distances);
   const boards = places.flatMap(({ x, z, turn, row }) => {

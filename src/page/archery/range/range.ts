@@ -1,6 +1,6 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
-import { mergeAlike } from '../../scene/merge-alike';
+import { mergeMeshes } from '../../scene/merge-meshes';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';
 import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
@@ -36,7 +36,7 @@ export function createRange(
   const around = new Group();
   around.name = 'landscape';
   around.add(createLandscape(quality), createBackstop(quality));
-  mergeAlike(around);
+  mergeMeshes(around);
   object.add(
     createSky(noise, towardsSun, quality),
     createGround(noise, distances),

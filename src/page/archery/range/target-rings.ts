@@ -1,5 +1,5 @@
 import { Color, type DataTexture, SRGBColorSpace } from 'three';
-import { createPixelTexture } from '../../scene/pixel-texture';
+import { createDataTexture } from '../../scene/data-texture';
 import type { Quality } from '../../scene/renderer';
 
 /**
@@ -60,7 +60,7 @@ export function createRingTexture(quality: Quality): DataTexture {
       pixels.set([red * scale, green * scale, blue * scale, 255], at);
     }
   }
-  const texture = createPixelTexture(pixels, side, quality);
+  const texture = createDataTexture(pixels, side, quality);
   texture.colorSpace = SRGBColorSpace;
   return texture;
 }

@@ -17,13 +17,13 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
-import { write } from 'threepoint-ui/vr-panel';
+import { drawText } from 'threepoint-ui/vr-panel';
+import { ink } from '../../scene/boards/board-style';
 import { createLabelQuad } from '../../scene/boards/label-quad';
-import { ink } from '../../scene/boards/lettering';
+import { createCanvasTexture, type DrawableTexture } from '../../scene/canvas-texture';
 import { disposeTree } from '../../scene/dispose-tree';
-import { createDrawnTexture, type DrawnTexture } from '../../scene/drawn-texture';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
-import { woodColor } from '../../scene/outdoors/wood';
+import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
 import { createRingTexture } from './target-rings';
@@ -148,9 +148,9 @@ function paintPlate(context: CanvasRenderingContext2D, row: number, points: numb
   context.strokeRect(9, 9, cell.width - 18, cell.height - 18);
   const writing = { font: '800 108px', align: 'center', baseline: 'middle' } as const;
   const middle = cell.height / 2 + 8;
-  if (scored === 0) write(context, String(points), [cell.width / 2, middle], { ...writing, color: ink.text });
+  if (scored === 0) drawText(context, String(points), [cell.width / 2, middle], { ...writing, color: ink.text });
   else {
-    write(context, String(scored), [cell.width * 0.64, middle], { ...writing, color: ink.accentInk });
+    drawText(context, String(scored), [cell.width * 0.64, middle], { ...writing, color: ink.accentInk });
     context.strokeStyle = ink.accentInk;
     context.lineWidth = 17;
     context.lineCap = context.lineJoin = 'round';
@@ -210,7 +210,7 @@ export class TargetStands {
   readonly #wood = new MeshLambertMaterial({ vertexColors: true });
   readonly #face: MeshLambertMaterial;
   readonly #glow = new MeshBasicMaterial({ color: '#ffffff' });
-  readonly #plates: DrawnTexture;
+  readonly #plates: DrawableTexture;
   readonly #plateMaterial: MeshBasicMaterial;
   readonly #size = new Matrix4();
   #built: readonly Target[] = [];
@@ -229,7 +229,7 @@ export class TargetStands {
     this.#quality = quality;
     this.object.name = 'targets';
     this.#face = new MeshLambertMaterial({ map: createRingTexture(quality) });
-    this.#plates = createDrawnTexture(cell.width, cell.height * 4, quality);
+    this.#plates = createCanvasTexture(cell.width, cell.height * 4, quality);
     this.#plateMaterial = new MeshBasicMaterial({ map: this.#plates.texture });
   }
 

@@ -9,12 +9,12 @@ import {
   Vector3,
 } from 'three';
 import { walls } from 'threepoint-games/archery/rules';
-import { createScatter } from '../../scene/outdoors/scatter';
+import { createRandomRange } from '../../scene/random-range';
 import { field } from './field';
 
 /** A few blades that lean apart; they are lit like the ground they grow from. */
 function tuftGeometry(): BufferGeometry {
-  const random = createScatter(97);
+  const random = createRandomRange(97);
   const positions: number[] = [];
   const normals: number[] = [];
   const colors: number[] = [];
@@ -49,7 +49,7 @@ function tuftGeometry(): BufferGeometry {
 
 /** Long grass where no mower comes: along ropes and nets, and scattered over the meadow. Arena frame. */
 export function createTufts(): InstancedMesh {
-  const random = createScatter(4177);
+  const random = createRandomRange(4177);
   const spots: { readonly x: number; readonly z: number; readonly size: number }[] = [];
   const near = Math.max(...walls.filter(({ axis }) => axis === 'z').map(({ at }) => at));
   const side = Math.max(...walls.filter(({ axis }) => axis === 'x').map(({ at }) => at));

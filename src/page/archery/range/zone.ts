@@ -9,7 +9,7 @@ import {
   PlaneGeometry,
   ShaderMaterial,
 } from 'three';
-import { bothSides } from '../../scene/both-sides';
+import { doubleSided } from '../../scene/double-sided';
 import { merged, paintedBox } from '../../scene/painted-geometry';
 import { field } from './field';
 
@@ -56,7 +56,7 @@ function createFence(): Mesh<BufferGeometry, ShaderMaterial> {
   const material = new ShaderMaterial({
     transparent: true,
     depthWrite: false,
-    ...bothSides,
+    ...doubleSided,
     fog: false,
     uniforms: {
       pulse: { value: 1 },

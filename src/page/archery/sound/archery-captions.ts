@@ -1,10 +1,10 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import type { ArcheryEvent, Landing, Target } from 'threepoint-games/archery/archery-state';
 import type { BowCue } from 'threepoint-games/archery/gestures';
-import { directionOf } from '../../scene/directions';
+import { directionText } from '../../scene/direction-text';
 
 /** Targets have numbers, from the nearest. */
-const nameOf = (index: number): string => `target ${index + 1}`;
+const targetName = (index: number): string => `target ${index + 1}`;
 
 /** Which target a landing missed and on which side, as the archer at the origin sees it: "left of target 2". */
 function missOf({ position }: Landing, targets: readonly Target[]): string | null {
@@ -19,19 +19,19 @@ function missOf({ position }: Landing, targets: readonly Target[]): string | nul
   }
   if (!nearest) return null;
   const { index, aside, ahead } = nearest;
-  if (Math.abs(aside) > Math.abs(ahead)) return `${aside < 0 ? 'left' : 'right'} of ${nameOf(index)}`;
-  return `${ahead < 0 ? 'short of' : 'beyond'} ${nameOf(index)}`;
+  if (Math.abs(aside) > Math.abs(ahead)) return `${aside < 0 ? 'left' : 'right'} of ${targetName(index)}`;
+  return `${ahead < 0 ? 'short of' : 'beyond'} ${targetName(index)}`;
 }
 
 function landingCaption(landing: Landing, targets: readonly Target[], head: Pose<'arena'>): string {
   if (landing.target !== null) {
     return landing.points > 0
-      ? `Hit: ${nameOf(landing.target)}, ${landing.points} points`
-      : `Hit: ${nameOf(landing.target)}, which had scored before`;
+      ? `Hit: ${targetName(landing.target)}, ${landing.points} points`
+      : `Hit: ${targetName(landing.target)}, which had scored before`;
   }
   const where = landing.on === 'ground' ? 'Arrow in the grass' : 'Arrow in the net';
   const miss = landing.on === 'ground' ? missOf(landing, targets) : null;
-  return `${where}, ${miss ?? directionOf(head, landing.position)}`;
+  return `${where}, ${miss ?? directionText(head, landing.position)}`;
 }
 
 const endings = { targets: 'every target has scored', arrows: 'all arrows are shot', time: 'time is up' } as const;
@@ -49,7 +49,7 @@ export function eventCaption(
     case 'landed':
       return landingCaption(event.landing, targets, head);
     case 'left-zone':
-      return `You left the deck: it is ${directionOf(head, { x: 0, y: 0, z: 0 })}`;
+      return `You left the deck: it is ${directionText(head, { x: 0, y: 0, z: 0 })}`;
     case 'entered-zone':
       return 'You are back on the deck';
     case 'ended':

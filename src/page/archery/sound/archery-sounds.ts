@@ -7,16 +7,16 @@ import type { BowCue } from 'threepoint-games/archery/gestures';
 import { positionAt } from 'threepoint-games/ballistics';
 import {
   createSoundStage,
-  type Player,
   type Recipe,
   type Recipes,
+  type SoundPlayer,
   type SoundStage,
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import { cueCaption, eventCaption } from './archery-captions';
 import { creak, earth, rattle, thud, twang } from './archery-synthesis';
 
-export interface SoundsOptions {
+export interface ArcherySoundsOptions {
   readonly floorFromArena: Transform<'floor', 'arena'>;
   readonly onCaption: (text: string) => void;
   /** Made at the first `unlock`; default: the browser's own. */
@@ -46,17 +46,17 @@ const recipes: Recipes = new Map<string, Recipe>([
 
 type Landed = Extract<ArcheryEvent, { type: 'landed' }>;
 
-const shareOf = (draw: number): number => Math.round(clamp(draw / maximumDraw, 0, 1) * drawSteps) / drawSteps;
+const drawFraction = (draw: number): number => Math.round(clamp(draw / maximumDraw, 0, 1) * drawSteps) / drawSteps;
 
-function playCue({ type, position, draw }: BowCue, { play }: Player): void {
-  if (type === 'creak') play(creakName(shareOf(draw)), position);
-  else if (type === 'released') play(twangName(shareOf(draw)), position);
+function playCue({ type, position, draw }: BowCue, { play }: SoundPlayer): void {
+  if (type === 'creak') play(creakName(drawFraction(draw)), position);
+  else if (type === 'released') play(twangName(drawFraction(draw)), position);
   else if (type === 'nocked' || type === 'taken' || type === 'cancelled') play('click', position);
   else if (type === 'lost') play('warning', position);
 }
 
 /** Plays the sounds of archery from where they happen, with captions. */
-export class Sounds {
+export class ArcherySounds {
   readonly #floorFromArena: Transform<'floor', 'arena'>;
   readonly #arenaFromFloor: Transform<'arena', 'floor'>;
   readonly #onCaption: (text: string) => void;
@@ -68,7 +68,7 @@ export class Sounds {
   /** The creaking of the bow was captioned in this draw. */
   #creaked = false;
 
-  constructor({ floorFromArena, onCaption, createContext }: SoundsOptions) {
+  constructor({ floorFromArena, onCaption, createContext }: ArcherySoundsOptions) {
     this.#floorFromArena = floorFromArena;
     this.#arenaFromFloor = invertTransform(floorFromArena);
     this.#onCaption = onCaption;
@@ -113,7 +113,7 @@ export class Sounds {
     if (text) this.#onCaption(text);
   }
 
-  #playEvent(event: ArcheryEvent, playing: Player): void {
+  #playEvent(event: ArcheryEvent, playing: SoundPlayer): void {
     if (event.type === 'released') this.#playFlight(event.arrow, playing);
     else if (event.type === 'landed') this.#playLanding(event, playing);
     else if (event.type === 'ended') playing.play('bell', this.#inFloor(vec3(-2, 2.4, -4)), 0.35);
@@ -121,14 +121,14 @@ export class Sounds {
   }
 
   /** A whoosh that goes along with the arrow. */
-  #playFlight({ id, release }: Arrow, { playAlong }: Player): void {
+  #playFlight({ id, release }: Arrow, { playAlong }: SoundPlayer): void {
     const seconds = Math.min(0.7, 14 / length(release.velocity));
     const source = playAlong('whoosh', seconds, (after) => this.#inFloor(positionAt(release, after)));
     this.#flying.set(id, source);
     source.addEventListener('ended', () => this.#flying.delete(id));
   }
 
-  #playLanding({ arrow, landing }: Landed, { play }: Player): void {
+  #playLanding({ arrow, landing }: Landed, { play }: SoundPlayer): void {
     this.#flying.get(arrow.id)?.stop();
     const at = this.#inFloor(landing.position);
     if (landing.on === 'target') play('thud', at);

@@ -1,5 +1,13 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../../scene/sound/sound-synthesis';
+import {
+  lowPass,
+  noiseFrom,
+  normalised,
+  render,
+  resonator,
+  type Samples,
+  tau,
+} from '../../scene/sound/sound-synthesis';
 
 /**
  * Wood under strain: stick and slip, higher, denser and louder the further it is drawn; draw as a share of the most, in
@@ -20,7 +28,7 @@ export function creak(rate: number, draw: number): Samples {
     const swell = Math.sin(Math.PI * Math.min(1, t / 0.16)) ** 0.8;
     return (body[0](push) + 0.7 * body[1](push) + 0.002 * noise()) * swell;
   });
-  return finished(samples, rate, 0.12 + 0.3 * strain);
+  return normalised(samples, rate, 0.12 + 0.3 * strain);
 }
 
 /** The string lets go: a plucked string that dies fast, and the slap of the limbs. */
@@ -38,7 +46,7 @@ export function twang(rate: number, draw: number): Samples {
     at = (at + 1) % period;
     return now * Math.exp(-t / 0.12) + 1.6 * slap(noise()) * Math.exp(-t / 0.012);
   });
-  return finished(samples, rate, 0.45 + 0.4 * strength);
+  return normalised(samples, rate, 0.45 + 0.4 * strength);
 }
 
 /** An arrow goes into straw: a dull blow with a crackle. */
@@ -49,7 +57,7 @@ export function thud(rate: number): Samples {
     const blow = Math.sin(tau * (78 * t + 2.1 * (1 - Math.exp(-t / 0.03)))) * Math.exp(-t / 0.07);
     return blow + 0.75 * straw(noise()) * Math.exp(-t / 0.022);
   });
-  return finished(samples, rate, 0.85);
+  return normalised(samples, rate, 0.85);
 }
 
 /** An arrow goes into the ground: lower, softer, grass about it. */
@@ -60,7 +68,7 @@ export function earth(rate: number): Samples {
     const blow = Math.sin(tau * (52 * t + 1.1 * (1 - Math.exp(-t / 0.03)))) * Math.exp(-t / 0.05);
     return 0.8 * blow + 1.1 * grass(noise()) * Math.exp(-t / 0.05);
   });
-  return finished(samples, rate, 0.55);
+  return normalised(samples, rate, 0.55);
 }
 
 /** An arrow is caught by a net: cords rattle. */
@@ -71,5 +79,5 @@ export function rattle(rate: number): Samples {
     const value = noise();
     return (value - low(value)) * Math.exp(-t / 0.11) * (0.35 + 0.65 * Math.max(0, Math.sin(tau * 31 * t)));
   });
-  return finished(samples, rate, 0.3);
+  return normalised(samples, rate, 0.3);
 }

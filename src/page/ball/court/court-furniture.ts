@@ -12,9 +12,9 @@ import {
 import { clamp } from 'threepoint/core/math/damper';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
-import { createScatter } from '../../scene/outdoors/scatter';
-import { woodColor } from '../../scene/outdoors/wood';
+import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted, paintedBox } from '../../scene/painted-geometry';
+import { createRandomRange } from '../../scene/random-range';
 import { court, seatLooks, trayOf } from './court-plan';
 
 /** A tray on four legs with a rim in its thrower's colour. */
@@ -118,7 +118,7 @@ function bunting(x: number, fromZ: number, toZ: number): BufferGeometry[] {
 export function createCourtFurniture(balls: number): Group {
   const furniture = new Group();
   furniture.name = 'furniture';
-  const random = createScatter(611);
+  const random = createRandomRange(611);
   const racks = new Mesh(
     merged([...rack(0, balls), ...rack(1, balls)]),
     // The pennants have two sides; racks of the same material are drawn with them in one call.

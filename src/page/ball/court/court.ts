@@ -1,6 +1,6 @@
 import { Group, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
-import { mergeAlike } from '../../scene/merge-alike';
+import { mergeMeshes } from '../../scene/merge-meshes';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';
 import { createNoiseTexture } from '../../scene/outdoors/noise-texture';
@@ -22,7 +22,7 @@ export function createCourt(quality: Quality, balls: number) {
   object.name = 'ball court';
   const noise = createNoiseTexture(quality);
   const furniture = createCourtFurniture(balls);
-  mergeAlike(furniture);
+  mergeMeshes(furniture);
   object.add(createSky(noise, towardsSun, quality), createCourtGround(noise), createLandscape(quality), furniture);
   return {
     object,

@@ -2,7 +2,7 @@ import { Mesh, MeshBasicMaterial, RingGeometry } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { zoneRadius } from 'threepoint-games/ball/stations';
-import { bothSides } from '../../scene/both-sides';
+import { doubleSided } from '../../scene/double-sided';
 
 /** It begins to show this far before the edge [m]. */
 const notice = 0.4;
@@ -13,7 +13,7 @@ export function createZoneRing() {
     color: '#ff9d1f',
     transparent: true,
     opacity: 0,
-    ...bothSides,
+    ...doubleSided,
     depthWrite: false,
   });
   const mesh = new Mesh(new RingGeometry(zoneRadius - 0.05, zoneRadius, 96).rotateX(-Math.PI / 2), material);

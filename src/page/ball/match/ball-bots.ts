@@ -11,10 +11,10 @@ import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-cl
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { type BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
-import { createHolder } from 'threepoint-games/ball/holder-motion';
 import type { PlayerBody } from 'threepoint-games/ball/player-postures';
+import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
+import { type BallBot, createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
-import { type BallBot, createThrower } from 'threepoint-games/ball/thrower-motion';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 
@@ -24,7 +24,7 @@ const movesPerSecond = 60;
 const longestCatchUp = 1;
 
 /** Returns the moments since the last one at which a simulated player moves; the last is now. */
-export function momentsUntil(time: number, last: number | null): readonly number[] {
+export function stepTimes(time: number, last: number | null): readonly number[] {
   const passed = last === null ? 0 : time - last;
   if (passed > longestCatchUp) return [time];
   const count = Math.max(1, Math.floor(passed * movesPerSecond));
@@ -43,20 +43,20 @@ export const bodyAt = (station: number, calibration: Calibration): PlayerBody =>
 });
 
 /** Creates the simulated player of a station. `seed`: for the scatter of its throws. */
-export function actorFor(station: number, calibration: Calibration, seed: number): BallBot {
+export function createSimulatedPlayer(station: number, calibration: Calibration, seed: number): BallBot {
   const body = bodyAt(station, calibration);
-  return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
+  return station === holderStation ? createSimulatedHolder(body) : createSimulatedThrower(body, seed + 31 * station);
 }
 
 /** What simulated players know about the court in addition to the state of the match. */
-export interface CourtSight {
+export interface CourtView {
   /** The total time for which the match's clock was paused [s]: simulated players stand still meanwhile. */
   pausedSeconds: number;
   opening: Opening | null;
 }
 
 /** Creates the gestures of the player on this connection. */
-export function gesturesOf(of: BallConnection): BallGestures {
+export function createGestures(of: BallConnection): BallGestures {
   return new BallGestures(() => {
     const seen = of.room;
     const seat = seen?.mySeat ?? 0;
@@ -71,7 +71,7 @@ export function gesturesOf(of: BallConnection): BallGestures {
 }
 
 /** Sends the actions of a player's frame. While the clock is paused, hands do nothing. */
-export function play(
+export function playFrame(
   of: BallConnection,
   gestures: BallGestures,
   frame: TrackingFrame,
@@ -89,37 +89,37 @@ export function play(
 export const stationOf = (seen: BallRoomView, seat: number): number => seen.match?.players[seat]?.station ?? seat;
 
 /** Returns head, hands and buttons of a simulated player. Its own time stops while the match is paused. */
-export function performedAt(
+export function simulatedInput(
   actor: BallBot,
   time: number,
   state: BallState,
   player: number,
-  { pausedSeconds, opening }: CourtSight,
+  { pausedSeconds, opening }: CourtView,
 ): PlayerInput {
   const done = actor.follow(time - pausedSeconds, { state, player, ...(opening && { basket: opening.position }) });
   return pausedSeconds === 0 ? done : { ...done, frame: { ...done.frame, time } };
 }
 
 /** A simulated player on a connection, and the estimator that solves its body. */
-export interface Mover {
-  readonly line: BallConnection;
+export interface SimulatedSeat {
+  readonly connection: BallConnection;
   readonly gestures: BallGestures;
-  readonly actor: BallBot;
+  readonly player: BallBot;
   readonly estimator: PoseEstimator;
 }
 
 /** Plays one moment of a simulated player: sends its actions and its solved body. */
-export function moveOnce(
-  { line, gestures, actor, estimator }: Mover,
+export function stepSimulated(
+  { connection, gestures, player, estimator }: SimulatedSeat,
   moment: number,
-  sight: CourtSight,
+  sight: CourtView,
 ): BallGestureFrame | null {
-  const seen = line.room;
+  const seen = connection.room;
   if (!seen?.match || seen.mySeat === null) return null;
-  const { frame, buttons } = performedAt(actor, moment, seen.match, seen.mySeat, sight);
+  const { frame, buttons } = simulatedInput(player, moment, seen.match, seen.mySeat, sight);
   const { pose } = estimator.update(frame);
-  line.sendPose(moment, { jump: false, pose, fingers: fingersOfButtons(buttons) });
-  return play(line, gestures, frame, buttons);
+  connection.sendPose(moment, { jump: false, pose, fingers: fingersOfButtons(buttons) });
+  return playFrame(connection, gestures, frame, buttons);
 }
 
 /** Bots of different build. Labels mark them as bots. */
@@ -162,7 +162,7 @@ export class BallBots {
 
   constructor(
     private readonly options: BotsOptions,
-    private readonly sight: CourtSight,
+    private readonly sight: CourtView,
   ) {}
 
   /**
@@ -229,12 +229,12 @@ export class BallBots {
     const seen = line.room;
     if (!seen || seen.mySeat === null || !seen.match) return;
     const { match, mySeat } = seen;
-    bot.gestures ??= gesturesOf(line);
+    bot.gestures ??= createGestures(line);
     if (update.changes.length > 0) bot.gestures.resume();
     bot.gestures.onEvents(update.events);
     const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
-    const mover = { line, gestures: bot.gestures, actor, estimator };
-    for (const moment of momentsUntil(time, bot.movedAt)) moveOnce(mover, moment, this.sight);
+    const seat = { connection: line, gestures: bot.gestures, player: actor, estimator };
+    for (const moment of stepTimes(time, bot.movedAt)) stepSimulated(seat, moment, this.sight);
     bot.movedAt = time;
     const me = match.players[mySeat];
     if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) line.setReady(true);
@@ -244,7 +244,7 @@ export class BallBots {
   private actorOf(bot: Bot, station: number, phase: BallState['phase'], seat: number): BallBot {
     const fresh = phase === 'ready';
     if (!bot.actor || ((bot.station !== station || bot.fresh !== fresh) && phase !== 'running')) {
-      bot.actor = actorFor(station, bot.calibration, this.options.seed + seat);
+      bot.actor = createSimulatedPlayer(station, bot.calibration, this.options.seed + seat);
       bot.station = station;
       bot.fresh = fresh;
     }

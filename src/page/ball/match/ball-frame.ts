@@ -17,7 +17,7 @@ import type { BallEvent, BallPlace, BallRole, BallState } from 'threepoint-games
 import { basketInHands, type Opening } from 'threepoint-games/ball/basket';
 import { ballRadius } from 'threepoint-games/ball/flight';
 import type { BallCue } from 'threepoint-games/ball/gestures';
-import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-readings';
+import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-selectors';
 import { isInZone } from 'threepoint-games/ball/stations';
 import type { Launch } from 'threepoint-games/ballistics';
 import { ballInPalm } from 'threepoint-games/fist';
@@ -157,7 +157,7 @@ export class CourtPeople {
   private readonly head = vec3(0, 0, 0);
 
   /** Updates all people. `frame`: the user's hands, null if nothing is tracked. */
-  look(line: BallConnection, seen: BallRoomView, frame: TrackingFrame | null, others: readonly RemotePerson[]): void {
+  update(line: BallConnection, seen: BallRoomView, frame: TrackingFrame | null, others: readonly RemotePerson[]): void {
     const { seats, mySeat } = seen;
     const shown = seen.match;
     this.players.length = seats.length;

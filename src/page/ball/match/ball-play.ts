@@ -14,7 +14,7 @@ import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
-import { BallBots, type CourtSight, gesturesOf, play, readyAfter } from './ball-bots';
+import { BallBots, type CourtView, createGestures, playFrame, readyAfter } from './ball-bots';
 import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
 import { joined, SimulatedPlayer } from './simulated-player';
 
@@ -41,7 +41,7 @@ const none: readonly never[] = [];
 export class BallPlay {
   newest: BallFrame | null = null;
   private readonly client: RoomClient<BallGame>;
-  private readonly sight: CourtSight = { pausedSeconds: 0, opening: null };
+  private readonly sight: CourtView = { pausedSeconds: 0, opening: null };
   private readonly bots: BallBots;
   private readonly simulated: SimulatedPlayer;
   private readonly people = new CourtPeople();
@@ -103,7 +103,7 @@ export class BallPlay {
    */
   act(time: number, catchUp = true): PlayerInput | null {
     if (!this.connection) return null;
-    this.gestures ??= gesturesOf(this.connection);
+    this.gestures ??= createGestures(this.connection);
     return this.simulated.act(this.connection, this.gestures, time, catchUp);
   }
 
@@ -118,12 +118,12 @@ export class BallPlay {
     const me = before.mySeat;
     let played: BallGestureFrame | null = null;
     if (frame && me !== null) {
-      this.gestures ??= gesturesOf(line);
-      played = play(line, this.gestures, frame, buttons);
+      this.gestures ??= createGestures(line);
+      played = playFrame(line, this.gestures, frame, buttons);
     }
     const seen = line.room ?? before;
     const state = seen.match ?? before.match;
-    this.people.look(line, seen, frame, this.client.people);
+    this.people.update(line, seen, frame, this.client.people);
     const { players, bodies, opening } = this.people;
     this.sight.opening = opening;
     const missed = this.simulated.takeMissed();

@@ -1,8 +1,8 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
-import { ballSecondsLeft } from 'threepoint-games/ball/state-readings';
+import { ballSecondsLeft } from 'threepoint-games/ball/state-selectors';
 
 /** The displayed clock of a match. After its end it stays at the time that was left. */
-export function createMatchClock() {
+export function createDisplayedClock() {
   let secondsLeft = 0;
   return {
     /** Until the bell [s]. */

@@ -7,7 +7,7 @@ import type { BallPlay } from './ball-play';
 const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
 
 /** The other players as they are drawn now. */
-export function playersOf(
+export function playerProbes(
   { newest, room }: Pick<BallPlay, 'newest' | 'room'>,
   others: Pick<RoomBodies, 'jointsOf' | 'drawnAs'>,
 ): readonly PlayerProbe[] {

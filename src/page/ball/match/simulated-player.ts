@@ -3,6 +3,7 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { zero } from 'threepoint/core/math/vec3';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallCue, BallGestures } from 'threepoint-games/ball/gestures';
+import type { BallBot } from 'threepoint-games/ball/simulated-thrower';
 import { holderStation } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
@@ -10,11 +11,19 @@ import {
   createSteeredThrower,
   type SteeredPlayer,
 } from 'threepoint-games/ball/steered-players';
-import type { BallBot } from 'threepoint-games/ball/thrower-motion';
 import type { Launch } from 'threepoint-games/ballistics';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import type { PlayerInput } from 'threepoint-games/simulated-body';
-import { actorFor, bodyAt, type CourtSight, momentsUntil, moveOnce, performedAt, play, stationOf } from './ball-bots';
+import {
+  bodyAt,
+  type CourtView,
+  createSimulatedPlayer,
+  playFrame,
+  simulatedInput,
+  stationOf,
+  stepSimulated,
+  stepTimes,
+} from './ball-bots';
 
 const idle: BallSteering = {
   ray: { origin: zero, direction: { x: 0, y: 0, z: -1 } },
@@ -41,7 +50,7 @@ export interface SimulatedPlayerOptions {
 /** The player on the user's seat while no person wears a headset: a bot, or a body that follows the mouse. */
 export class SimulatedPlayer {
   readonly #options: SimulatedPlayerOptions;
-  readonly #sight: CourtSight;
+  readonly #sight: CourtView;
   /** Solves the bodies of moments between two pictures. */
   readonly #between;
   #calibration: Calibration;
@@ -51,7 +60,7 @@ export class SimulatedPlayer {
   #cues: readonly BallCue[] = none;
   #haptics: readonly HapticPulse[] = none;
 
-  constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: CourtSight) {
+  constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: CourtView) {
     this.#options = options;
     this.#sight = sight;
     this.#calibration = calibration;
@@ -80,12 +89,12 @@ export class SimulatedPlayer {
     const { bot, replaced } = this.#player(view, view.mySeat);
     if (replaced) {
       // The move from the previous hands to these is not a throw.
-      const { frame, buttons } = performedAt(bot, time, view.match, view.mySeat, this.#sight);
-      play(line, gestures, { ...frame, suspended: true }, buttons);
+      const { frame, buttons } = simulatedInput(bot, time, view.match, view.mySeat, this.#sight);
+      playFrame(line, gestures, { ...frame, suspended: true }, buttons);
       this.#actedAt = time;
     }
     if (catchUp) this.#catchUp(line, gestures, bot, time);
-    return performedAt(bot, time, line.room?.match ?? view.match, view.mySeat, this.#sight);
+    return simulatedInput(bot, time, line.room?.match ?? view.match, view.mySeat, this.#sight);
   }
 
   /** Returns cues and haptics of the moments between two pictures, once. */
@@ -111,7 +120,7 @@ export class SimulatedPlayer {
     if (current && (same || (!replaced && phase === 'running'))) return { bot: current.bot, replaced };
     const bot = this.#steering
       ? this.#steered(station)
-      : actorFor(station, this.#calibration, this.#options.seed + seat);
+      : createSimulatedPlayer(station, this.#calibration, this.#options.seed + seat);
     this.#current = { station, eyeHeight, since, bot };
     return { bot, replaced };
   }
@@ -123,11 +132,11 @@ export class SimulatedPlayer {
 
   /** Plays the moments before the current picture. */
   #catchUp(line: BallConnection, gestures: BallGestures, actor: BallBot, time: number): void {
-    const moments = momentsUntil(time, this.#actedAt);
+    const moments = stepTimes(time, this.#actedAt);
     this.#actedAt = time;
-    const mover = { line, gestures, actor, estimator: this.#between };
+    const seat = { connection: line, gestures, player: actor, estimator: this.#between };
     for (let i = 0; i < moments.length - 1; i++) {
-      const done = moveOnce(mover, moments[i]!, this.#sight);
+      const done = stepSimulated(seat, moments[i]!, this.#sight);
       this.#cues = joined(this.#cues, done?.cues);
       this.#haptics = joined(this.#haptics, done?.haptics);
     }

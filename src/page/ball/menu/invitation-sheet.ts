@@ -1,6 +1,6 @@
 import type { RoomLink } from 'threepoint-ui/invitation';
 import { drawQrCode, type QrCode } from 'threepoint-ui/qr-code';
-import { vrColors, write, writeLines } from 'threepoint-ui/vr-panel';
+import { drawText, drawTextLines, vrColors } from 'threepoint-ui/vr-panel';
 import { bottomButton, fullWidth, type MenuSheet, menuMargin } from '../../activity/activity-menu';
 
 /** The link to a room with its QR code. */
@@ -15,18 +15,18 @@ function drawInvitation(context: CanvasRenderingContext2D, { room, address, limi
   if (typeof code === 'object') drawQrCode(context, code, [menuMargin, 116, fullWidth]);
   else {
     const text = code === 'loading' ? 'The code is loading.' : 'The code could not be loaded. Use the address.';
-    writeLines(context, text, [menuMargin, 300, fullWidth], 44, { font: '500 34px', color: inkSoft, baseline });
+    drawTextLines(context, text, [menuMargin, 300, fullWidth], 44, { font: '500 34px', color: inkSoft, baseline });
   }
-  write(context, `Room ${room}`, [menuMargin, 732], { font: '650 52px', color: ink, baseline, most: fullWidth });
+  drawText(context, `Room ${room}`, [menuMargin, 732], { font: '650 52px', color: ink, baseline, maxWidth: fullWidth });
   // An address has no spaces: it is broken before its query.
   const [place = address, query] = address.split(/(?=\?)/);
   for (const [index, line] of [place, query ?? ''].entries()) {
     const at = [menuMargin, 794 + index * 46] as const;
-    write(context, line, at, { font: '500 34px', color: ink, baseline, most: fullWidth });
+    drawText(context, line, at, { font: '500 34px', color: ink, baseline, maxWidth: fullWidth });
   }
   if (limit === null) return;
   const small = { font: '400 22px', color: inkSoft, baseline } as const;
-  writeLines(context, limit, [menuMargin, 888, fullWidth], 28, small, 3);
+  drawTextLines(context, limit, [menuMargin, 888, fullWidth], 28, small, 3);
 }
 
 /** Shows other people how to join the room, in the headset. */

@@ -1,4 +1,4 @@
-import { vrColors, write } from 'threepoint-ui/vr-panel';
+import { drawText, vrColors } from 'threepoint-ui/vr-panel';
 import {
   bottomButton,
   buttonGap,
@@ -52,14 +52,19 @@ function drawPlayers(context: CanvasRenderingContext2D, players: readonly OtherP
   const baseline = 'middle';
   for (const [row, { name, role, status }] of players.entries()) {
     const top = playersTop + row * playerHeight;
-    const most = fullWidth - 8;
-    write(context, name, [menuMargin + 4, top + 24], { font: '650 40px', color: vrColors.ink, baseline, most });
+    const maxWidth = fullWidth - 8;
+    drawText(context, name, [menuMargin + 4, top + 24], { font: '650 40px', color: vrColors.ink, baseline, maxWidth });
     const about = [role, status].filter(Boolean).join(' · ');
-    write(context, about, [menuMargin + 4, top + 70], { font: '500 28px', color: vrColors.inkSoft, baseline, most });
+    drawText(context, about, [menuMargin + 4, top + 70], {
+      font: '500 28px',
+      color: vrColors.inkSoft,
+      baseline,
+      maxWidth,
+    });
   }
   if (players.length > 0) return;
   const alone = { font: '500 34px', color: vrColors.inkSoft, baseline } as const;
-  write(context, 'You are alone here.', [menuMargin + 4, playersTop + 24], alone);
+  drawText(context, 'You are alone here.', [menuMargin + 4, playersTop + 24], alone);
 }
 
 /** Lists the other players in the headset, with buttons to mute and to hide each. */

@@ -1,12 +1,12 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
-import { ballsLeft } from 'threepoint-games/ball/state-readings';
+import { ballsLeft } from 'threepoint-games/ball/state-selectors';
 import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
 import { roleTexts } from '../court/court-plan';
 import type { BallFrame } from '../match/ball-frame';
 import type { BallPlay } from '../match/ball-play';
-import { nameOf, waitingFor } from '../view/board-drawing';
+import { displayName, waitingSentence } from '../view/board-drawing';
 import type { PersonVoice, VoicesState } from '../voices/voices-state';
-import type { Seated } from './other-players';
+import type { SeatRow } from './other-players';
 
 /** A match as panels and menus show it. */
 export interface BallRound {
@@ -35,7 +35,7 @@ export interface BallRound {
   readonly rotate: boolean;
   readonly spectators: number;
   /** All seats; `free`: a person can take it. */
-  readonly people: readonly (Seated & { readonly free: boolean })[];
+  readonly people: readonly (SeatRow & { readonly free: boolean })[];
   readonly voices: VoicesState;
 }
 
@@ -57,7 +57,7 @@ export function ballRound({ play, frame, players, secondsLeft, acting, voices }:
   const { state, me, rotate, spectators, paused } = frame;
   const ended = play.status.phase === 'ended';
   const own = me === null ? null : state.players[me];
-  const standing = { state, seconds: Math.ceil(secondsLeft), people: players, me, rotate, acting };
+  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, rotate, acting };
   const delay = play.room?.responseTime ?? null;
   return {
     phase: state.phase,
@@ -67,7 +67,7 @@ export function ballRound({ play, frame, players, secondsLeft, acting, voices }:
     secondsLeft,
     seconds: state.options.seconds,
     paused,
-    waiting: ended ? null : waitingFor(standing),
+    waiting: ended ? null : waitingSentence(standing),
     connection: delay === null || ended ? null : connectionText(delay),
     ended: ended ? (bannerText(play.status) ?? 'The connection has ended.') : null,
     throws: own?.role === 'thrower',
@@ -78,7 +78,7 @@ export function ballRound({ play, frame, players, secondsLeft, acting, voices }:
     spectators,
     people: players.map((player, seat) => ({
       seat,
-      name: player && (player.me ? player.name : nameOf(player)),
+      name: player && (player.me ? player.name : displayName(player)),
       role: roleOf(state, seat),
       free: player === null || (player.bot && !player.me),
       ...voices.seats.voiceOf(seat),

@@ -1,7 +1,7 @@
 import type { PersonVoice } from '../voices/voices-state';
 
 /** A seat of the room, and the voice of its player. */
-export interface Seated extends PersonVoice {
+export interface SeatRow extends PersonVoice {
   readonly seat: number;
   /** null: no player is there. */
   readonly name: string | null;
@@ -35,7 +35,7 @@ function voiceText({ voice, link, silenced }: PersonVoice): string {
  * voices.
  */
 export const otherPlayers = (
-  { seat: own, people }: { readonly seat: number | null; readonly people: readonly Seated[] },
+  { seat: own, people }: { readonly seat: number | null; readonly people: readonly SeatRow[] },
   inVoices: boolean,
 ): readonly OtherPlayer[] =>
   people.flatMap((person): OtherPlayer[] => {

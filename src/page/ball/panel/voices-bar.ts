@@ -1,13 +1,13 @@
 import { button, element } from 'threepoint-ui/element';
 import { toggle } from 'threepoint-ui/toggle';
 import { consentText, type VoicesState } from '../voices/voices-state';
-import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type Seated } from './other-players';
+import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type SeatRow } from './other-players';
 
 /** The people in the room, for this part of the bar. */
 export interface ListedPeople {
   /** The own one; null: a spectator. */
   readonly seat: number | null;
-  readonly people: readonly Seated[];
+  readonly people: readonly SeatRow[];
 }
 
 export interface VoicesBarActions {

@@ -2,8 +2,8 @@ import type { Pose } from 'threepoint/core/math/pose';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, Refusal } from 'threepoint-games/ball/ball-state';
 import type { BallCue } from 'threepoint-games/ball/gestures';
-import { directionOf } from '../../scene/directions';
-import { nameOf, type Person } from '../view/board-drawing';
+import { directionText } from '../../scene/direction-text';
+import { type DisplayedPlayer, displayName } from '../view/board-drawing';
 
 /** The listener, and the positions of the other players. */
 export interface Listener {
@@ -11,14 +11,14 @@ export interface Listener {
   readonly head: Pose<'arena'>;
   /** Own player; null: a spectator. */
   readonly me: number | null;
-  readonly people: readonly (Person | null)[];
+  readonly people: readonly (DisplayedPlayer | null)[];
   /** Seconds of a match. */
   readonly seconds: number;
 }
 
-const whoIs = ({ people, me }: Listener, player: number): string => {
+const playerName = ({ people, me }: Listener, player: number): string => {
   const person = people[player];
-  return player === me ? 'You' : person ? nameOf(person) : 'A player';
+  return player === me ? 'You' : person ? displayName(person) : 'A player';
 };
 
 const refusals: Partial<Readonly<Record<Refusal, string>>> = {
@@ -31,12 +31,12 @@ const refusals: Partial<Readonly<Record<Refusal, string>>> = {
 
 /** What an event sounds like, in words and, where it has a place, with its direction; null: nothing. */
 export function eventCaption(event: BallEvent, at: Vec3 | null, listener: Listener): string | null {
-  const where = at ? `, ${directionOf(listener.head, at)}` : '';
+  const where = at ? `, ${directionText(listener.head, at)}` : '';
   switch (event.type) {
     case 'started':
       return `Whistle: ${Math.round(listener.seconds)} seconds`;
     case 'thrown':
-      return event.player === listener.me ? null : `${whoIs(listener, event.player)} throws${where}`;
+      return event.player === listener.me ? null : `${playerName(listener, event.player)} throws${where}`;
     case 'caught':
       return `Caught: ${event.score} ${event.score === 1 ? 'point' : 'points'}`;
     case 'bounced':
@@ -44,9 +44,9 @@ export function eventCaption(event: BallEvent, at: Vec3 | null, listener: Listen
     case 'missed':
       return `The ball lands on the floor${where}`;
     case 'joined':
-      return event.player === listener.me ? null : `${whoIs(listener, event.player)} joins`;
+      return event.player === listener.me ? null : `${playerName(listener, event.player)} joins`;
     case 'left':
-      return event.player === listener.me ? null : `${whoIs(listener, event.player)} leaves`;
+      return event.player === listener.me ? null : `${playerName(listener, event.player)} leaves`;
     case 'ended':
       return `Bell: ${event.end === 'time' ? 'time is up' : 'all balls are thrown'}, ${event.score} ${event.score === 1 ? 'point' : 'points'}`;
     case 'refused':

@@ -4,28 +4,28 @@ import { add, length, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
 import { ballInAir } from 'threepoint-games/ball/flight';
 import type { BallCue } from 'threepoint-games/ball/gestures';
-import { ballSecondsLeft } from 'threepoint-games/ball/state-readings';
+import { ballSecondsLeft } from 'threepoint-games/ball/state-selectors';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
 import {
   createSoundStage,
-  type Player,
   type Recipe,
   type Recipes,
+  type SoundPlayer,
   type SoundStage,
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import type { PlayerFrame } from '../match/ball-frame';
-import type { Person } from '../view/board-drawing';
+import type { DisplayedPlayer } from '../view/board-drawing';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 
 /** One frame of a match for the ears. */
-export interface Played {
+export interface SoundFrame {
   readonly state: BallState;
   readonly events: readonly BallEvent[];
   readonly cues: readonly BallCue[];
   readonly me: number | null;
-  readonly people: readonly (Person | null)[];
+  readonly people: readonly (DisplayedPlayer | null)[];
   /** The position of a ball in each of the user's hands, arena frame; null: the hand is not tracked. */
   readonly palms: PlayerFrame['palms'];
 }
@@ -48,7 +48,7 @@ const boardAt = vec3(0, 3, -6);
 const headOfStation = (station: number): Vec3 => add((stations[station] ?? stations[0]!).position, vec3(0, 1.4, 0));
 
 /** Returns the position of an event's sound, arena frame; null: it has no position. */
-export function placeOf(event: BallEvent, state: BallState): Vec3 | null {
+export function soundPosition(event: BallEvent, state: BallState): Vec3 | null {
   switch (event.type) {
     case 'thrown':
     case 'bounced':
@@ -88,7 +88,7 @@ export class BallSounds {
     this.stage = createSoundStage(recipes, createContext);
   }
 
-  playEvents(played: Played): void {
+  playEvents(played: SoundFrame): void {
     const playing = this.stage.player;
     const { state, events, cues, people, me, palms } = played;
     const head = transformPose(invertTransform(this.#floorFromArena), this.#head);
@@ -98,7 +98,7 @@ export class BallSounds {
       if (playing) this.#playCue(cue, palms, playing);
     }
     for (const event of events) {
-      this.#caption(eventCaption(event, placeOf(event, state), listener));
+      this.#caption(eventCaption(event, soundPosition(event, state), listener));
       if (playing) this.#playEvent(event, played, playing);
     }
     this.#tick(state, playing);
@@ -124,22 +124,22 @@ export class BallSounds {
   }
 
   /** The last ten seconds tick. */
-  #tick(state: BallState, playing: Player | null): void {
+  #tick(state: BallState, playing: SoundPlayer | null): void {
     const left = state.phase === 'running' ? Math.ceil(ballSecondsLeft(state)) : 0;
     if (playing && left > 0 && left <= 10 && left !== this.#ticked) playing.play('tick', this.#inFloor(boardAt));
     this.#ticked = left;
   }
 
-  #playCue({ type, side }: BallCue, palms: Played['palms'], { play }: Player): void {
+  #playCue({ type, side }: BallCue, palms: SoundFrame['palms'], { play }: SoundPlayer): void {
     const at = palms[side];
     if (!at) return;
     if (type === 'grabbed' || type === 'dropped') play('click', this.#inFloor(at));
     else if (type === 'slipped') play('warning', this.#inFloor(at));
   }
 
-  #playEvent(event: BallEvent, { state, me }: Played, playing: Player): void {
+  #playEvent(event: BallEvent, { state, me }: SoundFrame, playing: SoundPlayer): void {
     const { play } = playing;
-    const at = placeOf(event, state);
+    const at = soundPosition(event, state);
     switch (event.type) {
       case 'started':
         play('whistle', this.#inFloor(boardAt));
@@ -169,7 +169,7 @@ export class BallSounds {
   }
 
   /** A whoosh that goes along with the ball. */
-  #playFlight(launch: TimedLaunch, { playAlong }: Player): void {
+  #playFlight(launch: TimedLaunch, { playAlong }: SoundPlayer): void {
     playAlong('whoosh', 0.6, (after) => this.#inFloor(ballInAir(launch, launch.time + after)));
   }
 }

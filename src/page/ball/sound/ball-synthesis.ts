@@ -1,5 +1,13 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { finished, lowPass, noiseFrom, render, resonator, type Samples, tau } from '../../scene/sound/sound-synthesis';
+import {
+  lowPass,
+  noiseFrom,
+  normalised,
+  render,
+  resonator,
+  type Samples,
+  tau,
+} from '../../scene/sound/sound-synthesis';
 
 /** A ball on the floor: a short boom, the lower and louder the harder; strength in [0, 1]. */
 export function bounce(rate: number, strength: number): Samples {
@@ -10,7 +18,7 @@ export function bounce(rate: number, strength: number): Samples {
     const boom = Math.sin(tau * (118 * t + 1.7 * (1 - Math.exp(-t / 0.02)))) * Math.exp(-t / 0.05);
     return boom + 0.45 * slap(noise()) * Math.exp(-t / 0.008);
   });
-  return finished(samples, rate, 0.25 + 0.45 * hard);
+  return normalised(samples, rate, 0.25 + 0.45 * hard);
 }
 
 /** A ball falls into wicker: a soft blow and a rustle. */
@@ -22,7 +30,7 @@ export function caughtInWicker(rate: number): Samples {
     const push = noise() * (Math.exp(-t / 0.05) + 0.35 * Math.exp(-Math.abs(t - 0.09) / 0.02));
     return 0.8 * blow + 0.9 * (twigs[0](push) + 0.6 * twigs[1](push));
   });
-  return finished(samples, rate, 0.7);
+  return normalised(samples, rate, 0.7);
 }
 
 /** The rim: a woody knock. */
@@ -33,7 +41,7 @@ export function knock(rate: number): Samples {
     const push = noise() * Math.exp(-t / 0.004);
     return wood[0](push) + 0.6 * wood[1](push);
   });
-  return finished(samples, rate, 0.55);
+  return normalised(samples, rate, 0.55);
 }
 
 /** A referee's whistle: two trills. */
@@ -48,7 +56,7 @@ export function whistle(rate: number): Samples {
     const trill = 1 + 0.35 * Math.sin(tau * 38 * t);
     return (Math.sin(tau * 2350 * t + 0.9 * Math.sin(tau * 38 * t)) * trill + 0.12 * noise()) * swell;
   });
-  return finished(samples, rate, 0.3);
+  return normalised(samples, rate, 0.3);
 }
 
 /** The last seconds: a short wooden tick. */
@@ -56,5 +64,5 @@ export function tick(rate: number): Samples {
   const noise = noiseFrom(853);
   const wood = resonator(rate, 1150, 90);
   const samples = render(rate, 0.09, (t) => wood(noise() * Math.exp(-t / 0.003)));
-  return finished(samples, rate, 0.22);
+  return normalised(samples, rate, 0.22);
 }

@@ -11,8 +11,8 @@ import {
 } from 'three';
 import { landsIn, type Opening } from 'threepoint-games/ball/basket';
 import { basketRadius } from 'threepoint-games/ball/flight';
-import { fallsTo, type Launch, positionAt } from 'threepoint-games/ballistics';
-import { bothSides } from '../../scene/both-sides';
+import { fallTime, type Launch, positionAt } from 'threepoint-games/ballistics';
+import { doubleSided } from '../../scene/double-sided';
 
 const dots = 36;
 /** The radius of the first dot [m]; the last is half as large. */
@@ -31,7 +31,7 @@ export function createAimArc() {
   const seen = { transparent: true, opacity: 0.9, depthWrite: false, depthTest: false, fog: false, toneMapped: false };
   const material = new MeshBasicMaterial({ color: beside, ...seen });
   const path = new InstancedMesh(new SphereGeometry(1, 10, 8), material, dots);
-  const ringMaterial = new MeshBasicMaterial({ color: beside, ...bothSides, ...seen });
+  const ringMaterial = new MeshBasicMaterial({ color: beside, ...doubleSided, ...seen });
   const ring = new Mesh(new RingGeometry(basketRadius - 0.06, basketRadius, 40).rotateX(-Math.PI / 2), ringMaterial);
   for (const part of [path, ring]) {
     part.frustumCulled = false;
@@ -51,7 +51,7 @@ export function createAimArc() {
     show(launch: Launch | null, { position: basket }: Pick<Opening, 'position'>): void {
       object.visible = launch !== null;
       if (!launch) return;
-      const seconds = fallsTo(launch, basket.y);
+      const seconds = fallTime(launch, basket.y);
       const lands = positionAt(launch, seconds);
       const shown = Math.min(dots, Math.floor(seconds / apart));
       for (let i = 0; i < shown; i++) {

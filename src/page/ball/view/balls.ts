@@ -25,7 +25,7 @@ import {
 import type { BallPlace, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from 'threepoint-games/ball/flight';
-import { ballPosition } from 'threepoint-games/ball/state-readings';
+import { ballPosition } from 'threepoint-games/ball/state-selectors';
 import { ballsPerRack } from 'threepoint-games/ball/stations';
 import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
@@ -76,7 +76,7 @@ interface Approach {
 const makeApproach = (): Approach => ({ launchedAt: Number.NaN, from: vec3(0, 0, 0), height: Number.NaN, isIn: false });
 
 /** What has gone down through the opening goes no further than the basket's bottom. */
-function stoppedBy({ position: middle, normal }: Opening, position: Vec3, launchedAt: number, way: Approach): Vec3 {
+function stopInBasket({ position: middle, normal }: Opening, position: Vec3, launchedAt: number, way: Approach): Vec3 {
   if (way.launchedAt !== launchedAt) way.height = Number.NaN;
   way.launchedAt = launchedAt;
   const from = subtract(position, middle);
@@ -119,7 +119,7 @@ function turnedBy(
 }
 
 /** A full basket shows three layers of balls: those below them are hidden. */
-const mostInBasket = 15;
+const maxInBasket = 15;
 const gone = new Matrix4().makeScale(0, 0, 0);
 const one = new Vector3(1, 1, 1);
 const upward = new Vector3(0, 1, 0);
@@ -165,12 +165,12 @@ export class Balls {
       let position: Vec3 | null;
       if (place.on === 'hand') position = inHand(place.player, place.side);
       else if (place.on === 'basket') {
-        position = caught < mostInBasket ? this.#inBasket(caught, opening ?? state.basket) : null;
+        position = caught < maxInBasket ? this.#inBasket(caught, opening ?? state.basket) : null;
         caught += 1;
       } else position = ballPosition(state, ball, time);
       // The catch arrives a moment later: until then the ball stays where it fell.
       if (place.on === 'air' && !place.missed && position && opening)
-        position = stoppedBy(opening, position, place.launch.time, this.#approaches[ball]!);
+        position = stopInBasket(opening, position, place.launch.time, this.#approaches[ball]!);
       if (position) this.#put(ball, place, position, time);
       else this.#hide(ball);
     }

@@ -1,22 +1,22 @@
 import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
-import { ballsLeft } from 'threepoint-games/ball/state-readings';
+import { ballsLeft } from 'threepoint-games/ball/state-selectors';
 import { rotationForRound } from 'threepoint-games/ball/stations';
-import { type Writing, widthOf, write } from 'threepoint-ui/vr-panel';
-import { ink, paintCard, paintGround } from '../../scene/boards/lettering';
+import { drawText, type TextStyle, textWidth } from 'threepoint-ui/vr-panel';
+import { ink, paintCard, paintGround } from '../../scene/boards/board-style';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton, type SheetButton } from '../../scene/boards/sheet';
 import { roleTexts, seatLooks } from '../court/court-plan';
 import type { PlayerFrame } from '../match/ball-frame';
 
 /** A player on a seat, as boards and labels write of them. */
-export type Person = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me'>;
+export type DisplayedPlayer = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me'>;
 
 /** A match as boards show it: the state of this frame and the person on each seat. */
-export interface Standing {
+export interface DisplayedMatch {
   readonly state: BallState;
   /** Whole seconds until the bell, rounded up. */
   readonly seconds: number;
-  readonly people: readonly (Person | null)[];
+  readonly players: readonly (DisplayedPlayer | null)[];
   /** The user's player; null: a spectator. */
   readonly me: number | null;
   /** Roles move on with every match. */
@@ -29,7 +29,7 @@ export interface Standing {
 export const ownName = 'You';
 
 /** Returns a name that marks bots as such. */
-export const nameOf = ({ name, bot }: Pick<Person, 'name' | 'bot'>): string =>
+export const displayName = ({ name, bot }: Pick<DisplayedPlayer, 'name' | 'bot'>): string =>
   bot && !/\bbot\b/i.test(name) ? `${name} (bot)` : name;
 
 /** Balls that each player's throws have brought into the basket. */
@@ -37,7 +37,7 @@ export const catchesOf = (state: BallState, player: number): number =>
   state.balls.filter((place) => place.on === 'basket' && place.thrower === player).length;
 
 /** What the last thing that happened reads like on the board; null: nothing to say. */
-export function lineOfEvent(event: BallEvent, people: readonly (Person | null)[]): string | null {
+export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | null)[]): string | null {
   const who = 'player' in event ? people[event.player] : null;
   const name = who?.me ? 'you' : (who?.name ?? 'A player');
   switch (event.type) {
@@ -59,10 +59,10 @@ export function lineOfEvent(event: BallEvent, people: readonly (Person | null)[]
 }
 
 /** Returns the line of the board while nothing happens. */
-export function waitingLine({ state, people }: Standing): string {
+export function waitingLine({ state, players }: DisplayedMatch): string {
   if (state.phase === 'running') return 'Catch them in the basket';
   if (state.phase === 'over') return state.end === 'time' ? 'Time is up' : 'All balls thrown';
-  const there = people.flatMap((person, player) => (person ? [player] : []));
+  const there = players.flatMap((person, player) => (person ? [player] : []));
   const roles = new Set(there.map((player) => state.players[player]?.role));
   if (!roles.has('thrower')) return 'Waiting for a thrower';
   if (!roles.has('holder')) return 'Waiting for a basket holder';
@@ -74,16 +74,16 @@ const listed = (names: readonly string[]): string =>
   names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 
 /** Describes what a match waits for; null: it is running. */
-export function waitingFor(standing: Standing): string | null {
-  const { state, people, me, rotate, acting } = standing;
+export function waitingSentence(standing: DisplayedMatch): string | null {
+  const { state, players, me, rotate, acting } = standing;
   if (state.phase === 'running') return null;
-  const there = people.flatMap((person, player) => (person ? [player] : []));
+  const there = players.flatMap((person, player) => (person ? [player] : []));
   const taken = there.flatMap((player) => state.players[player]?.station ?? []);
   // Roles move on between two matches alone.
   const canPlay = rotationForRound(taken, rotate && state.phase === 'over') !== null;
   if (!canPlay) return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
   const idle = there.filter((player) => !state.players[player]?.ready);
-  const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));
+  const names = idle.flatMap((player) => (player !== me && players[player] ? [displayName(players[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
   if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
   return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match starts in a moment.';
@@ -92,7 +92,7 @@ export function waitingFor(standing: Standing): string | null {
 export const boardSize = { width: 1024, height: 588 } as const;
 
 /** Score, clock, balls left and the last sentence. */
-export function paintBoard(context: CanvasRenderingContext2D, standing: Standing, line: string): void {
+export function paintBoard(context: CanvasRenderingContext2D, standing: DisplayedMatch, line: string): void {
   const { state, seconds } = standing;
   const { width, height } = boardSize;
   paintGround(context, width, height);
@@ -104,7 +104,7 @@ export function paintBoard(context: CanvasRenderingContext2D, standing: Standing
   });
 
   const left = ballsLeft(state);
-  write(context, 'BALLS', [64, 430], { font: '700 54px', color: ink.soft });
+  drawText(context, 'BALLS', [64, 430], { font: '700 54px', color: ink.soft });
   const total = state.options.balls;
   const step = Math.min(34, 480 / total);
   for (let i = 0; i < total; i++) {
@@ -116,8 +116,8 @@ export function paintBoard(context: CanvasRenderingContext2D, standing: Standing
     context.fill();
     context.stroke();
   }
-  write(context, String(left), [width - 54, 434], { font: '800 64px', color: ink.text, align: 'right' });
-  write(context, line, [64, 536], { font: '700 60px', color: ink.text, most: width - 128 });
+  drawText(context, String(left), [width - 54, 434], { font: '800 64px', color: ink.text, align: 'right' });
+  drawText(context, line, [64, 536], { font: '700 60px', color: ink.text, maxWidth: width - 128 });
 }
 
 export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';
@@ -137,16 +137,16 @@ export const seatOfButton = (id: LobbyButton): number | null => {
 };
 
 /** Players in the order of their stations. */
-const byStation = ({ state }: Standing): readonly number[] =>
+const byStation = ({ state }: DisplayedMatch): readonly number[] =>
   state.players
     .map((_, player) => player)
     .sort((a, b) => (state.players[a]?.station ?? 0) - (state.players[b]?.station ?? 0));
 
 /** The buttons that its reader may press: a place for each seat that is free or a bot's, and ready. */
-export function lobbyButtons(standing: Standing): readonly SheetButton<LobbyButton>[] {
-  const { people, me } = standing;
+export function lobbyButtons(standing: DisplayedMatch): readonly SheetButton<LobbyButton>[] {
+  const { players, me } = standing;
   const places = byStation(standing).flatMap((player, row): SheetButton<LobbyButton>[] => {
-    const person = people[player];
+    const person = players[player];
     const id = seatIds[player];
     if (!id || player === me || (person && !person.bot)) return [];
     return [{ id, x: 690, y: rowTop + row * rowHeight + 10, width: 270, height: rowHeight - 24 }];
@@ -155,34 +155,38 @@ export function lobbyButtons(standing: Standing): readonly SheetButton<LobbyButt
 }
 
 /** Paints the sheet before and after a match: players, who is ready, the result. */
-export function paintLobby(context: CanvasRenderingContext2D, standing: Standing, hovered: LobbyButton | null): void {
-  const { state, people, me, rotate } = standing;
+export function paintLobby(
+  context: CanvasRenderingContext2D,
+  standing: DisplayedMatch,
+  hovered: LobbyButton | null,
+): void {
+  const { state, players, me, rotate } = standing;
   const { width, height } = lobbySize;
   paintCard(context, width, height);
   const over = state.phase === 'over';
   const { balls, seconds } = state.options;
-  const middle = (text: string, y: number, writing: Writing) =>
-    write(context, text, [width / 2, y], { ...writing, align: 'center' });
+  const middle = (text: string, y: number, writing: TextStyle) =>
+    drawText(context, text, [width / 2, y], { ...writing, align: 'center' });
   const heading = over ? (state.end === 'time' ? 'Time is up' : 'All balls thrown') : 'Ball game';
   middle(heading, 88, { font: '700 44px', color: ink.soft });
   if (over) {
     const score = String(state.score);
     const rest = `of ${balls} caught`;
-    const scoreWidth = widthOf(context, score, '800 170px');
-    const left = (width - scoreWidth - 24 - widthOf(context, rest, '700 64px')) / 2;
-    write(context, score, [left, 250], { font: '800 170px', color: ink.text });
-    write(context, rest, [left + scoreWidth + 24, 250], { font: '700 64px', color: ink.soft });
+    const scoreWidth = textWidth(context, score, '800 170px');
+    const left = (width - scoreWidth - 24 - textWidth(context, rest, '700 64px')) / 2;
+    drawText(context, score, [left, 250], { font: '800 170px', color: ink.text });
+    drawText(context, rest, [left + scoreWidth + 24, 250], { font: '700 64px', color: ink.soft });
   } else {
     const roles = 'Two players throw, one catches with the basket.';
-    middle(roles, 172, { font: '600 46px', color: ink.text, most: width - 128 });
+    middle(roles, 172, { font: '600 46px', color: ink.text, maxWidth: width - 128 });
     const match = `${balls} balls, ${Math.round(seconds)} seconds, a point per catch`;
     middle(match, 240, { font: '600 42px', color: ink.soft });
   }
   for (const [row, player] of byStation(standing).entries()) {
     paintRow(context, standing, player, rowTop + row * rowHeight);
   }
-  const waiting = waitingFor(standing);
-  if (waiting) middle(waiting, 702, { font: '700 38px', color: ink.accent, baseline: 'middle', most: width - 96 });
+  const waiting = waitingSentence(standing);
+  if (waiting) middle(waiting, 702, { font: '700 38px', color: ink.accent, baseline: 'middle', maxWidth: width - 96 });
   const buttons = lobbyButtons(standing);
   const isReady = state.players[me ?? -1]?.ready ?? false;
   for (const button of buttons) {
@@ -196,18 +200,18 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
     } else paintButton(context, button, 'Play here', { hovered: lit, font: '700 38px' });
   }
   if (me === null) {
-    const isFree = people.some((person) => person === null || person.bot);
+    const isFree = players.some((person) => person === null || person.bot);
     const text = isFree ? 'You are watching. Take a place to play.' : 'You are watching.';
     middle(text, 796, { font: '600 42px', color: ink.soft, baseline: 'middle' });
   }
 }
 
-function paintRow(context: CanvasRenderingContext2D, standing: Standing, player: number, top: number): void {
-  const { state, people, me } = standing;
+function paintRow(context: CanvasRenderingContext2D, standing: DisplayedMatch, player: number, top: number): void {
+  const { state, players, me } = standing;
   const { width } = lobbySize;
   const station = state.players[player]?.station ?? 0;
   const look = seatLooks[station];
-  const person = people[player] ?? null;
+  const person = players[player] ?? null;
   context.fillStyle = player === me ? 'rgba(255, 200, 97, 0.13)' : 'rgba(200, 216, 236, 0.07)';
   context.beginPath();
   context.roundRect(48, top, width - 96, rowHeight - 8, 24);
@@ -219,19 +223,23 @@ function paintRow(context: CanvasRenderingContext2D, standing: Standing, player:
   context.fill();
   const baseline = 'middle';
   const mark = { font: '800 40px', color: look?.ink ?? ink.text, align: 'center', baseline } as const;
-  write(context, look?.mark ?? '', [108, middle + 3], mark);
-  const name = person ? (person.me && person.name !== ownName ? `${nameOf(person)} · you` : nameOf(person)) : 'Free';
+  drawText(context, look?.mark ?? '', [108, middle + 3], mark);
+  const name = person
+    ? person.me && person.name !== ownName
+      ? `${displayName(person)} · you`
+      : displayName(person)
+    : 'Free';
   const taken = person !== null && (!person.bot || player === me);
   const color = person ? ink.text : ink.soft;
-  write(context, name, [164, middle - 20], { font: '700 42px', color, baseline, most: taken ? 520 : 500 });
+  drawText(context, name, [164, middle - 20], { font: '700 42px', color, baseline, maxWidth: taken ? 520 : 500 });
   const catches = catchesOf(state, player);
   const role = roleTexts[station] ?? '';
   const scored = state.phase === 'over' && state.players[player]?.role === 'thrower';
   const under = scored ? `${role}: ${catches} caught` : role;
-  write(context, under, [164, middle + 26], { font: '600 32px', color: ink.soft, baseline, most: 500 });
+  drawText(context, under, [164, middle + 26], { font: '600 32px', color: ink.soft, baseline, maxWidth: 500 });
   if (!taken) return;
   const here = person?.presence === 'here';
   const ready = state.players[player]?.ready;
   const [status, tone] = !here ? ['Away', ink.warning] : ready ? ['✓ Ready', ink.good] : ['Not ready', ink.soft];
-  write(context, status!, [width - 80, middle + 2], { font: '700 38px', color: tone!, align: 'right', baseline });
+  drawText(context, status!, [width - 80, middle + 2], { font: '700 38px', color: tone!, align: 'right', baseline });
 }

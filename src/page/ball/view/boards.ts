@@ -1,9 +1,9 @@
 import { Group } from 'three';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';
-import { createDrawnTexture } from '../../scene/drawn-texture';
+import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import { court } from '../court/court-plan';
-import { boardSize, paintBoard, type Standing } from './board-drawing';
+import { boardSize, type DisplayedMatch, paintBoard } from './board-drawing';
 
 /**
  * Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.
@@ -11,7 +11,7 @@ import { boardSize, paintBoard, type Standing } from './board-drawing';
 export function createBoards(quality: Quality) {
   const object = new Group();
   object.name = 'boards';
-  const { texture, draw } = createDrawnTexture(boardSize.width, boardSize.height, quality);
+  const { texture, draw } = createCanvasTexture(boardSize.width, boardSize.height, quality);
   for (const { z, turned, width, middle } of court.boards) {
     const height = (width * boardSize.height) / boardSize.width;
     const board = createWoodenBoard({ width, height, middle }, texture);
@@ -22,7 +22,7 @@ export function createBoards(quality: Quality) {
   let shown = '';
   return {
     object,
-    show(standing: Standing, line: string): void {
+    show(standing: DisplayedMatch, line: string): void {
       const { state, seconds } = standing;
       const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
       const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);

@@ -1,7 +1,7 @@
 import { Group } from 'three';
 import { createSheet, type SheetSize } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
-import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
+import { type DisplayedMatch, type LobbyButton, lobbyButtons, lobbySize, paintLobby } from './board-drawing';
 
 const size: SheetSize = { ...lobbySize, metres: 1.3 };
 
@@ -17,14 +17,14 @@ export function createLobbySheet(quality: Quality) {
     /**
      * eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false.
      */
-    show(standing: Standing, eyeHeight: number, time: number, inRoom: boolean): void {
-      const { state, people, me, rotate, acting } = standing;
+    show(match: DisplayedMatch, eyeHeight: number, time: number, inRoom: boolean): void {
+      const { state, players, me, rotate, acting } = match;
       object.position.y = Math.max(0.75, eyeHeight - 0.16);
       if (state.phase === 'running' || !inRoom) {
         sheet.show(null, time);
         return;
       }
-      const { phase, end, score, options, players } = state;
+      const { phase, end, score, options } = state;
       sheet.show(
         {
           key: JSON.stringify([
@@ -32,14 +32,14 @@ export function createLobbySheet(quality: Quality) {
             end,
             score,
             options,
-            players.map(({ ready, role }) => [ready, role]),
-            people,
+            state.players.map(({ ready, role }) => [ready, role]),
+            players,
             me,
             rotate,
             acting,
           ]),
-          buttons: lobbyButtons(standing),
-          paint: (context, hovered) => paintLobby(context, standing, hovered),
+          buttons: lobbyButtons(match),
+          paint: (context, hovered) => paintLobby(context, match, hovered),
         },
         time,
       );

@@ -1,15 +1,15 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { widthOf, write } from 'threepoint-ui/vr-panel';
-import { ink } from '../../scene/boards/lettering';
-import { createDrawnTexture } from '../../scene/drawn-texture';
+import { drawText, textWidth } from 'threepoint-ui/vr-panel';
+import { ink } from '../../scene/boards/board-style';
+import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import { roleTexts, seatLooks } from '../court/court-plan';
-import { nameOf, type Person } from './board-drawing';
+import { type DisplayedPlayer, displayName } from './board-drawing';
 
 export interface Label {
-  readonly person: Person;
+  readonly person: DisplayedPlayer;
   readonly station: number;
   /** The position of the eyes. */
   readonly head: Vec3;
@@ -28,10 +28,10 @@ const above = 0.25;
 /** Seen from further away than this it grows with the distance, so that a name stays as large to the eye [m]. */
 const readableFrom = 2.8;
 /** Larger than this it would hide a neighbour's. */
-const mostGrown = 3;
+const maxScale = 3;
 
 /** How many times its own size a label is drawn for a camera this far away [m]. */
-export const labelScale = (far: number): number => clamp(far / readableFrom, 1, mostGrown);
+export const labelScale = (far: number): number => clamp(far / readableFrom, 1, maxScale);
 
 /** A microphone in a box of this height, its middle here [pixels]; struck through where its player is muted. */
 function paintMicrophone(context: CanvasRenderingContext2D, x: number, y: number, muted: boolean): void {
@@ -79,7 +79,7 @@ const ringScale = 0.86;
 
 /** How wide a label is, and so where its mark is [pixels]. */
 function labelWidth(context: CanvasRenderingContext2D, { person, voice }: Pick<Label, 'person' | 'voice'>): number {
-  const named = Math.max(widthOf(context, nameOf(person), '700 54px'), 190) + 132;
+  const named = Math.max(textWidth(context, displayName(person), '700 54px'), 190) + 132;
   return Math.min(size.width - 24, named + (voice === 'none' ? 0 : voiceWidth));
 }
 
@@ -90,7 +90,7 @@ const voiceWidth = 60;
 function paint(context: CanvasRenderingContext2D, { person, station, voice }: Label): number {
   const { width, height } = size;
   const look = seatLooks[station];
-  const name = nameOf(person);
+  const name = displayName(person);
   const under = person.presence === 'here' ? (roleTexts[station] ?? '') : 'Away';
   const wide = labelWidth(context, { person, voice });
   const text = wide - 134 - (voice === 'none' ? 0 : voiceWidth);
@@ -105,17 +105,22 @@ function paint(context: CanvasRenderingContext2D, { person, station, voice }: La
   context.fill();
   const baseline = 'middle';
   const mark = { font: '800 42px', color: look?.ink ?? ink.text, align: 'center', baseline } as const;
-  write(context, look?.mark ?? '', [left + 60, height / 2 + 3], mark);
-  write(context, name, [left + 110, height / 2 - 24], { font: '700 54px', color: ink.text, baseline, most: text });
+  drawText(context, look?.mark ?? '', [left + 60, height / 2 + 3], mark);
+  drawText(context, name, [left + 110, height / 2 - 24], {
+    font: '700 54px',
+    color: ink.text,
+    baseline,
+    maxWidth: text,
+  });
   const color = person.presence === 'here' ? ink.soft : ink.warning;
-  write(context, under, [left + 110, height / 2 + 34], { font: '600 36px', color, baseline, most: text });
+  drawText(context, under, [left + 110, height / 2 + 34], { font: '600 36px', color, baseline, maxWidth: text });
   if (voice !== 'none') paintMicrophone(context, left + wide - 52, height / 2, voice === 'muted');
   return left + 60;
 }
 
 /** Creates a label. The ring around the mark shows speech: the louder, the clearer. */
 function createLabel(quality: Quality, ringTexture: CanvasTexture) {
-  const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
+  const { texture, draw } = createCanvasTexture(size.width, size.height, quality);
   const material = new SpriteMaterial({
     map: texture,
     transparent: true,
@@ -176,7 +181,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
 export function createNameLabels(count: number, quality: Quality) {
   const object = new Group();
   object.name = 'names';
-  const ring = createDrawnTexture(ringSize, ringSize, quality);
+  const ring = createCanvasTexture(ringSize, ringSize, quality);
   ring.draw(paintRing);
   const labels = Array.from({ length: count }, () => createLabel(quality, ring.texture));
   object.add(...labels.flatMap(({ sprites }) => sprites));

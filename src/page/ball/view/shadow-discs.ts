@@ -1,7 +1,7 @@
 import { InstancedMesh, Matrix4, PlaneGeometry } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { ballRadius } from 'threepoint-games/ball/flight';
-import { createSoftSpot } from '../../scene/soft-spot';
+import { createSoftShadowMaterial } from '../../scene/soft-shadow-material';
 
 /**
  * Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be
@@ -10,7 +10,7 @@ import { createSoftSpot } from '../../scene/soft-spot';
 export function createShadowDiscs(count: number) {
   const mesh = new InstancedMesh(
     new PlaneGeometry(4.4 * ballRadius, 4.4 * ballRadius).rotateX(-Math.PI / 2),
-    createSoftSpot([10, 14, 20], 0.6),
+    createSoftShadowMaterial([10, 14, 20], 0.6),
     count,
   );
   mesh.frustumCulled = false;

@@ -115,7 +115,7 @@ export class VoiceCall {
     this.#mesh.restartLost(performance.now() / 1000, joined);
     // A headset's sleep suspends audio too.
     if (context.state === 'suspended' && document.visibilityState === 'visible') void context.resume();
-    this.#sound.mend();
+    this.#sound.restartFailed();
   }
 
   dispose(): void {

@@ -1,5 +1,5 @@
-import { widthOf, write } from 'threepoint-ui/vr-panel';
-import { ink } from './lettering';
+import { drawText, textWidth } from 'threepoint-ui/vr-panel';
+import { ink } from './board-style';
 
 export interface ScoreHeading {
   readonly score: number;
@@ -21,11 +21,11 @@ export function paintScoreHeading(
   context: CanvasRenderingContext2D,
   { score, of, seconds, running }: ScoreHeading,
 ): void {
-  write(context, 'SCORE', [64, 96], { font: '700 54px', color: ink.soft });
-  write(context, 'TIME', [664, 96], { font: '700 54px', color: ink.soft });
-  write(context, String(score), [54, 282], { font: '800 220px', color: ink.text });
-  const wide = widthOf(context, String(score), '800 220px');
-  write(context, `/ ${of}`, [78 + wide, 282], { font: '700 84px', color: ink.soft });
+  drawText(context, 'SCORE', [64, 96], { font: '700 54px', color: ink.soft });
+  drawText(context, 'TIME', [664, 96], { font: '700 54px', color: ink.soft });
+  drawText(context, String(score), [54, 282], { font: '800 220px', color: ink.text });
+  const wide = textWidth(context, String(score), '800 220px');
+  drawText(context, `/ ${of}`, [78 + wide, 282], { font: '700 84px', color: ink.soft });
   const late = running && seconds <= lastSeconds;
   if (late) {
     context.fillStyle = ink.warning;
@@ -36,8 +36,8 @@ export function paintScoreHeading(
   const color = late ? ink.accentInk : ink.text;
   // Three digits must fit into the space of two.
   const [figures, unit] = seconds >= 100 ? ['800 132px', '700 52px'] : ['800 170px', '700 64px'];
-  write(context, `${seconds}`, [660, 270], { font: figures, color });
-  write(context, 's', [672 + widthOf(context, `${seconds}`, figures), 270], { font: unit, color });
+  drawText(context, `${seconds}`, [660, 270], { font: figures, color });
+  drawText(context, 's', [672 + textWidth(context, `${seconds}`, figures), 270], { font: unit, color });
 
   context.strokeStyle = ink.line;
   context.lineWidth = 3;

@@ -1,9 +1,9 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { write } from 'threepoint-ui/vr-panel';
-import { createDrawnTexture } from '../drawn-texture';
+import { drawText } from 'threepoint-ui/vr-panel';
+import { createCanvasTexture } from '../canvas-texture';
 import type { Quality } from '../renderer';
-import { ink } from './lettering';
+import { ink } from './board-style';
 
 /** A button on a sheet [pixels]. */
 export interface SheetButton<Id extends string> {
@@ -66,7 +66,7 @@ export function createSettling() {
 
 /** A sheet in the world with buttons, facing +Z of its own frame. */
 export function createSheet<Id extends string>(size: SheetSize, quality: Quality) {
-  const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
+  const { texture, draw } = createCanvasTexture(size.width, size.height, quality);
   const mesh = new Mesh(
     new PlaneGeometry(size.metres, (size.metres * size.height) / size.width),
     new MeshBasicMaterial({ map: texture, transparent: true, fog: false, toneMapped: false }),
@@ -151,5 +151,5 @@ export function paintButton(
   }
   const color = primary ? ink.accentInk : ink.text;
   const middle = [x + width / 2, y + height / 2 + 4] as const;
-  write(context, label, middle, { font, color, align: 'center', baseline: 'middle', most: width - 40 });
+  drawText(context, label, middle, { font, color, align: 'center', baseline: 'middle', maxWidth: width - 40 });
 }

@@ -1,5 +1,5 @@
 import { BoxGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry, type Texture } from 'three';
-import { woodColor } from '../outdoors/wood';
+import { woodColor } from '../outdoors/wood-color';
 import { merged, painted, paintedBox } from '../painted-geometry';
 
 export interface WoodenBoardShape {

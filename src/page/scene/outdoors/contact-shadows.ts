@@ -1,6 +1,6 @@
 import { Mesh, PlaneGeometry } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
-import { createSoftSpot } from '../soft-spot';
+import { createSoftShadowMaterial } from '../soft-shadow-material';
 
 /** Soft dark spots on the grass that say that things stand on it, with and without a shadow map. Arena frame. */
 export function createContactShadows(
@@ -9,7 +9,7 @@ export function createContactShadows(
   const geometry = mergeGeometries(
     spots.map(({ x, z, width, depth }) => new PlaneGeometry(width, depth).rotateX(-Math.PI / 2).translate(x, 0.01, z)),
   );
-  const mesh = new Mesh(geometry, createSoftSpot([8, 20, 6], 0.42));
+  const mesh = new Mesh(geometry, createSoftShadowMaterial([8, 20, 6], 0.42));
   mesh.renderOrder = 1;
   return mesh;
 }

@@ -2,7 +2,7 @@ import { Quaternion, Vector3 } from 'three';
 import type { Transform } from 'threepoint/core/math/pose';
 import type { Quality } from '../renderer';
 import type { Lighting } from '../surroundings';
-import { createReflected } from './reflected';
+import { createEnvironmentScene } from './environment-scene';
 import { hazeColor } from './sky';
 
 /** What differs from place to place under the same sky; arena frame. */
@@ -33,8 +33,8 @@ export function daylight(place: Daylight, { position, orientation }: Transform<'
     fill: { sky: '#cfe3fb', ground: groundColor, intensity: high ? skyIntensity : skyIntensity + 0.35 },
     shadow: { halfSize: shadows.halfSize, resolution: 2048, softness: 3, centre: { x: middle.x, z: middle.z } },
     fog: { color: hazeColor, near: 16, far: 95 },
-    reflected: () => createReflected(sun),
-    reflectedIntensity: 0.4,
+    environment: () => createEnvironmentScene(sun),
+    environmentIntensity: 0.4,
     contactShadow: high ? 0.4 : 0.6,
   };
 }

@@ -14,8 +14,8 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import { merged, painted } from '../painted-geometry';
+import { createRandomRange } from '../random-range';
 import type { Quality } from '../renderer';
-import { createScatter } from './scatter';
 import { hazeColor } from './sky';
 
 /**
@@ -39,7 +39,7 @@ const ridges: readonly Ridge[] = [
 
 function ridgeGeometry({ radius, height, color, waves, ragged, phase }: Ridge, seed: number): BufferGeometry {
   const segments = 240;
-  const random = createScatter(seed);
+  const random = createRandomRange(seed);
   const top = new Color(color);
   const foot = new Color(color).lerp(new Color(hazeColor), 0.6);
   const positions: number[] = [];
@@ -153,7 +153,7 @@ function tree(
 
 /** Builds the trees: a wood behind the backstop, lines along both sides, a few behind the archer. */
 function treeGeometry(quality: Quality): BufferGeometry {
-  const random = createScatter(20231);
+  const random = createRandomRange(20231);
   const detail = quality === 'high' ? 2 : 1;
   const parts: BufferGeometry[] = [];
   const plant = (x: number, z: number, height: number, fine = detail) =>

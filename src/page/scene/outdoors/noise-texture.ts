@@ -1,5 +1,5 @@
 import { type DataTexture, RepeatWrapping } from 'three';
-import { createPixelTexture } from '../pixel-texture';
+import { createDataTexture } from '../data-texture';
 import type { Quality } from '../renderer';
 
 /** Four noises that repeat without a seam: r wide, g fine (both sums of octaves), b grass blades, a one fine octave. */
@@ -81,7 +81,7 @@ export function createNoiseTexture(quality: Quality): DataTexture {
       pixels[at + 3] = 255 * latticeNoise(u, v, 64, 41);
     }
   }
-  const texture = createPixelTexture(pixels, side, quality);
+  const texture = createDataTexture(pixels, side, quality);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   return texture;
 }

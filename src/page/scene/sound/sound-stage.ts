@@ -82,7 +82,7 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
 }
 
 /** What plays while the audio runs. */
-export type Player = ReturnType<typeof createPlayer>;
+export type SoundPlayer = ReturnType<typeof createPlayer>;
 
 const ahead = vec3(0, 0, 0);
 const upward = vec3(0, 0, 0);
@@ -110,9 +110,9 @@ function placeListener({ listener, currentTime }: AudioContext, head: Pose<'floo
 
 /** Sounds from where they happen, for ears that move; floor frame. */
 export function createSoundStage(recipes: Recipes, createContext: () => AudioContext = () => new AudioContext()) {
-  let player: Player | null = null;
+  let player: SoundPlayer | null = null;
   let muted = false;
-  async function awaken(): Promise<Player> {
+  async function awaken(): Promise<SoundPlayer> {
     if (!player) {
       const context = createContext();
       player = createPlayer(context, recipes);
@@ -128,7 +128,7 @@ export function createSoundStage(recipes: Recipes, createContext: () => AudioCon
   }
   return {
     /** null while the audio rests: it would keep everything and play it at once later. */
-    get player(): Player | null {
+    get player(): SoundPlayer | null {
       return player?.context.state === 'running' ? player : null;
     },
     /**

@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { createScatter } from '../outdoors/scatter';
+import { createRandomRange } from '../random-range';
 
 /** Sounds as samples in [−1, 1], made here; rate in samples per second. The same arguments make the same sound. */
 export type Samples = Float32Array<ArrayBuffer>;
@@ -15,7 +15,7 @@ export function render(rate: number, seconds: number, sample: (t: number, index:
 }
 
 /** Scales to a peak, and lets the last hundredth of a second fade, so that nothing clicks at its end. */
-export function finished(samples: Samples, rate: number, peak: number): Samples {
+export function normalised(samples: Samples, rate: number, peak: number): Samples {
   let highest = 0;
   for (const value of samples) highest = Math.max(highest, Math.abs(value));
   const factor = highest > 0 ? peak / highest : 0;
@@ -28,7 +28,7 @@ export function finished(samples: Samples, rate: number, peak: number): Samples 
 
 /** White noise in [−1, 1], the same for the same seed. */
 export const noiseFrom = (seed: number) => {
-  const random = createScatter(seed);
+  const random = createRandomRange(seed);
   return () => random(-1, 1);
 };
 
@@ -67,7 +67,7 @@ export function whoosh(rate: number): Samples {
     const value = high(noise());
     return (value - low(value)) * Math.sin((Math.PI * t) / seconds) ** 1.4;
   });
-  return finished(samples, rate, 0.3);
+  return normalised(samples, rate, 0.3);
 }
 
 /** A struck bar: partials of a bar that is free at both ends. */
@@ -91,7 +91,7 @@ export function chime(rate: number, points: number): Samples {
     const second = t - 0.09;
     return 0.55 * bar(t, note * 0.75, 0.22) * attack(t) + (second > 0 ? bar(second, note, 0.42) * attack(second) : 0);
   });
-  return finished(samples, rate, 0.5);
+  return normalised(samples, rate, 0.5);
 }
 
 /** The bell at the end of a round. */
@@ -115,7 +115,7 @@ export function bell(rate: number): Samples {
       ) *
       (1 - Math.exp(-t / 0.0015)),
   );
-  return finished(samples, rate, 0.6);
+  return normalised(samples, rate, 0.6);
 }
 
 /** Something snaps into place: a nock onto its string, a ball into a hand. */
@@ -123,7 +123,7 @@ export function click(rate: number): Samples {
   const noise = noiseFrom(701);
   const wood = resonator(rate, 1650, 240);
   const samples = render(rate, 0.07, (t) => wood(noise() * Math.exp(-t / 0.003)));
-  return finished(samples, rate, 0.35);
+  return normalised(samples, rate, 0.35);
 }
 
 /** Two low notes that go down: something is not as it should be. */
@@ -135,5 +135,5 @@ export function warning(rate: number): Samples {
       (second > 0 ? Math.sin(tau * 311 * second) * Math.exp(-second / 0.1) * (1 - Math.exp(-second / 0.004)) : 0)
     );
   });
-  return finished(samples, rate, 0.35);
+  return normalised(samples, rate, 0.35);
 }

@@ -34,7 +34,7 @@ interface Level {
   readAt: number;
 }
 
-interface Heard {
+interface RemoteVoice {
   readonly stream: MediaStream;
   /** A stream of another page stays silent unless an element plays it too (Chromium issue 933677). */
   readonly element: HTMLAudioElement;
@@ -55,7 +55,7 @@ function pull(element: HTMLAudioElement, stream: MediaStream): void {
  */
 export class VoiceSound {
   readonly #context: AudioContext;
-  readonly #heard = new Map<string, Heard>();
+  readonly #voices = new Map<string, RemoteVoice>();
   readonly #bus: GainNode;
   readonly #meter: AnalyserNode;
   readonly #spokenMeter: AnalyserNode;
@@ -92,13 +92,13 @@ export class VoiceSound {
     panner.rolloffFactor = rolloff;
     source.connect(level.analyser).connect(gain).connect(panner).connect(this.#bus);
     gain.connect(this.#spokenMeter);
-    this.#heard.set(id, { stream, element, source, level, gain, panner });
+    this.#voices.set(id, { stream, element, source, level, gain, panner });
   }
 
   remove(id: string): void {
-    const heard = this.#heard.get(id);
+    const heard = this.#voices.get(id);
     if (!heard) return;
-    this.#heard.delete(id);
+    this.#voices.delete(id);
     heard.source.disconnect();
     heard.gain.disconnect();
     heard.panner.disconnect();
@@ -109,13 +109,13 @@ export class VoiceSound {
    * Restarts failed audio elements. Call it often: elements fail when the device's audio output restarts, which would
    * silence their voices.
    */
-  mend(): void {
-    for (const { element, stream } of this.#heard.values()) if (element.error) pull(element, stream);
+  restartFailed(): void {
+    for (const { element, stream } of this.#voices.values()) if (element.error) pull(element, stream);
   }
 
   /** Places a voice, floor frame. */
   place(id: string, { x, y, z }: Vec3): void {
-    const panner = this.#heard.get(id)?.panner;
+    const panner = this.#voices.get(id)?.panner;
     if (!panner) return;
     panner.positionX.value = x;
     panner.positionY.value = y;
@@ -124,13 +124,13 @@ export class VoiceSound {
 
   /** Silences a voice, or plays it again. */
   setSilent(id: string, silent: boolean): void {
-    const heard = this.#heard.get(id);
+    const heard = this.#voices.get(id);
     if (heard) heard.gain.gain.value = silent ? 0 : 1;
   }
 
   /** How loud a person speaks, however far away: 0 silent to 1. */
   level(id: string): number {
-    const heard = this.#heard.get(id);
+    const heard = this.#voices.get(id);
     return heard ? this.#read(heard.level) : 0;
   }
 
@@ -167,7 +167,7 @@ export class VoiceSound {
   }
 
   dispose(): void {
-    for (const id of [...this.#heard.keys()]) this.remove(id);
+    for (const id of [...this.#voices.keys()]) this.remove(id);
     this.#own?.source.disconnect();
     this.#own = null;
     this.#bus.disconnect();

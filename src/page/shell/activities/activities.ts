@@ -14,10 +14,10 @@ import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
 import type { Recorder } from '../../studio/recorder';
 import { home } from '../activity-registry';
-import type { Shot, Stage } from '../stage';
+import type { Picture, Stage } from '../stage';
 import type { PageStudy } from '../study/page-study';
 import { ActivityStaging, type StagingOptions } from './activity-staging';
-import { wakeSound } from './wake-sound';
+import { unlockSound } from './unlock-sound';
 
 export interface ActivitiesOptions extends StagingOptions {
   readonly activities: readonly Activity[];
@@ -25,7 +25,7 @@ export interface ActivitiesOptions extends StagingOptions {
   /** The seed of the first layout. */
   readonly seed: number;
   readonly stage: StagingOptions['stage'] & { readonly studio: Pick<Stage['studio'], 'setMarkVisible'> };
-  readonly recorder: Pick<Recorder, 'mode' | 'giveWay'>;
+  readonly recorder: Pick<Recorder, 'mode' | 'endReplay'>;
   readonly body: Pick<BodySolver, 'calibration'>;
   readonly study: Pick<PageStudy, 'idle' | 'runnerOf'>;
   /** The user is somewhere else now: filters and clocks restart. */
@@ -118,7 +118,7 @@ export class Activities {
     writer.keep({ sound: on });
     const sound = this.#current?.sound;
     this.#cancelSound();
-    if (sound) this.#cancelSound = wakeSound(sound, on, notices);
+    if (sound) this.#cancelSound = unlockSound(sound, on, notices);
   }
 
   /**
@@ -126,7 +126,7 @@ export class Activities {
    * body.
    */
   chooseInput(source: 'mouse' | 'actor'): void {
-    this.#options.recorder.giveWay();
+    this.#options.recorder.endReplay();
     this.#options.services.writer.change({ actor: true, mouse: source === 'mouse' });
     this.#staging.arrange(this.#current);
   }
@@ -137,7 +137,7 @@ export class Activities {
   }
 
   /** When the mirror is visible, if the user has not turned it off. */
-  get mirror(): Shot['mirror'] {
+  get mirror(): Picture['mirror'] {
     if (!this.#current) return 'unless-behind';
     return this.#current.mirrorSide === null ? 'never' : 'always';
   }
@@ -178,7 +178,7 @@ export class Activities {
       this.#current = await activity.load(this.#context());
       this.#name = activity.name;
       const { sound } = this.#current;
-      if (sound) this.#cancelSound = wakeSound(sound, settings.sound, notices);
+      if (sound) this.#cancelSound = unlockSound(sound, settings.sound, notices);
     } catch (error) {
       notices.show('error', `${activity.place} could not be opened: ${firstLine(reasonOf(error))}`);
     }

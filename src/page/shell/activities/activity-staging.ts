@@ -13,11 +13,11 @@ export interface StagingOptions {
   };
   readonly mouse: Pick<MouseAim, 'setEnabled'>;
   /** Gives the user's avatar this palette; null: the user's own choice. */
-  wear(palette: string | null): void;
+  setPalette(palette: string | null): void;
 }
 
 /** The wishes of the mirror. */
-const mirrorWishes: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'watched'> = {
+const mirrorStaging: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'watched'> = {
   scene: studioScene,
   mirrorSide: null,
 };
@@ -36,8 +36,8 @@ export class ActivityStaging {
 
   /** `current`: null at the mirror. `moveCamera`: also moves the camera to an unchanged scene. */
   arrange(current: OpenActivity | null, moveCamera = false): void {
-    const { stage, wear, mouse, services } = this.#options;
-    const { scene, mirrorSide, palette = null, watched = null } = current ?? mirrorWishes;
+    const { stage, setPalette, mouse, services } = this.#options;
+    const { scene, mirrorSide, palette = null, watched = null } = current ?? mirrorStaging;
     const steering = current !== null && services.settings.mouse && !services.headset.worn && !watched;
     if (steering !== this.#steering) {
       this.#steering = steering;
@@ -55,7 +55,7 @@ export class ActivityStaging {
     }
     if (palette !== this.#palette) {
       this.#palette = palette;
-      wear(palette);
+      setPalette(palette);
     }
   }
 }

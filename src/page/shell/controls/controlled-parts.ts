@@ -10,10 +10,10 @@ import type { Headset } from '../headset';
 import type { PageMocap } from '../page-mocap';
 import type { PreferenceStore } from '../preferences';
 import type { Settings, SettingsWriter } from '../settings';
-import type { ShownAvatar } from '../shown-avatar';
 import type { Stage } from '../stage';
 import type { PageStudy } from '../study/page-study';
 import type { Switches } from '../switches';
+import type { UserAvatar } from '../user-avatar';
 import type { UserCalibration } from '../user-calibration';
 
 /** The parts of the page that its controls show and act on. */
@@ -31,7 +31,7 @@ export interface ControlledParts {
   readonly networks: BodySolverOptions['networks'];
   readonly recorder: Recorder;
   readonly headset: Headset;
-  readonly avatar: ShownAvatar;
+  readonly avatar: UserAvatar;
   readonly activities: Activities;
   readonly userCalibration: UserCalibration;
   readonly study: Pick<PageStudy, 'run'>;

@@ -1,17 +1,17 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { acceptDroppedFiles } from 'threepoint-ui/dropped-files';
 import { pageElement } from 'threepoint-ui/element';
-import { createOverlay, type FrameReport } from 'threepoint-ui/overlay';
+import { createFrameTimesOverlay, type FrameReport } from 'threepoint-ui/frame-times-overlay';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { createPlayBar, type PlayBar } from '../activities/play-bar';
 import { estimatorTexts } from '../estimator-texts';
 import { stageNames } from '../frame-timing';
+import { CalibrationControl } from './calibration-control';
 import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
+import { FileOpener } from './file-opener';
 import { HeadsetControls } from './headset-controls';
-import { Measuring } from './measuring';
 import { MotionExport } from './motion-export';
-import { OpenedFiles } from './opened-files';
 import { createPanelActions } from './panel-actions';
 import { isNarrow, WindowLayout } from './window-layout';
 
@@ -23,13 +23,13 @@ const reportEveryMs = 250;
  */
 export class Controls {
   readonly #parts: ControlledParts;
-  readonly #measuring: Measuring;
-  readonly #files: OpenedFiles;
+  readonly #measuring: CalibrationControl;
+  readonly #files: FileOpener;
   readonly #play: PlayBar;
   readonly #desktop: DesktopControls;
   readonly #inHeadset: HeadsetControls;
   readonly #layout: WindowLayout;
-  readonly #overlay = createOverlay(pageElement('overlay', HTMLElement));
+  readonly #overlay = createFrameTimesOverlay(pageElement('overlay', HTMLElement));
   /** Whether the panel was open when the headset was put on. */
   #panelOpenBefore = false;
 
@@ -37,8 +37,8 @@ export class Controls {
     const { stage } = parts;
     const panelRegion = pageElement('controls', HTMLElement);
     this.#parts = parts;
-    this.#measuring = new Measuring(parts);
-    this.#files = new OpenedFiles(parts);
+    this.#measuring = new CalibrationControl(parts);
+    this.#files = new FileOpener(parts);
     this.#play = createPlayBar(parts.activities);
     const measuring = this.#measuring;
     const motionExport = new MotionExport(parts);

@@ -1,7 +1,7 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { FrameReport } from 'threepoint-ui/overlay';
+import type { FrameReport } from 'threepoint-ui/frame-times-overlay';
 import type { VrPointers } from 'threepoint-ui/vr-pointers';
 import type { Activities } from '../activities/activities';
 import type { Pointers } from '../frame/pointers';
@@ -14,9 +14,9 @@ import type { VrMenuActions } from '../vr-menu/menu-buttons';
 import { menuStateOf } from '../vr-menu/menu-state';
 import { VrMenu } from '../vr-menu/vr-menu';
 import { WristButtons } from '../vr-menu/wrist-buttons';
-import { Comfort } from './comfort';
+import type { CalibrationControl } from './calibration-control';
 import type { ControlledParts } from './controlled-parts';
-import type { Measuring } from './measuring';
+import { UserHeight } from './user-height';
 
 /** The scale of the menu in the headset for a user who wants larger text. */
 const largerMenu = 1.3;
@@ -29,7 +29,7 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
   readonly activities: Pick<Activities, 'all' | 'current' | 'goTo' | 'setSound'>;
   readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered' | 'commands' | 'raised' | 'raise'>;
   readonly userCalibration: Pick<UserCalibration, 'recentre'>;
-  readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
+  readonly measuring: Pick<CalibrationControl, 'step' | 'begin' | 'cancel'>;
   readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseBuiltInBody' | 'chooseSkinTone' | 'exitVr'>;
 }
 
@@ -41,14 +41,14 @@ export class HeadsetControls {
   readonly #menu: VrMenu;
   readonly #wrists = new WristButtons();
   readonly #offer = new GazeOffer();
-  readonly #comfort: Comfort;
+  readonly #comfort: UserHeight;
   #comfortOpen = false;
   #worn = false;
 
   constructor(options: HeadsetControlsOptions) {
     this.#options = options;
     this.#menu = new VrMenu(this.#menuActions());
-    this.#comfort = new Comfort(options);
+    this.#comfort = new UserHeight(options);
     options.rays.objects.visible = false;
   }
 

@@ -8,12 +8,12 @@ import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import { estimatorTexts } from '../estimator-texts';
 import type { ExportChoice, ExportState } from '../panel/panel-state';
-import type { ShownAvatar } from '../shown-avatar';
+import type { UserAvatar } from '../user-avatar';
 
 export interface MotionExportOptions {
   readonly recorder: Pick<Recorder, 'recording' | 'name'>;
   readonly body: Pick<BodySolver, 'selectedEstimator' | 'userCalibration'>;
-  readonly avatar: Pick<ShownAvatar, 'name' | 'file'>;
+  readonly avatar: Pick<UserAvatar, 'name' | 'file'>;
   readonly networks: BodySolverOptions['networks'];
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
@@ -23,7 +23,7 @@ export interface MotionExportOptions {
 export class MotionExport {
   readonly #options: MotionExportOptions;
   #state: ExportState | null = null;
-  #giveUp = new AbortController();
+  #cancellation = new AbortController();
 
   constructor(options: MotionExportOptions) {
     this.#options = options;
@@ -36,7 +36,7 @@ export class MotionExport {
 
   /** Lets go what is being made. */
   cancel(): void {
-    this.#giveUp.abort();
+    this.#cancellation.abort();
   }
 
   /**
@@ -50,9 +50,9 @@ export class MotionExport {
     const estimator = body.selectedEstimator;
     const stem = name.replace(/\.json$/i, '');
     const { label } = estimatorTexts[estimator];
-    this.#giveUp = new AbortController();
-    const { signal } = this.#giveUp;
-    this.#tell({ name: stem, method: label, fraction: 0, secondsLeft: null });
+    this.#cancellation = new AbortController();
+    const { signal } = this.#cancellation;
+    this.#setState({ name: stem, method: label, fraction: 0, secondsLeft: null });
     try {
       const { writeMotionFile: exportMotionBare } = await import('threepoint/api/motion-file');
       const { extension, type, parts } = await exportMotionBare(recording, {
@@ -62,7 +62,7 @@ export class MotionExport {
         networks: this.#options.networks,
         calibration: recording.calibration ?? body.userCalibration,
         signal,
-        onProgress: (progress) => this.#tell({ name: stem, method: label, ...progress }),
+        onProgress: (progress) => this.#setState({ name: stem, method: label, ...progress }),
       });
       const file = `${stem}.${extension}`;
       offerDownload(file, type, new Blob([...parts], { type }));
@@ -70,7 +70,7 @@ export class MotionExport {
     } catch (error) {
       if (!signal.aborted) notices.show('error', `${stem} could not be exported: ${firstLine(reasonOf(error))}`);
     } finally {
-      this.#tell(null);
+      this.#setState(null);
     }
   }
 
@@ -81,7 +81,7 @@ export class MotionExport {
     return avatarClip(await avatar.file(), avatar.name, { decoders });
   }
 
-  #tell(state: ExportState | null): void {
+  #setState(state: ExportState | null): void {
     this.#state = state;
     this.#options.onChange();
   }

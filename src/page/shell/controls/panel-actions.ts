@@ -2,15 +2,15 @@ import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } fr
 import { offerDownload } from 'threepoint-ui/downloads';
 import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from '../panel/panel-state';
+import type { CalibrationControl } from './calibration-control';
 import type { ControlledParts } from './controlled-parts';
-import type { Measuring } from './measuring';
+import type { FileOpener } from './file-opener';
 import type { MotionExport } from './motion-export';
-import type { OpenedFiles } from './opened-files';
 
 export interface PanelActionsOptions extends ControlledParts {
-  readonly files: OpenedFiles;
+  readonly files: FileOpener;
   readonly motionExport: MotionExport;
-  readonly measuring: Pick<Measuring, 'start'>;
+  readonly measuring: Pick<CalibrationControl, 'start'>;
 }
 
 function bodyActions({

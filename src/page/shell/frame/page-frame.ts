@@ -18,9 +18,9 @@ import type { Headset } from '../headset';
 import type { PageMocap } from '../page-mocap';
 import type { PassthroughHost } from '../session/passthrough-host';
 import type { Settings } from '../settings';
-import type { ShownAvatar } from '../shown-avatar';
-import type { Shot, Stage } from '../stage';
+import type { Picture, Stage } from '../stage';
 import type { PageStudy } from '../study/page-study';
+import type { UserAvatar } from '../user-avatar';
 import type { DeviceDifference } from './device-difference';
 import type { FrameParts } from './frame-loop';
 import type { TrackingSource } from './tracking-source';
@@ -35,7 +35,7 @@ export interface PageFrameOptions {
   readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
   readonly recorder: Pick<Recorder, 'observe'> & ReplayState;
   readonly difference: Pick<DeviceDifference, 'observe'>;
-  readonly avatar: Pick<ShownAvatar, 'current'>;
+  readonly avatar: Pick<UserAvatar, 'current'>;
   readonly headset: Headset;
   readonly activities: Activities;
   readonly controls: Pick<Controls, 'observe' | 'point'>;
@@ -176,7 +176,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     if (!headset.passthrough && headset.turnIfAsked()) stage.vignette.close(time);
   }
 
-  #shot(time: number, frame: TrackingFrame | null): Shot {
+  #shot(time: number, frame: TrackingFrame | null): Picture {
     const { avatar, headset, activities, mocap, settings, study } = this.#options;
     const besideUser = settings.beside && headset.passthrough !== null && activities.current === null;
     return {
@@ -193,7 +193,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     };
   }
 
-  #mirror(): Shot['mirror'] {
+  #mirror(): Picture['mirror'] {
     const { settings, activities } = this.#options;
     return settings.mirror ? activities.mirror : 'never';
   }

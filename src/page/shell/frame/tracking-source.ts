@@ -18,7 +18,7 @@ type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<Tr
 export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
-  readonly recorder: Pick<Recorder, 'sample' | 'person' | 'giveWay'>;
+  readonly recorder: Pick<Recorder, 'sample' | 'person' | 'endReplay'>;
   readonly body: Pick<BodySolver, 'userCalibration'>;
   readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
   readonly activities: Pick<Activities, 'current' | 'act'>;
@@ -73,7 +73,7 @@ export class TrackingSource {
   #readSession(tracking: SessionTracking, time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     const { headset, settings, study, recorder, pointers } = this.#options;
     // A file may arrive in a session: the wearer's body neither follows its replay nor stands still with it.
-    recorder.giveWay();
+    recorder.endReplay();
     if (headset.emulator && settings.actor && !study.idle) {
       // What the actor does now is seen with the next frame: the device froze this one before it called.
       const performed = this.#perform(time);

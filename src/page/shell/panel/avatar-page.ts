@@ -4,7 +4,7 @@ import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';
-import { createRunningLine } from 'threepoint-ui/running-line';
+import { createStatusLine } from 'threepoint-ui/status-line';
 import { toggle } from 'threepoint-ui/toggle';
 import type { createBonesForm } from './bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
@@ -19,7 +19,7 @@ export interface PaletteChoice {
 /** Shows the name of the avatar and, for built-in avatars, their colours. `correct`: what corrects a file's bones. */
 function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions, correct: HTMLElement) {
   const name = element('p', { class: 'avatar-name' });
-  const pending = createRunningLine({ class: 'hint' });
+  const pending = createStatusLine({ class: 'hint' });
   const builtIn = button('Back to the page’s avatar', () => actions.showBuiltInAvatar());
   const cancel = button('Cancel loading', () => actions.cancelAvatar());
   const bodies = bodyLabels.map((body) => ({

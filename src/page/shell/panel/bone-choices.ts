@@ -1,7 +1,7 @@
 import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
 import { type BoneMap, type BoneName, boneNames, fingerNames, neededBones } from 'threepoint/core/humanoid/bones';
 import { type Side, sides } from 'threepoint/core/math/side';
-import type { WaitingForBones } from '../shown-avatar';
+import type { WaitingForBones } from '../user-avatar';
 
 const trunk = {
   hips: 'Hips',

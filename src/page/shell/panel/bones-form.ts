@@ -1,6 +1,6 @@
 import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
 import { button, element } from 'threepoint-ui/element';
-import type { WaitingForBones } from '../shown-avatar';
+import type { WaitingForBones } from '../user-avatar';
 import { BoneChoices, isNeeded, labelOfPart, partGroups } from './bone-choices';
 import { createSkeletonPicture } from './skeleton-picture';
 import './bones-form.css';

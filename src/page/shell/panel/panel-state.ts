@@ -4,7 +4,7 @@ import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { ViewName } from '../../scene/desktop-view';
 import type { Recorder } from '../../studio/recorder';
 import type { Settings, SettingsWriter } from '../settings';
-import type { WaitingForBones } from '../shown-avatar';
+import type { WaitingForBones } from '../user-avatar';
 
 /** What the recorder is doing; seconds since its start, of how many. */
 export type RecorderState = Pick<Recorder, 'mode' | 'paused' | 'seconds' | 'duration' | 'loop' | 'name'>;

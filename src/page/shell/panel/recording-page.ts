@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';
-import { createRunningLine } from 'threepoint-ui/running-line';
+import { createStatusLine } from 'threepoint-ui/status-line';
 import { toggle } from 'threepoint-ui/toggle';
 import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
 
@@ -21,7 +21,7 @@ function createRecorderSection(actions: RecordingActions) {
   const stop = button('Stop', () => actions.stop());
   const replay = button('Replay', () => actions.replay());
   const download = button('Download', () => actions.download());
-  const text = createRunningLine({ class: 'recorder-text' });
+  const text = createStatusLine({ class: 'recorder-text' });
   const slider = element('input', { type: 'range', min: 0, step: 0.01, 'aria-label': 'Second of the replay' });
   slider.addEventListener('input', () => actions.seek(slider.valueAsNumber));
   const pause = button('Pause', () => actions.setPaused(pause.textContent === 'Pause'));

@@ -17,7 +17,7 @@ const reach = 28;
 /** Joints whose distances from a tap differ by less are too close to each other to choose one [px]. */
 const apart = 7;
 const zoomStep = 3;
-const mostZoom = 81;
+const maxZoom = 81;
 /** Joints that stay closer to each other at the greatest zoom lie in one place [px]. */
 const onePlace = 1;
 
@@ -103,7 +103,7 @@ export class SkeletonView {
     const [nearest] = near;
     if (!nearest) return null;
     const crowd = near.filter(({ away }) => away < nearest.away + apart).map(({ joint }) => joint);
-    const left = mostZoom / this.#zoom;
+    const left = maxZoom / this.#zoom;
     const here = this.place(nearest.joint);
     const together = crowd.filter((joint) => distance(this.place(joint), here) * left < onePlace);
     if (together.length < crowd.length && left > 1) {

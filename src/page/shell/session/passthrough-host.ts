@@ -65,7 +65,7 @@ export class PassthroughHost {
         get handle() {
           return store.preferences.mirrorAnchor;
         },
-        keep: (mirrorAnchor) => store.remember({ mirrorAnchor }),
+        store: (mirrorAnchor) => store.remember({ mirrorAnchor }),
       },
     };
   }

@@ -3,12 +3,12 @@ import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degr
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
 import type { SettingsWriter } from '../settings';
-import type { ShownAvatar } from '../shown-avatar';
+import type { UserAvatar } from '../user-avatar';
 
 /** The parts of the page that a study's condition changes. */
 export interface EmbodyingParts {
   readonly writer: Pick<SettingsWriter, 'change'>;
-  readonly avatar: Pick<ShownAvatar, 'openBuiltIn' | 'builtInBody'>;
+  readonly avatar: Pick<UserAvatar, 'openBuiltIn' | 'builtInBody'>;
   readonly body: Pick<BodySolver, 'setEstimator' | 'estimator'>;
   readonly impaired: Pick<TrackingDegradation, 'configure'>;
 }

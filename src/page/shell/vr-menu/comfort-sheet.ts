@@ -1,4 +1,4 @@
-import { vrColors, write } from 'threepoint-ui/vr-panel';
+import { drawText, vrColors } from 'threepoint-ui/vr-panel';
 import {
   bottomButton,
   inColumns,
@@ -71,7 +71,7 @@ export function comfortSheet(state: ComfortState, actions: ComfortActions): Menu
     draw(context) {
       if (!state.moves) return;
       const writing = { font: '400 30px', color: vrColors.inkSoft, align: 'right', baseline: 'middle' } as const;
-      write(context, `Height: ${height}`, [menuWidth - menuMargin - 4, 72], writing);
+      drawText(context, `Height: ${height}`, [menuWidth - menuMargin - 4, 72], writing);
     },
   };
 }

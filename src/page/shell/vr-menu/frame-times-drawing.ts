@@ -1,5 +1,5 @@
-import { differenceLines, type FrameReport, milliseconds, missedFrames } from 'threepoint-ui/overlay';
-import { fillRounded, vrColors, type Writing, write } from 'threepoint-ui/vr-panel';
+import { differenceLines, type FrameReport, milliseconds, missedFrames } from 'threepoint-ui/frame-times-overlay';
+import { drawText, fillRoundedRect, type TextStyle, vrColors } from 'threepoint-ui/vr-panel';
 
 /** The sheet of the frame times [pixels]. */
 export const frameTimesWidth = 520;
@@ -7,10 +7,10 @@ export const frameTimesHeight = 530;
 
 type Row = readonly [label: string, p50: string, p95: string];
 
-function drawRow(context: CanvasRenderingContext2D, y: number, [label, p50, p95]: Row, writing: Writing): void {
-  write(context, label, [32, y], writing);
-  write(context, p50, [380, y], { ...writing, align: 'right' });
-  write(context, p95, [488, y], { ...writing, align: 'right' });
+function drawRow(context: CanvasRenderingContext2D, y: number, [label, p50, p95]: Row, writing: TextStyle): void {
+  drawText(context, label, [32, y], writing);
+  drawText(context, p50, [380, y], { ...writing, align: 'right' });
+  drawText(context, p95, [488, y], { ...writing, align: 'right' });
 }
 
 /** Frame time by stage, on its sheet in the headset. */
@@ -18,7 +18,7 @@ export function drawFrameTimes(context: CanvasRenderingContext2D, report: FrameR
   const { p50Ms, p95Ms, stages, estimator, provider, fromDevice } = report;
   const baseline = 'middle';
   const { glass, line, inkSoft, accent, ink } = vrColors;
-  fillRounded(context, [2, 2, frameTimesWidth - 4, frameTimesHeight - 4], 32, glass, line);
+  fillRoundedRect(context, [2, 2, frameTimesWidth - 4, frameTimesHeight - 4], 32, glass, line);
   drawRow(context, 48, ['ms per frame', 'p50', 'p95'], { font: '500 26px', color: inkSoft, baseline });
   const whole: Row = ['frame', milliseconds(p50Ms), milliseconds(p95Ms)];
   drawRow(context, 92, whole, { font: '650 34px', color: accent, baseline });
@@ -32,5 +32,5 @@ export function drawFrameTimes(context: CanvasRenderingContext2D, report: FrameR
     ...(fromDevice ? differenceLines(fromDevice) : []),
   ];
   for (const [index, line] of lines.entries())
-    write(context, line, [32, 386 + index * 38], { font: '500 25px', color: inkSoft, baseline, most: 456 });
+    drawText(context, line, [32, 386 + index * 38], { font: '500 25px', color: inkSoft, baseline, maxWidth: 456 });
 }

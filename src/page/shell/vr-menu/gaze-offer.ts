@@ -1,7 +1,7 @@
 import { Vector3 } from 'three';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
-import { createVrPanel, fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr-panel';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 
 const [width, height] = [720, 200];
@@ -21,7 +21,7 @@ export class GazeOffer {
     this.#panel.mesh.name = 'gaze offer';
     this.#panel.mesh.visible = false;
     this.#panel.draw((context) => {
-      fillRounded(context, [2, 2, width - 4, height - 4], 40, vrColors.glass, vrColors.line);
+      fillRoundedRect(context, [2, 2, width - 4, height - 4], 40, vrColors.glass, vrColors.line);
       context.textAlign = 'center';
       context.textBaseline = 'middle';
       context.fillStyle = vrColors.inkSoft;

@@ -1,5 +1,5 @@
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from 'threepoint-ui/calibration-dialog';
-import { fillRounded, vrColors, write, writeLines } from 'threepoint-ui/vr-panel';
+import { drawText, drawTextLines, fillRoundedRect, vrColors } from 'threepoint-ui/vr-panel';
 import { type MenuButton, menuHeight, menuMargin, menuWidth } from '../../activity/activity-menu';
 import { noticesTop, type VrMenuState } from './menu-buttons';
 
@@ -9,23 +9,23 @@ function drawCalibration(context: CanvasRenderingContext2D, step: CalibrationSte
   const over = step.kind === 'done' || step.kind === 'failed';
   const middle = { align: 'center', baseline: 'middle' } as const;
   const text = over ? step.text : calibrationInstruction;
-  writeLines(context, text, [menuWidth / 2, 170, inner], 54, { font: '500 40px', color: vrColors.ink, ...middle });
+  drawTextLines(context, text, [menuWidth / 2, 170, inner], 54, { font: '500 40px', color: vrColors.ink, ...middle });
   const font = step.kind === 'countdown' ? '650 180px' : '650 84px';
-  write(context, calibrationHeadline(step), [menuWidth / 2, 480], { font, color: vrColors.accent, ...middle });
+  drawText(context, calibrationHeadline(step), [menuWidth / 2, 480], { font, color: vrColors.accent, ...middle });
   if (step.kind !== 'measuring') return;
-  fillRounded(context, [menuMargin, 620, inner, 20], 10, vrColors.lift);
-  fillRounded(context, [menuMargin, 620, inner * step.part, 20], 10, vrColors.accent);
+  fillRoundedRect(context, [menuMargin, 620, inner, 20], 10, vrColors.lift);
+  fillRoundedRect(context, [menuMargin, 620, inner * step.part, 20], 10, vrColors.accent);
 }
 
 function drawButton(context: CanvasRenderingContext2D, { label, at, look }: MenuButton, hovered: boolean): void {
   const [x, y, w, h] = at;
   const plain = hovered && look !== 'off' ? vrColors.liftMore : vrColors.lift;
-  fillRounded(context, [x, y, w, h], 22, look === 'chosen' ? vrColors.accent : plain);
+  fillRoundedRect(context, [x, y, w, h], 22, look === 'chosen' ? vrColors.accent : plain);
   context.globalAlpha = look === 'off' ? 0.45 : 1;
   const color = look === 'chosen' ? vrColors.accentInk : vrColors.ink;
   const font = w > 300 ? '600 38px' : '600 30px';
   const middle = [x + w / 2, y + h / 2 + 2] as const;
-  write(context, label, middle, { font, color, align: 'center', baseline: 'middle', most: w - 24 });
+  drawText(context, label, middle, { font, color, align: 'center', baseline: 'middle', maxWidth: w - 24 });
   context.globalAlpha = 1;
 }
 
@@ -36,14 +36,14 @@ export function drawMenu(
   buttons: readonly MenuButton[],
   hovered: string | null,
 ): void {
-  fillRounded(context, [2, 2, menuWidth - 4, menuHeight - 4], 40, vrColors.glass, vrColors.line);
+  fillRoundedRect(context, [2, 2, menuWidth - 4, menuHeight - 4], 40, vrColors.glass, vrColors.line);
   const { calibration, sheet, notice } = state;
   const soft = { color: vrColors.inkSoft, baseline: 'middle' } as const;
   const heading = calibration ? 'Calibrate' : (sheet?.heading ?? 'Estimator');
-  write(context, heading, [menuMargin + 4, 72], { font: '600 30px', ...soft });
+  drawText(context, heading, [menuMargin + 4, 72], { font: '600 30px', ...soft });
   if (calibration) drawCalibration(context, calibration);
   else sheet?.draw(context);
   for (const button of buttons) drawButton(context, button, button.id === hovered);
   if (notice && !calibration && !sheet)
-    writeLines(context, notice, [menuMargin, noticesTop + 8, inner], 28, { font: '400 22px', ...soft }, 3);
+    drawTextLines(context, notice, [menuMargin, noticesTop + 8, inner], 28, { font: '400 22px', ...soft }, 3);
 }

@@ -2,7 +2,7 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Notices } from 'threepoint-ui/notices';
 import type { ActivityMenu, MenuSheet } from '../../activity/activity-menu';
 import type { Activities } from '../activities/activities';
-import type { Measuring } from '../controls/measuring';
+import type { CalibrationControl } from '../controls/calibration-control';
 import type { Headset } from '../headset';
 import type { Settings } from '../settings';
 import type { VrMenuState } from './menu-buttons';
@@ -12,7 +12,7 @@ export interface MenuParts {
   readonly body: Pick<BodySolver, 'estimator' | 'unavailableEstimators'>;
   readonly settings: Settings;
   readonly activities: Pick<Activities, 'all' | 'current'>;
-  readonly measuring: Pick<Measuring, 'step'>;
+  readonly measuring: Pick<CalibrationControl, 'step'>;
   readonly notices: Pick<Notices, 'current'>;
   readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered'>;
 }

@@ -1,7 +1,7 @@
 import { Group, Vector3 } from 'three';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
-import type { FrameReport } from 'threepoint-ui/overlay';
+import type { FrameReport } from 'threepoint-ui/frame-times-overlay';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 import { type MenuButton, menuHeight, menuWidth } from '../../activity/activity-menu';

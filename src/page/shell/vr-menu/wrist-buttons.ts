@@ -3,7 +3,7 @@ import { sideSign } from 'threepoint/core/body/skeleton';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import { type Side, sides } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createVrPanel, fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr-panel';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 
 const [width, height] = [240, 120];
@@ -27,7 +27,7 @@ function createWristButton(side: Side) {
   panel.mesh.name = `${side} wrist button`;
   panel.mesh.visible = false;
   panel.draw((context) => {
-    fillRounded(context, [4, 4, width - 8, height - 8], 40, vrColors.glass, vrColors.accent);
+    fillRoundedRect(context, [4, 4, width - 8, height - 8], 40, vrColors.glass, vrColors.accent);
     context.fillStyle = vrColors.ink;
     context.font = `650 52px ${vrFont}`;
     context.textAlign = 'center';

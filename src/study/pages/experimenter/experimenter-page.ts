@@ -1,7 +1,7 @@
 import 'threepoint-ui/styles/document.css';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { element, pageElement } from 'threepoint-ui/element';
-import { sentence } from 'threepoint-ui/phrase-parts';
+import { formatSentence } from 'threepoint-ui/text-format';
 import { type ExperimenterClient, ServerRefusal } from '../../client/study-client';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyInfo } from '../../model/progress/study-api';
@@ -214,7 +214,8 @@ async function addOrChange(client: ExperimenterClient, plan: StudyPlan, simulate
     return await client.addStudy(plan, simulated);
   } catch (error) {
     if (!(error instanceof ServerRefusal) || error.field !== 'newVersion') throw error;
-    if (!confirm(`${sentence(error.message)}\n\nMake it a new version? Results keep the versions apart.`)) return null;
+    if (!confirm(`${formatSentence(error.message)}\n\nMake it a new version? Results keep the versions apart.`))
+      return null;
     return client.addStudy(plan, simulated, true);
   }
 }

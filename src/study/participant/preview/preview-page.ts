@@ -1,7 +1,7 @@
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element, pageElement } from 'threepoint-ui/element';
 import { type Choice, chooser, fileField } from 'threepoint-ui/fields';
-import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
 import { withdrawalLink } from '../../client/study-link';
@@ -50,7 +50,7 @@ class PreviewPage {
   async #read(source: string | File): Promise<void> {
     try {
       const bytes = await readLimited(source, planFile);
-      this.#take(nameOf(source), new TextDecoder().decode(bytes));
+      this.#take(fileNameOf(source), new TextDecoder().decode(bytes));
     } catch (error) {
       this.#complain('', [reasonOf(error)]);
     }

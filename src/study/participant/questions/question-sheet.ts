@@ -1,4 +1,4 @@
-import { vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+import { vrColors, vrFont, wrapText } from 'threepoint-ui/vr-panel';
 import { questionView } from './question-views';
 import { inner, margin, type Target, width } from './sheet-target';
 import type { ScreenQuestion } from './study-screen';
@@ -33,7 +33,7 @@ function paintText(context: CanvasRenderingContext2D, text: string, bottom: numb
   const top = 130;
   for (const size of sizes) {
     context.font = `600 ${size}px ${vrFont}`;
-    const lines = wrap(context, text, inner);
+    const lines = wrapText(context, text, inner);
     if (lines.length * size * 1.32 > bottom - top && size !== sizes[3]) continue;
     for (const [index, line] of lines.entries()) context.fillText(line, margin, top + (index + 0.6) * size * 1.32);
     return;

@@ -1,4 +1,4 @@
-import { fillRounded, vrColors, vrFont, wrap } from 'threepoint-ui/vr-panel';
+import { fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr-panel';
 import { paintQuestion, questionTargets } from '../questions/question-sheet';
 import { height, inner, margin, type Target, width } from '../questions/sheet-target';
 import type { ScreenButton, StudyScreen } from '../questions/study-screen';
@@ -37,7 +37,7 @@ export function paintSheet(
   screen: StudyScreen,
   { targets, hovered }: { readonly targets: readonly Target[]; readonly hovered: string | null },
 ): void {
-  fillRounded(context, [2, 2, width - 4, height - 4], 48, 'rgba(18, 24, 35, 0.96)', vrColors.line);
+  fillRoundedRect(context, [2, 2, width - 4, height - 4], 48, 'rgba(18, 24, 35, 0.96)', vrColors.line);
   context.textBaseline = 'middle';
   context.textAlign = 'left';
   context.fillStyle = screen.trouble ? '#ff8f7d' : vrColors.inkSoft;
@@ -58,7 +58,7 @@ export function paintSheet(
   }
   context.fillStyle = vrColors.inkSoft;
   context.font = `400 26px ${vrFont}`;
-  const foot = wrap(context, screen.footnote, inner);
+  const foot = wrapText(context, screen.footnote, inner);
   for (const [index, line] of foot.entries()) {
     context.fillText(line, margin, foot.length === 1 ? 842 : 828 + 28 * index, inner);
   }
@@ -72,7 +72,7 @@ function paintParagraphs(context: CanvasRenderingContext2D, text: readonly strin
   for (const size of textSizes) {
     context.font = `400 ${size}px ${vrFont}`;
     const step = Math.round(1.37 * size);
-    const paragraphs = text.map((paragraph) => wrap(context, paragraph, inner));
+    const paragraphs = text.map((paragraph) => wrapText(context, paragraph, inner));
     const end = 236 + step * paragraphs.flat().length + 14 * paragraphs.length;
     if (end > bottom && size !== textSizes.at(-1)) continue;
     let y = 236;
@@ -100,8 +100,8 @@ function paintText(context: CanvasRenderingContext2D, { title, text, figure, par
     context.fillText(figure, width / 2, Math.max(y + 90, 500));
   }
   if (part !== null) {
-    fillRounded(context, [margin, 632, inner, 22], 11, vrColors.lift);
-    if (part > 0) fillRounded(context, [margin, 632, Math.max(22, inner * part), 22], 11, vrColors.accent);
+    fillRoundedRect(context, [margin, 632, inner, 22], 11, vrColors.lift);
+    if (part > 0) fillRoundedRect(context, [margin, 632, Math.max(22, inner * part), 22], 11, vrColors.accent);
   }
 }
 
@@ -123,7 +123,7 @@ function paintTarget(context: CanvasRenderingContext2D, target: Target, hovered:
   const [x, y, w, h] = target.at;
   const outline = look === 'missing' ? vrColors.accent : hovered ? vrColors.ink : undefined;
   const radius = kind === 'dot' ? 22 : kind === 'key' ? 12 : 28;
-  fillRounded(context, [x, y, w, h], Math.min(radius, w / 3), fillOf(look, hovered), outline);
+  fillRoundedRect(context, [x, y, w, h], Math.min(radius, w / 3), fillOf(look, hovered), outline);
   context.globalAlpha = look === 'off' ? 0.4 : 1;
   context.fillStyle = look === 'chosen' || look === 'primary' ? vrColors.accentInk : vrColors.ink;
   if (figure) {
@@ -133,11 +133,11 @@ function paintTarget(context: CanvasRenderingContext2D, target: Target, hovered:
   if (label) {
     // Narrow points have small text that is wrapped.
     context.font = kind === 'scale' && w < 180 ? `500 26px ${vrFont}` : fontOf(target);
-    let lines = kind === 'scale' || kind === 'option' || kind === 'button' ? wrap(context, label, w - 16) : [label];
+    let lines = kind === 'scale' || kind === 'option' || kind === 'button' ? wrapText(context, label, w - 16) : [label];
     if (kind === 'button' && lines.length > 1) {
       // Long labels wrap into two smaller lines, which are easier to read than one condensed line.
       context.font = `600 34px ${vrFont}`;
-      lines = wrap(context, label, w - 16);
+      lines = wrapText(context, label, w - 16);
     }
     const middle = figure ? y + 148 : y + h / 2 + 2;
     const step = 30;

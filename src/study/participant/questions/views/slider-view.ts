@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import { fillRounded, vrColors } from 'threepoint-ui/vr-panel';
+import { fillRoundedRect, vrColors } from 'threepoint-ui/vr-panel';
 import { inLanguage } from '../../../model/phrases/words';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
 import type { QuestionView } from '../question-view';
@@ -91,8 +91,8 @@ export const sliderView: QuestionView<SliderForm, SliderField> = {
     },
     paint(context, { values, answer, ends }, hovered) {
       const { left, wide, y } = track;
-      fillRounded(context, [left, y - 5, wide, 10], 5, vrColors.liftMore);
-      for (const x of [left, left + wide]) fillRounded(context, [x - 3, y - 30, 6, 60], 3, vrColors.liftMore);
+      fillRoundedRect(context, [left, y - 5, wide, 10], 5, vrColors.liftMore);
+      for (const x of [left, left + wide]) fillRoundedRect(context, [x - 3, y - 30, 6, 60], 3, vrColors.liftMore);
       const mark = (index: number, fill: string, radius: number) => {
         if (index < 0) return;
         context.beginPath();

@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import { fillRounded, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr-panel';
 import type { Phrases } from '../../../model/phrases/phrases';
 import { inLanguage } from '../../../model/phrases/words';
 import type { NumberForm } from '../../../model/questionnaires/kinds/number';
@@ -58,7 +58,7 @@ const sheet: SheetView<TypedField> = {
   paint(context, { kind, typed, unit }) {
     const wide = kind === 'text' ? inner : 420;
     const y = kind === 'text' ? 256 : 286;
-    fillRounded(context, [margin, y, wide, 64], 16, 'rgba(8, 12, 19, 0.6)', vrColors.line);
+    fillRoundedRect(context, [margin, y, wide, 64], 16, 'rgba(8, 12, 19, 0.6)', vrColors.line);
     context.font = `500 36px ${vrFont}`;
     context.fillStyle = vrColors.ink;
     // Text that does not fit loses its beginning: the participant types at its end.

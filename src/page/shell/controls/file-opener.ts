@@ -1,0 +1,110 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
+import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
+import type { Notices } from 'threepoint-ui/notices';
+import type { Recorder } from '../../studio/recorder';
+import type { PageMocap } from '../page-mocap';
+import type { UserAvatar } from '../user-avatar';
+
+/** Twice what the recorder keeps at most. */
+const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
+
+export interface FileOpenerOptions {
+  readonly avatar: Pick<UserAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name' | 'waiting'>;
+  readonly recorder: Pick<Recorder, 'nextRequest' | 'open' | 'replay'>;
+  readonly notices: Pick<Notices, 'show'>;
+  readonly body: Pick<BodySolver, 'discontinuity'>;
+  readonly mocap: Pick<PageMocap, 'open'>;
+  onChange(): void;
+}
+
+const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
+/** A map of a skeleton is a page of text [bytes]. */
+const largestMap = 2 ** 18;
+const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma|gltf)$/i.test(name);
+/** Files with a body, its motion or both: bodies, unless they were chosen as motion. */
+const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
+
+/** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
+export class FileOpener {
+  readonly #options: FileOpenerOptions;
+
+  constructor(options: FileOpenerOptions) {
+    this.#options = options;
+  }
+
+  /**
+   * Files that came together: those of motion capture make one motion, others are opened one by one. `asMotion`: they
+   * were chosen as motion capture.
+   */
+  openAll(files: readonly File[], { asMotion = false } = {}): void {
+    const isMotion = (file: File): boolean => isMocap(file) || (asMotion && mayBeMocap(file));
+    // Beside motion, JSON is a map of its skeleton.
+    const mocap = files.some(isMotion) ? files.filter((file) => isMotion(file) || isJson(file)) : [];
+    if (mocap.length > 0) void this.#options.mocap.open(mocap);
+    for (const file of files) if (!mocap.includes(file)) void this.open(file);
+  }
+
+  /**
+   * A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a
+   * notice.
+   */
+  async open(file: File): Promise<void> {
+    const asked = this.#options.recorder.nextRequest();
+    if (!isJson(file)) await this.openAvatar(file);
+    else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#options.mocap.open([file]);
+    else await this.openRecording(file, asked);
+  }
+
+  /** Shows an avatar; a file of motion without a body is opened as motion capture. */
+  async openAvatar(source: string | File): Promise<void> {
+    const { avatar, notices, mocap } = this.#options;
+    const outcome = await avatar.open(source);
+    if (outcome === 'motion') await mocap.open([source]);
+    else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`);
+  }
+
+  /**
+   * Sets the bones of the file that waits for them; null: forgets the user's map. Never rejects: the form shows what is
+   * wrong.
+   */
+  async giveBones(bones: BoneMap | null): Promise<void> {
+    const { avatar, notices } = this.#options;
+    const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
+    if (await avatar.giveBones(bones)) notices.show('info', `${avatar.name} ${text}`);
+  }
+
+  /** Ours, also after a reload. */
+  showBuiltInAvatar(): void {
+    const address = new URL(location.href);
+    address.searchParams.delete('avatar');
+    history.replaceState(null, '', address);
+    void this.#options.avatar.openBuiltIn();
+  }
+
+  /**
+   * Replays what the file keeps, with the body of the person in it. `asked`: the recorder's place for this wish. Never
+   * rejects: what goes wrong becomes a notice.
+   */
+  async openRecording(source: string | File, asked = this.#options.recorder.nextRequest()): Promise<void> {
+    const { recorder, notices } = this.#options;
+    const name = fileNameOf(source);
+    try {
+      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), asked);
+      this.replay();
+    } catch (error) {
+      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
+      notices.show('error', `${name} could not be replayed: ${reason}`);
+    }
+  }
+
+  /** Replays the current recording from its start. */
+  replay(): void {
+    const { recorder, body, onChange } = this.#options;
+    recorder.replay();
+    body.discontinuity();
+    onChange();
+  }
+}

@@ -1,0 +1,70 @@
+import type { BodySolver } from 'threepoint/api/body-solver';
+import { clamp } from 'threepoint/core/math/damper';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Headset } from '../headset';
+import type { UserCalibration } from '../user-calibration';
+
+/** The farthest that a user is lowered and raised [m]. */
+const minRaise = -0.5;
+const maxRaise = 1;
+
+export interface UserHeightOptions {
+  readonly headset: Pick<Headset, 'raised' | 'raise'>;
+  readonly body: Pick<BodySolver, 'calibration'>;
+  readonly userCalibration: Pick<UserCalibration, 'recentre'>;
+}
+
+/** The height at which a session shows its user: as tracked, standing for a user who sits, or overridden by hand. */
+export class UserHeight {
+  readonly #options: UserHeightOptions;
+  #seated = false;
+  /** The height of the head as shown [m]; null: not seen yet. */
+  #headHeight: number | null = null;
+
+  constructor(options: UserHeightOptions) {
+    this.#options = options;
+  }
+
+  /** The user sits and is shown at standing height. */
+  get seated(): boolean {
+    return this.#seated;
+  }
+
+  /** A session has started or ended: the height is as tracked. */
+  reset(): void {
+    this.#seated = false;
+    this.#headHeight = null;
+  }
+
+  observe({ head }: TrackingFrame): void {
+    this.#headHeight = head.position.y;
+  }
+
+  /** Raises a user who sits to the eye height of their calibration; a user who stands is shown as tracked again. */
+  setSeated(on: boolean): void {
+    const { headset, body } = this.#options;
+    if (this.#headHeight === null) return;
+    this.#seated = on;
+    const tracked = this.#headHeight - headset.raised;
+    this.#raise(on ? body.calibration.eyeHeight - tracked : 0);
+    this.#options.userCalibration.recentre();
+  }
+
+  /** Moves the floor under the user; for a user who sits, the eyes are at standing height again. */
+  recentre(): void {
+    if (this.#seated) this.setSeated(true);
+    else this.#options.userCalibration.recentre();
+  }
+
+  /** Raises the user by this much more [m]. */
+  raiseBy(metres: number): void {
+    this.#raise(this.#options.headset.raised + metres);
+  }
+
+  #raise(height: number): void {
+    const { headset } = this.#options;
+    const before = headset.raised;
+    headset.raise(clamp(height, minRaise, maxRaise));
+    if (this.#headHeight !== null) this.#headHeight += headset.raised - before;
+  }
+}

@@ -1,0 +1,153 @@
+import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
+import type { TrackedPose } from 'threepoint/core/math/pose';
+import { vec3 } from 'threepoint/core/math/vec3';
+import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { createActor } from 'threepoint-page/emulator/actor';
+import type { Emulator } from 'threepoint-page/emulator/emulator';
+import { CalibrationControl } from 'threepoint-page/shell/controls/calibration-control';
+import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
+import { Recorder } from 'threepoint-page/studio/recorder';
+import { beforeEach, describe, expect, test, vi } from 'vitest';
+import { noPointers } from '../activity-services';
+
+/** The part of an element that the dialog needs. */
+class Element extends EventTarget {
+  readonly dataset: Record<string, string> = {};
+  textContent = '';
+  hidden = false;
+  value = 0;
+  open = false;
+  readonly setAttribute = () => undefined;
+  readonly append = () => undefined;
+  showModal(): void {
+    this.open = true;
+  }
+  close(): void {
+    this.open = false;
+  }
+}
+
+beforeEach(() => vi.stubGlobal('document', { createElement: () => new Element(), body: new Element() }));
+
+const tracked = (x: number, y: number, z: number): TrackedPose => ({
+  position: vec3(x, y, z),
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+  tracking: 'tracked',
+});
+
+/** A person with eyes this high [m] in the posture of the guided calibration. */
+const standing = (time: number, eyeHeight: number): TrackingFrame => ({
+  time,
+  head: tracked(0, eyeHeight, 0),
+  leftHand: tracked(-0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
+  rightHand: tracked(0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
+});
+
+/** An emulated headset that its user holds as a person of 1.6 m at the eyes stands. */
+const emulatedHeadset = { read: (time) => standing(time, 1.6) } as Emulator;
+
+/** A page at a desk whose user may be measured; it records notices and stored values. */
+function page({ actor = false, emulator = null as Emulator | null } = {}) {
+  const told: string[] = [];
+  const remembered: Calibration[] = [];
+  const recorder = new Recorder();
+  const settings = { actor };
+  const headset = { worn: false, emulator, tracking: null };
+  const body = { userCalibration: defaultCalibration };
+  const measuring = new CalibrationControl({
+    settings,
+    headset,
+    body,
+    recorder,
+    userCalibration: { calibrateForGood: (calibration) => void remembered.push(calibration) },
+    notices: { show: (_, text) => void told.push(text) },
+  });
+  const source = new TrackingSource({
+    settings,
+    headset,
+    body,
+    recorder,
+    actor: createActor(),
+    activities: { current: null, act: () => null },
+    study: { idle: false },
+    pointers: noPointers,
+  });
+  let now = 0;
+  return {
+    measuring,
+    told,
+    remembered,
+    recorder,
+    settings,
+    /** Runs the page for this many seconds at 60 frames a second. */
+    pass(seconds: number) {
+      for (let frame = 0; frame < 60 * seconds; frame++) {
+        now += 1 / 60;
+        measuring.observe(source.read(now, undefined)!);
+      }
+    },
+    /** Replays a person of 1.9 m at the eyes. */
+    replay() {
+      const frames = [0, 1, 2, 3, 4, 5, 6, 7].map((time) => standing(time, 1.9));
+      recorder.load('tall.json', { device: 'a test', rateHz: 1, calibration: null, frames });
+      recorder.replay();
+    },
+  };
+}
+
+describe('calibrating at a desk', () => {
+  test('with the actor off and a real headset to put on first says so, and opens no countdown', () => {
+    const { measuring, told } = page();
+    measuring.start();
+    expect(measuring.step).toBeNull();
+    expect(told).toEqual([expect.stringContaining('Enter VR first')]);
+  });
+
+  test('begins where the user moves the emulated headset, and not where the actor does', () => {
+    const user = page({ emulator: emulatedHeadset });
+    user.measuring.start();
+    user.pass(8);
+    expect(user.measuring.step?.kind).toBe('done');
+    expect(user.remembered.map(({ eyeHeight }) => eyeHeight)).toEqual([expect.closeTo(1.6, 2)]);
+    const watching = page({ actor: true, emulator: emulatedHeadset });
+    watching.measuring.start();
+    expect(watching.measuring.step).toBeNull();
+    expect(watching.told).toHaveLength(1);
+  });
+
+  test('during a replay measures no one: the person in the recording is not the user', () => {
+    const { measuring, told, remembered, pass, replay } = page({ emulator: emulatedHeadset });
+    replay();
+    measuring.start();
+    pass(8);
+    expect(remembered).toEqual([]);
+    expect(measuring.step).toBeNull();
+    expect(told).toEqual([expect.stringContaining('Stop the replay first')]);
+  });
+
+  test('ends with a sentence where a replay, or the actor, takes over while it measures', () => {
+    const interrupted = page({ emulator: emulatedHeadset });
+    interrupted.measuring.start();
+    interrupted.pass(2);
+    interrupted.replay();
+    interrupted.pass(8);
+    expect(interrupted.remembered).toEqual([]);
+    expect(interrupted.measuring.step).toBeNull();
+    expect(interrupted.told).toEqual([expect.stringContaining('Stop the replay first')]);
+    const left = page({ emulator: emulatedHeadset });
+    left.measuring.start();
+    left.pass(2);
+    left.settings.actor = true;
+    left.pass(8);
+    expect([left.remembered, left.measuring.step, left.told.length]).toEqual([[], null, 1]);
+  });
+
+  test('that is over stays on the screen while a recording replays', () => {
+    const { measuring, told, pass, replay } = page({ emulator: emulatedHeadset });
+    measuring.start();
+    pass(8);
+    replay();
+    pass(1);
+    expect([measuring.step?.kind, told]).toEqual(['done', []]);
+  });
+});
