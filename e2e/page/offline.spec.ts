@@ -32,11 +32,6 @@ async function serveOurs(folder: string, port = 0): Promise<OurServer> {
   return { address: `http://localhost:${server.port}/`, port: server.port, asked, close: () => server.close() };
 }
 
-const hosts = {
-  'a folder of a host of files': (folder: string) => serveStatic(folder, '/threepoint/'),
-  'our server': (folder: string) => serveOurs(folder),
-};
-
 /** What a browser says of a host that cannot be reached. */
 const unreachable = /net::ERR_|Failed to fetch|could not be reached/;
 
@@ -106,38 +101,36 @@ function publishNewer(folder: string): { readonly oldArchery: string } {
   return { oldArchery };
 }
 
-for (const [where, host] of Object.entries(hosts)) {
-  test(`after one visit to ${where}, archery is played in VR with neither network nor host @full`, async ({
-    browser,
-    folder,
-  }) => {
-    const served = await host(folder);
-    const page = await newPage(browser, served.address, true);
-    const { errors } = collectErrors(page, served.address);
-    await visit(page);
-    await isKept(page);
-    expect(errors, 'of the first visit').toEqual([]);
+test('after one visit to a host of files, archery is played in VR with neither network nor host @full', async ({
+  browser,
+  folder,
+}) => {
+  const served = await serveStatic(folder, '/threepoint/');
+  const page = await newPage(browser, served.address, true);
+  const { errors } = collectErrors(page, served.address);
+  await visit(page);
+  await isKept(page);
+  expect(errors, 'of the first visit').toEqual([]);
 
-    await served.close();
-    await page.context().setOffline(true);
-    await visit(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
-    const { estimator, provider, notices } = await probe(page);
-    expect({ estimator, provider, notices }).toEqual({ estimator: 'learned', provider: 'wasm', notices: [] });
-    const headset = await emulatedHeadset(page);
-    await enterVr(page);
-    await holdAt<ArcheryProbe>(page, { score: 5 });
-    await keepPicture(page, 'offline-archery');
-    await headset.endSession();
-    await page.getByRole('button', { name: 'Ball game' }).click();
-    await expect(page.getByText('does not answer. Try again later.')).toBeVisible();
-    await keepPicture(page, 'offline-rooms');
-    expect(
-      errors.filter((text) => !unreachable.test(text)),
-      'without a network',
-    ).toEqual([]);
-    await page.context().close();
-  });
-}
+  await served.close();
+  await page.context().setOffline(true);
+  await visit(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
+  const { estimator, provider, notices } = await probe(page);
+  expect({ estimator, provider, notices }).toEqual({ estimator: 'learned', provider: 'wasm', notices: [] });
+  const headset = await emulatedHeadset(page);
+  await enterVr(page);
+  await holdAt<ArcheryProbe>(page, { score: 5 });
+  await keepPicture(page, 'offline-archery');
+  await headset.endSession();
+  await page.getByRole('button', { name: 'Ball game' }).click();
+  await expect(page.getByText('does not answer. Try again later.')).toBeVisible();
+  await keepPicture(page, 'offline-rooms');
+  expect(
+    errors.filter((text) => !unreachable.test(text)),
+    'without a network',
+  ).toEqual([]);
+  await page.context().close();
+});
 
 test('nothing is kept of a server, and a study is served by it as ever @full', async ({ browser, folder }) => {
   const served = await serveOurs(folder);

@@ -1,23 +1,6 @@
-import type { Page, Route } from '@playwright/test';
+import type { Page } from '@playwright/test';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { enterVr, expect, joint, openWithHeadset, probe, freshTest as test } from '../page-fixture';
-
-/** What can be wrong with a model file, and how the server would answer then. */
-const faults: Readonly<Record<string, (route: Route) => Promise<void>>> = {
-  missing: (route) => route.fulfill({ status: 404, body: 'Not found.' }),
-  truncated: async (route) => {
-    const body = await (await route.fetch()).body();
-    await route.fulfill({ status: 200, body: body.subarray(0, Math.floor(body.length / 2)) });
-  },
-  'not a model': (route) => route.fulfill({ status: 200, body: '<!doctype html><title>Sign in to the Wi-Fi</title>' }),
-  // The length is unchanged and one bit is wrong: only the contract's checksum detects it.
-  'flipped in one bit': async (route) => {
-    const body = await (await route.fetch()).body();
-    const middle = Math.floor(body.length / 2);
-    body[middle] = (body[middle] ?? 0) ^ 1;
-    await route.fulfill({ status: 200, body });
-  },
-};
 
 /** How long after the page's script the first body was drawn [s]. */
 const firstBody = (page: Page): Promise<number> =>
@@ -26,20 +9,16 @@ const firstBody = (page: Page): Promise<number> =>
     return (firstBody - script) / 1000;
   });
 
-for (const [fault, fulfil] of Object.entries(faults)) {
-  // Only one fault runs by day: the unit tests of load-regressor cover the others.
-  const suite = fault === 'missing' ? '' : ' @full';
-  test(`a model that is ${fault}: IK takes over and the page says so${suite}`, async ({ page, complaints }) => {
-    complaints.allow(/learned/, /404/);
-    await page.route('**/models/learned*.onnx', fulfil);
-    const headset = await openWithHeadset(page, 'estimator=learned');
-    await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
-    await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
-    await enterVr(page);
-    await headset.place({ head: { position: [0.3, 1.6, 0] } });
-    await expect.poll(async () => Math.abs((await joint(page, 'head'))[0] - 0.3)).toBeLessThan(0.05);
-  });
-}
+test('a model that is missing: IK takes over and the page says so', async ({ page, complaints }) => {
+  complaints.allow(/learned/, /404/);
+  await page.route('**/models/learned*.onnx', (route) => route.fulfill({ status: 404, body: 'Not found.' }));
+  const headset = await openWithHeadset(page, 'estimator=learned');
+  await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
+  await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
+  await enterVr(page);
+  await headset.place({ head: { position: [0.3, 1.6, 0] } });
+  await expect.poll(async () => Math.abs((await joint(page, 'head'))[0] - 0.3)).toBeLessThan(0.05);
+});
 
 test('without WebAssembly IK takes over and the page says so', async ({ page, complaints }) => {
   complaints.allow(/wasm/i, /404/, /learned|paper/);
