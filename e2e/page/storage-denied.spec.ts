@@ -5,7 +5,7 @@ import { chromium, type Page } from '@playwright/test';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { drawSeldom } from '../draw-seldom';
 import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
-import { fillInDemographics, reaches, recordsOf, test } from '../study-participant';
+import { recordsOf, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
 /**
@@ -68,34 +68,4 @@ test('a browser that stores nothing shows the page, plays with others and takes 
     await expect(page.getByText('This browser does not let the page store anything')).toBeVisible();
   });
   reportFigures('storage-denied', { 'pages that failed': '0 of 3' });
-});
-
-test('a browser whose IndexedDB alone never answers shows the page and takes part in a study @full', async ({
-  page,
-  origin,
-}) => {
-  await page.addInitScript(() => {
-    const { open } = IDBFactory.prototype;
-    IDBFactory.prototype.open = function (name) {
-      const request = open.call(this, `${name}, unanswered`);
-      for (const event of ['success', 'upgradeneeded'])
-        request.addEventListener(event, (answer) => answer.stopImmediatePropagation());
-      return request;
-    };
-  });
-  await page.goto(`${origin}/?quality=low&panel=off&overlay=off`);
-  await page.waitForFunction(() => window.threepoint?.probe().ready, undefined, { timeout: 60_000 });
-  expect((await probe(page)).notices).toEqual([]);
-
-  await experimenter(origin).begin(shortStudy('silent'), false);
-  await page.goto(await experimenter(origin).link('silent', 'P01', '&quality=low'));
-  await page.getByLabel(/I have read this/).check({ timeout: 30_000 });
-  await page.getByRole('button', { name: 'I agree' }).click();
-  await page.getByRole('button', { name: 'I have noted it' }).click();
-  await fillInDemographics(page);
-  await page.getByRole('button', { name: 'Continue' }).click();
-  await expect.poll(async () => (await recordsOf(origin, 'silent')).length).toBe(2);
-  await experimenter(origin).ask('/silent/participants/P01/commands', 'POST', { type: 'pause' });
-  await reaches(page, 'paused');
-  reportFigures('storage-blocked', { 'pages that stood still': '0 of 2' });
 });

@@ -392,8 +392,7 @@ export const attackRows = {
     inject: 'IndexedDB alone is missing, throws, hangs or fails midway',
     sees: 'The study continues with a notice; answers reach the server',
     target: '0 sessions stopped; 0 records lost',
-    shows: ['pages that stood still'],
-    tests: ['tests/study/participant/blocked-storage.test.ts', 'e2e/page/storage-denied.spec.ts'],
+    tests: ['tests/study/participant/blocked-storage.test.ts'],
   },
   'first-folder': {
     inject: 'A folder of the first version, with a plan that is no longer valid',
