@@ -7,6 +7,16 @@ import {
   SRGBColorSpace,
   Vector3,
 } from 'three';
+import type { Ray } from 'threepoint/core/math/ray';
+import type { Vec3 } from 'threepoint/core/math/vec3';
+
+/** A place on a panel's canvas [pixels]. */
+export interface PanelPoint {
+  x: number;
+  y: number;
+  /** The distance in front of the panel, or along a ray [m]. */
+  distance: number;
+}
 
 /**
  * A flat panel in the world that is drawn on a 2D canvas; visible from its front (+Z) only, so that a mirror shows no
@@ -27,7 +37,14 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
     new MeshBasicMaterial({ map: texture, transparent: true, toneMapped: false, fog: false }),
   );
   const local = new Vector3();
-  const scale = new Vector3();
+  const step = new Vector3();
+  /** Writes where the local point lies on the canvas. */
+  function place(out: PanelPoint, distance: number): PanelPoint {
+    out.x = width / 2 + local.x * pixelsPerMetre;
+    out.y = height / 2 - local.y * pixelsPerMetre;
+    out.distance = distance;
+    return out;
+  }
   return {
     mesh,
     /** Clears the panel and draws. Call it only when something changed. */
@@ -36,15 +53,20 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
       paint(context);
       texture.needsUpdate = true;
     },
-    /** Returns a point of the world on the canvas [pixels], and its distance in front of the panel [m]. */
-    locate(point: Vector3): { readonly x: number; readonly y: number; readonly distance: number } {
+    /** Writes where a point of the world lies on the canvas, and its distance in front of the panel. */
+    locate(point: Vec3, out: PanelPoint): PanelPoint {
       mesh.worldToLocal(local.copy(point));
-      const { z } = mesh.getWorldScale(scale);
-      return {
-        x: width / 2 + local.x * pixelsPerMetre,
-        y: height / 2 - local.y * pixelsPerMetre,
-        distance: local.z * z,
-      };
+      return place(out, local.z * mesh.getWorldScale(step).z);
+    },
+    /** Writes where a ray of the world meets the panel's front; returns null where it does not, and writes nothing. */
+    meet({ origin, direction }: Ray, out: PanelPoint): PanelPoint | null {
+      mesh.worldToLocal(local.copy(origin));
+      mesh.worldToLocal(step.copy(origin).add(direction)).sub(local);
+      if (local.z < 0 || step.z >= 0) return null;
+      const distance = -local.z / step.z;
+      local.addScaledVector(step, distance);
+      const isBeside = Math.max(Math.abs(local.x) / width, Math.abs(local.y) / height) * pixelsPerMetre > 0.5;
+      return isBeside ? null : place(out, distance);
     },
   };
 }

@@ -89,8 +89,9 @@ export function createVrPointers() {
     objects,
     /** Draws the pointers of a frame, after everything has reported what they point at. */
     show(pointers: readonly Pointer[]): void {
-      for (const [index, each] of drawn.entries()) {
-        const pointer = pointers[index];
+      for (let i = 0; i < drawn.length; i++) {
+        const each = drawn[i]!;
+        const pointer = pointers[i];
         if (pointer) each.show(pointer);
         else each.object.visible = false;
       }

@@ -1,6 +1,6 @@
-import { Raycaster, Vector3 } from 'three';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { VrPanel } from './vr-panel';
+import type { PointedAt, Pointer } from 'threepoint/core/input/pointer';
+import type { Mutable } from 'threepoint/core/records';
+import type { PanelPoint, VrPanel } from './vr-panel';
 
 /** A finger tip that comes from this far before the sheet [m] to behind it touches. */
 const touchDepth = 0.015;
@@ -13,61 +13,82 @@ export interface PanelTarget {
   readonly at: readonly [number, number, number, number];
 }
 
+/** What pointers do on a panel in a frame. */
+export interface Touched<Target extends PanelTarget> {
+  readonly pointedAt: Target | null;
+  /** A target that two pointers press is here once. */
+  readonly pressed: readonly Target[];
+}
+
 /** Rays and finger tips on one panel. */
-export interface PanelTouch {
+export interface PanelTouch<Target extends PanelTarget> {
   /**
-   * Returns what the pointers point at and press in this frame; a target pressed by two of them is pressed once.
-   * Reports to the pointers what they point at.
+   * Returns what the pointers point at and press in this frame; the next frame overwrites it. Reports to the pointers
+   * what they point at.
    */
-  follow<Target extends PanelTarget>(
-    pointers: readonly Pointer[],
-    targets: readonly Target[],
-  ): { readonly pointedAt: Target | null; readonly pressed: readonly Target[] };
+  follow(pointers: readonly Pointer[], targets: readonly Target[]): Touched<Target>;
+}
+
+function targetAt<Target extends PanelTarget>(targets: readonly Target[], { x, y }: PanelPoint): Target | null {
+  for (const target of targets) {
+    const { at } = target;
+    if (x >= at[0] && x <= at[0] + at[2] && y >= at[1] && y <= at[1] + at[3]) return target;
+  }
+  return null;
 }
 
 /**
  * `owner`: the part of the page that the panel belongs to. `countsRay`: whether the ray of a pointer counts; its finger
  * tip always does.
  */
-export function createPanelTouch(
+export function createPanelTouch<Target extends PanelTarget>(
   panel: VrPanel,
   owner: string,
   countsRay: (pointer: Pointer) => boolean = () => true,
-): PanelTouch {
+): PanelTouch<Target> {
   const behind = new WeakMap<Pointer, boolean>();
-  const raycaster = new Raycaster();
-  const tip = new Vector3();
+  const point: PanelPoint = { x: 0, y: 0, distance: 0 };
+  const met: Mutable<PointedAt> = { distance: 0, owner, id: null };
+  const pressed: Target[] = [];
+  const touched: Mutable<Touched<Target>> = { pointedAt: null, pressed };
+
+  function press(target: Target): void {
+    if (!pressed.includes(target)) pressed.push(target);
+  }
+
+  function followRay(pointer: Pointer, targets: readonly Target[]): void {
+    if (!panel.meet(pointer, point)) return;
+    const target = targetAt(targets, point);
+    // The sheet itself covers what lies behind it; nothing on it can be rested on but a target.
+    met.distance = point.distance;
+    met.id = target?.id ?? null;
+    pointer.pointAt(met);
+    if (!target) return;
+    touched.pointedAt = target;
+    if (pointer.pressed) press(target);
+  }
+
+  function followTip(pointer: Pointer, targets: readonly Target[]): void {
+    const tip = pointer.tip ?? (pointer.source === 'controller' ? pointer.origin : null);
+    if (!tip) return;
+    const { distance } = panel.locate(tip, point);
+    const target = Math.abs(distance) < hoverDepth ? targetAt(targets, point) : null;
+    if (target) touched.pointedAt = target;
+    // Only coming from the front counts: a hand that was behind the sheet has touched nothing.
+    if (target && distance < 0 && behind.get(pointer) === false) press(target);
+    if (distance < 0) behind.set(pointer, true);
+    else if (distance > touchDepth) behind.set(pointer, false);
+  }
+
   return {
-    follow<Target extends PanelTarget>(pointers: readonly Pointer[], targets: readonly Target[]) {
-      panel.mesh.updateWorldMatrix(true, false);
-      const targetAt = (x: number, y: number) =>
-        targets.find(({ at: [left, top, w, h] }) => x >= left && x <= left + w && y >= top && y <= top + h);
-      let pointedAt: Target | null = null;
-      const pressed = new Map<string, Target>();
+    follow(pointers, targets) {
+      touched.pointedAt = null;
+      pressed.length = 0;
       for (const pointer of pointers) {
-        raycaster.ray.origin.copy(pointer.origin);
-        raycaster.ray.direction.copy(pointer.direction);
-        const hit = countsRay(pointer) ? raycaster.intersectObject(panel.mesh, false)[0] : undefined;
-        if (hit) {
-          const { x, y } = panel.locate(hit.point);
-          const target = targetAt(x, y);
-          // The sheet itself covers what lies behind it; nothing on it can be rested on but a target.
-          pointer.pointAt({ distance: hit.distance, owner, id: target?.id ?? null });
-          if (target) pointedAt = target;
-          if (target && pointer.pressed) pressed.set(target.id, target);
-        }
-        const touching = pointer.tip ?? (pointer.source === 'controller' ? pointer.origin : null);
-        if (!touching) continue;
-        const touch = panel.locate(tip.copy(touching));
-        const target = Math.abs(touch.distance) < hoverDepth ? targetAt(touch.x, touch.y) : undefined;
-        if (target) pointedAt = target;
-        const through = target !== undefined && touch.distance < 0;
-        // Only coming from the front counts: a hand that was behind the sheet has touched nothing.
-        if (through && behind.get(pointer) === false) pressed.set(target.id, target);
-        if (through || touch.distance < 0) behind.set(pointer, true);
-        else if (touch.distance > touchDepth) behind.set(pointer, false);
+        if (countsRay(pointer)) followRay(pointer, targets);
+        followTip(pointer, targets);
       }
-      return { pointedAt, pressed: [...pressed.values()] };
+      return touched;
     },
   };
 }

@@ -34,6 +34,7 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
 }
 
 const isGaze = ({ source }: Pointer): boolean => source === 'gaze';
+const isNoGaze = (pointer: Pointer): boolean => !isGaze(pointer);
 
 /** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
 export class HeadsetControls {
@@ -42,6 +43,8 @@ export class HeadsetControls {
   readonly #wrists = new WristButtons();
   readonly #offer = new GazeOffer();
   readonly #comfort: UserHeight;
+  readonly #gazes: Pointer[] = [];
+  readonly #others: Pointer[] = [];
   #comfortOpen = false;
   #worn = false;
 
@@ -96,12 +99,20 @@ export class HeadsetControls {
     if (frame) this.#comfort.observe(frame);
     const offers = pointers.offersGaze && frame !== null && study.run === null;
     if (!offers) this.#offer.hide();
-    else if (this.#offer.follow(frame.head, pointers.all.filter(isGaze))) this.#options.writer.change({ gaze: true });
+    else if (this.#offer.follow(frame.head, this.#only(isGaze, this.#gazes)))
+      this.#options.writer.change({ gaze: true });
     // A gaze that was not accepted yet presses nothing else.
-    const acting = pointers.offersGaze ? pointers.all.filter((pointer) => !isGaze(pointer)) : pointers.all;
+    const acting = pointers.offersGaze ? this.#only(isNoGaze, this.#others) : pointers.all;
     if (study.run) study.run.point(acting);
     else this.#pointAtPage(frame, acting);
     rays.show(pointers.offersGaze && !offers ? acting : pointers.all);
+  }
+
+  /** Writes the pointers of a kind. */
+  #only(isOne: (pointer: Pointer) => boolean, out: Pointer[]): readonly Pointer[] {
+    out.length = 0;
+    for (const pointer of this.#options.pointers.all) if (isOne(pointer)) out.push(pointer);
+    return out;
   }
 
   #pointAtPage(frame: TrackingFrame | null, pointers: readonly Pointer[]): void {
@@ -111,7 +122,8 @@ export class HeadsetControls {
       if (pressed || asked) this.#callMenu(frame);
     }
     this.#menu.point(pointers);
-    this.#pointAtSheets(pointers);
+    // One hand's ray is lit, that of a hand that presses first; the other's would put the light out again.
+    if (!this.#pointAtSheets(pointers, true)) this.#pointAtSheets(pointers, false);
   }
 
   /** Brings the menu before the user, or puts it back. */
@@ -120,19 +132,18 @@ export class HeadsetControls {
     else this.#menu.bring(head);
   }
 
-  #pointAtSheets(pointers: readonly Pointer[]): void {
+  /** Points the first pointer that meets a sheet of the game at it, of those that press or do not; none: false. */
+  #pointAtSheets(pointers: readonly Pointer[], pressing: boolean): boolean {
     const { current } = this.#options.activities;
-    if (!current?.point) return;
-    const pressingFirst = [...pointers].sort((a, b) => Number(b.pressed) - Number(a.pressed));
-    for (const pointer of pressingFirst) {
-      const { origin, direction, pressed, pointedAt } = pointer;
-      const ray = { origin: { ...origin }, direction: { ...direction } };
-      const hit = current.point(ray, pressed && pointedAt?.owner !== 'menu');
+    if (!current?.point) return false;
+    for (const pointer of pointers) {
+      if (pointer.pressed !== pressing) continue;
+      const hit = current.point(pointer, pressing && pointer.pointedAt?.owner !== 'menu');
       if (hit === null) continue;
       pointer.pointAt(hit);
-      // One hand's ray is lit; the other's would put the light out again.
-      break;
+      return true;
     }
+    return false;
   }
 
   #comfortSheet() {

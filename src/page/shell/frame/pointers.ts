@@ -9,6 +9,8 @@ const handsGoneSeconds = 1;
 /** A session without hands and pinches offers the gaze after this time [s]. */
 const offerSeconds = 3;
 
+const isTransient = ({ source }: Pointer): boolean => source === 'transient';
+
 export interface PointersOptions {
   readonly headset: { readonly tracking: Pick<TrackedSession, 'inputs'> | null };
   readonly settings: Pick<Settings, 'gaze'>;
@@ -58,7 +60,7 @@ export class Pointers {
     if (!pointing) return;
     for (const pointer of pointing.pointers) this.#all.push(pointer);
     const without = time - Math.max(pointing.handsSeenAt, this.#began);
-    const pinch = this.#all.find(({ source }) => source === 'transient') ?? null;
+    const pinch = this.#all.find(isTransient) ?? null;
     this.#transient = pinch ?? this.#transient;
     this.#offers = head !== null && !settings.gaze && this.#transient === null && without > offerSeconds;
     const gazes = head !== null && !pinch && (settings.gaze || this.#offers);

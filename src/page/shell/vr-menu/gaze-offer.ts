@@ -9,7 +9,7 @@ const [width, height] = [720, 200];
 const away = 1.2;
 const below = 0.3;
 
-const offer = { id: 'gaze', at: [0, 0, width, height] } as const;
+const targets = [{ id: 'gaze', at: [0, 0, width, height] }] as const;
 
 /** A sign before a user whose hands no device tracks: it offers to choose by gaze. */
 export class GazeOffer {
@@ -51,6 +51,6 @@ export class GazeOffer {
       object.lookAt(this.#ahead.copy(head.position));
       object.visible = true;
     }
-    return this.#touch.follow(pointers, [offer]).pressed.length > 0;
+    return this.#touch.follow(pointers, targets).pressed.length > 0;
   }
 }

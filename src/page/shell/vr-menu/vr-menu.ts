@@ -21,7 +21,7 @@ export class VrMenu {
   readonly object = new Group();
   readonly #menu = createVrPanel(menuWidth, menuHeight, pixelsPerMetre);
   readonly #frameTimes = createVrPanel(frameTimesWidth, frameTimesHeight, pixelsPerMetre);
-  readonly #touch = createPanelTouch(this.#menu, 'menu');
+  readonly #touch = createPanelTouch<MenuButton>(this.#menu, 'menu');
   readonly #actions: VrMenuActions;
   #state: VrMenuState | null = null;
   #buttons: readonly MenuButton[] = [];

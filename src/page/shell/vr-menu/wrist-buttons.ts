@@ -17,7 +17,7 @@ const toKnuckles = 0.02;
 const turnedToEyes = Math.cos((55 * Math.PI) / 180);
 const lookedAt = Math.cos((32 * Math.PI) / 180);
 
-const button = { id: 'menu', at: [0, 0, width, height] } as const;
+const targets = [{ id: 'menu', at: [0, 0, width, height] }] as const;
 
 /** A ray of a hand or a controller may cross a wrist at any time; only a finger tip that touches it means it. */
 const aimsByEyes = ({ source }: Pointer): boolean => source === 'gaze' || source === 'transient';
@@ -45,6 +45,8 @@ export class WristButtons {
   readonly #toEyes = new Vector3();
   readonly #turned = new Matrix4();
   readonly #head = new Quaternion();
+  /** The pointers that may press a button in this frame. */
+  readonly #others: Pointer[] = [];
 
   constructor() {
     this.object.add(...this.#buttons.map(({ panel }) => panel.mesh));
@@ -56,14 +58,18 @@ export class WristButtons {
 
   /** Follows the wrists of a frame (floor frame); returns whether a button was pressed. */
   follow(frame: TrackingFrame, pointers: readonly Pointer[]): boolean {
+    const others = this.#others;
     let pressed = false;
     for (const each of this.#buttons) {
       const { side, panel, touch } = each;
       panel.mesh.visible = this.#place(each, frame);
       if (!panel.mesh.visible) continue;
       // A hand that holds something is not poking, and no hand reaches its own wrist.
-      const others = pointers.filter((pointer) => pointer.side !== side && (!pointer.held || aimsByEyes(pointer)));
-      pressed ||= touch.follow(others, [button]).pressed.length > 0;
+      others.length = 0;
+      for (const pointer of pointers) {
+        if (pointer.side !== side && (!pointer.held || aimsByEyes(pointer))) others.push(pointer);
+      }
+      if (touch.follow(others, targets).pressed.length > 0) pressed = true;
     }
     return pressed;
   }

@@ -27,7 +27,7 @@ const mostRise = 0.3;
 export class VrStudyPanel {
   readonly object = new Group();
   readonly #panel = createVrPanel(width, height, pixelsPerMetre);
-  readonly #touch = createPanelTouch(this.#panel, 'study');
+  readonly #touch = createPanelTouch<Target>(this.#panel, 'study');
   readonly #centre = new Vector3();
   #screen: StudyScreen | null = null;
   #targets: readonly Target[] = [];

@@ -9,16 +9,15 @@ const settleSeconds = 0.25;
 /** A gaze may leave what it rests on for this time [s]: a head is never still. */
 const leaveSeconds = 0.15;
 
-const keyOf = (target: PointedAt | null): string | null =>
-  target === null || target.id === null ? null : `${target.owner} ${target.id}`;
-
 /**
  * A pointer along the head's gaze that acts on what it rests on. It acts once: the gaze must move to something else
  * before it acts again.
  */
 export class GazePointer extends MovedPointer {
   override readonly releases = false;
-  #key: string | null = null;
+  /** What it rests on; the id is null where it rests on nothing. */
+  #owner = '';
+  #id: string | null = null;
   #since = 0;
   #seenAt = 0;
   #acted = false;
@@ -32,10 +31,11 @@ export class GazePointer extends MovedPointer {
     const target = this.begin();
     copyVec3(head.position, this.origin);
     rotate(head.orientation, forward, this.direction);
-    const key = keyOf(target);
-    if (key === this.#key) this.#seenAt = time;
-    else if (key !== null || time - this.#seenAt > leaveSeconds) this.#restOn(key, time);
-    if (!target || key === null || this.#acted) return;
+    const id = target?.id ?? null;
+    const stays = id === this.#id && (id === null || target?.owner === this.#owner);
+    if (stays) this.#seenAt = time;
+    else if (id !== null || time - this.#seenAt > leaveSeconds) this.#restOn(target, time);
+    if (!target || id === null || this.#acted) return;
     const seconds = target.dwellSeconds ?? usualDwell;
     this.progress = clamp((time - this.#since - settleSeconds) / (seconds - settleSeconds), this.progress, 1);
     this.held = this.progress > 0;
@@ -51,11 +51,12 @@ export class GazePointer extends MovedPointer {
     this.#restOn(null, this.#seenAt);
   }
 
-  #restOn(key: string | null, time: number): void {
+  #restOn(target: PointedAt | null, time: number): void {
     this.cancelled = this.held;
     this.#release();
     this.#acted = false;
-    this.#key = key;
+    this.#owner = target?.owner ?? '';
+    this.#id = target?.id ?? null;
     this.#since = time;
     this.#seenAt = time;
   }

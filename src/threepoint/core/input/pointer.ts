@@ -1,6 +1,7 @@
 import type { Ray } from '../math/ray';
 import type { Side } from '../math/side';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
+import type { Mutable } from '../records';
 
 /**
  * What a pointer is. transient: it is there only while its user pinches, touches or presses, and its ray comes from the
@@ -43,13 +44,15 @@ export interface Pointer extends Ray {
   readonly releases: boolean;
   /** How much of its dwell time a gaze has rested, 0 to 1; 0 for other pointers. */
   readonly progress: number;
-  /** The nearest of what it points at in this frame; null: nothing yet. */
+  /** The nearest of what it points at in this frame; null: nothing yet. Overwritten two frames later. */
   readonly pointedAt: PointedAt | null;
-  /** Reports that the ray meets something. The nearest report of a frame counts. */
+  /** Reports that the ray meets something, which is copied. The nearest report of a frame counts. */
   pointAt(target: PointedAt): void;
   /** Returns whether it is held, and not for another part of the page. */
   isHeldFor(owner: string): boolean;
 }
+
+const noTarget = (): Mutable<PointedAt> => ({ distance: 0, owner: '', id: null, dwellSeconds: usualDwell });
 
 /** A pointer that its reader moves. Call `begin` first in every frame. */
 export class MovedPointer implements Pointer {
@@ -68,6 +71,9 @@ export class MovedPointer implements Pointer {
   /** The owner of what it pointed at when the hold began; null: it pointed at nothing. */
   #heldFor: string | null = null;
   #wasHeld = false;
+  /** The buffers of the target of this frame and of the last one. */
+  #target = noTarget();
+  #lastTarget = noTarget();
 
   constructor(source: PointerSource, side: Side | null = null) {
     this.source = source;
@@ -80,6 +86,9 @@ export class MovedPointer implements Pointer {
     if (!this.held) this.#heldFor = null;
     else if (!this.#wasHeld) this.#heldFor = last?.owner ?? null;
     this.#wasHeld = this.held;
+    const target = this.#lastTarget;
+    this.#lastTarget = this.#target;
+    this.#target = target;
     this.pointedAt = null;
     this.pressed = false;
     this.cancelled = false;
@@ -96,7 +105,13 @@ export class MovedPointer implements Pointer {
   }
 
   pointAt(target: PointedAt): void {
-    if (!this.pointedAt || target.distance < this.pointedAt.distance) this.pointedAt = target;
+    if (this.pointedAt && target.distance >= this.pointedAt.distance) return;
+    const kept = this.#target;
+    kept.distance = target.distance;
+    kept.owner = target.owner;
+    kept.id = target.id;
+    kept.dwellSeconds = target.dwellSeconds ?? usualDwell;
+    this.pointedAt = kept;
   }
 
   isHeldFor(owner: string): boolean {
