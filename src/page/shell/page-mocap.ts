@@ -12,6 +12,7 @@ import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
 import { buildBuiltIn } from './avatar-loader';
 import { estimatorTexts } from './estimator-texts';
+import type { KnownBones } from './known-bones';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
 
@@ -23,6 +24,7 @@ export interface PageMocapOptions {
   readonly networks: BodySolverOptions['networks'];
   readonly store: Pick<PreferenceStore, 'remember'>;
   readonly notices: Pick<Notices, 'show'>;
+  readonly knownBones: KnownBones;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
   onChange(): void;
@@ -81,11 +83,12 @@ export class PageMocap {
   }
 
   #build(View: typeof MocapView): MocapView {
-    const { scene, body, networks, store, notices, prepare, onChange } = this.#options;
+    const { scene, body, networks, store, notices, knownBones, prepare, onChange } = this.#options;
     return new View({
       scene,
       networks,
       labels,
+      knownBones,
       prepare,
       region: document.body,
       replay: this.#replay(),
