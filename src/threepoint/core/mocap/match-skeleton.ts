@@ -20,7 +20,7 @@ import {
 import { handsOfCmuconvert } from './cmuconvert';
 import { countedFrom } from './mapped-motion';
 import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from './skeleton-map';
-import { type Limbs, straightRest } from './straight-rest';
+import { type Limbs, straightHands, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
 /** A joint above this share of the trunk is a chest, below it a spine. */
@@ -156,16 +156,18 @@ export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
   const limbs = limbsOf(joints, match);
   const upright = restAsMoved(file, standing);
   const rested = restOf(upright.file, standing, limbs);
-  notes.push(...found.notes, ...upright.notes, ...rested.notes);
+  const hands = straightHands(rested.file, limbs.arms);
+  const based = hands ? countedFrom(rested.file, hands.pose) : rested.file;
+  notes.push(...found.notes, ...upright.notes, ...rested.notes, ...(hands?.notes ?? []));
   const { turn } = rested.axes;
   const floor = rested.stands ? turn : usualFloor;
-  const up = otherUp(rested.file, floor, standing);
+  const up = otherUp(based, floor, standing);
   if (up)
     notes.push(
       `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
     );
   return {
-    file: rested.file,
+    file: based,
     notes,
     bones: fileBones(jointsForPicture(file), match.map),
     skeleton: {
