@@ -180,7 +180,7 @@ export default {
         'Each activity of the page can be removed: activities import neither each other nor the shell. They know the shell by activity/.',
       severity: 'error',
       from: { path: `^src/page/(${activities})/` },
-      to: { path: '^src/page/', pathNot: '^src/page/($1|scene|activity)/' },
+      to: { path: '^src/page/', pathNot: '^src/page/($1|scene|activity|bones)/' },
     },
     {
       name: 'shell-knows-activities-by-registry',
@@ -193,7 +193,7 @@ export default {
       name: 'scene-draws-for-activities',
       comment: 'The scene holds what all activities draw with; it imports none of them.',
       severity: 'error',
-      from: { path: '^src/page/(scene|emulator|offline)/' },
+      from: { path: '^src/page/(scene|bones|emulator|offline)/' },
       to: { path: '^src/page/', pathNot: '^src/page/$1/' },
     },
     {

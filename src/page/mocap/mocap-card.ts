@@ -1,10 +1,13 @@
 import type { WorkProgress } from 'threepoint/api/run-work';
 import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
 import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { button, element } from 'threepoint-ui/element';
 import { labelled } from 'threepoint-ui/fields';
 import { createStatusLine } from 'threepoint-ui/status-line';
+import { createLazyBonesForm } from '../bones/lazy-bones-form';
+import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { ClipMean } from './clip-means';
 import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';
@@ -29,6 +32,8 @@ export interface CardState {
   readonly truth: TruthPlace;
   /** Whether others can open what the file came from. */
   readonly shareable: boolean;
+  /** Whether the bones of the file are found by what it has, and not named by a JSON map. */
+  readonly canCorrectBones: boolean;
   /** What cannot be right of the file, a sentence each. */
   readonly doubts: readonly string[];
   /** The errors of the body, and of the second body if there is one. */
@@ -44,6 +49,11 @@ export interface CardActions {
   compare(estimator: EstimatorName | null): void;
   placeTruth(place: TruthPlace): void;
   copyLink(): void;
+  /** Opens the form for the bones of the motion. */
+  correctBones(): void;
+  /** Reads the motion with these bones; null: forgets the user's map. */
+  giveBones(bones: BoneMap | null): void;
+  cancelBones(): void;
   cancel(): void;
   close(): void;
 }
@@ -174,8 +184,30 @@ function listClips(select: HTMLSelectElement, names: readonly string[]): void {
   select.replaceChildren(...names.map((name, i) => element('option', { value: i }, name)));
 }
 
-/** What is known of an opened motion: errors by joint, the time, which methods draw it. */
-export function createMocapCard(labels: Labels, actions: CardActions) {
+/** Shows the progress of reading a file, and lets the user cancel it. */
+function createReading(actions: CardActions) {
+  const line = createStatusLine();
+  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of reading' });
+  const node = element(
+    'div',
+    { class: 'reading', hidden: true },
+    line.node,
+    bar,
+    button('Cancel', () => actions.cancel()),
+  );
+  return {
+    node,
+    show(name: string, progress: WorkProgress | null): void {
+      node.hidden = progress === null;
+      if (progress) line.show(`Reading ${name}`, `: ${percent(progress)}`);
+      else line.show('');
+      bar.value = progress?.fraction ?? 0;
+    },
+  };
+}
+
+/** Lets the user choose the clip, the methods and the place of the truth, and correct the bones. */
+function createChoices(labels: Labels, actions: CardActions) {
   const methods = threePointNames.map((name) => [name, labels[name]] as const);
   const clip = choice<string>('Clip', [], (index) => actions.chooseClip(Number(index)));
   const method = choice<EstimatorName>(
@@ -193,48 +225,53 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
     truthPlaces.map((place) => [place, place] as const),
     actions.placeTruth,
   );
+  const link = button('Copy link', () => actions.copyLink());
+  const correct = button('Correct the bones…', () => actions.correctBones());
+  return {
+    node: element('div', { class: 'choices' }, clip.node, method.node, beside.node, truth.node, link, correct),
+    correct,
+    show(state: CardState): void {
+      clip.node.hidden = state.clips.length === 1;
+      listClips(clip.select, state.clips);
+      clip.select.value = String(state.clip);
+      const [first, second] = state.methods;
+      method.select.value = first!.estimator;
+      beside.select.value = second?.estimator ?? 'none';
+      truth.select.value = state.truth;
+      link.disabled = !state.shareable;
+      link.title = state.shareable
+        ? 'To this second and this method'
+        : 'A file on this device has no address that others could open';
+      correct.hidden = !state.canCorrectBones;
+    },
+  };
+}
+
+/** Shows what is known of an opened motion: errors by joint, the time, which methods draw it, its bones. */
+export function createMocapCard(labels: Labels, actions: CardActions) {
+  const title = element('h2');
+  const close = button('Close', () => actions.close(), { class: 'quiet' });
   const table = createErrorTable(labels);
   const timeline = createTimeline(actions);
-  const link = button('Copy link', () => actions.copyLink());
-  const title = element('h2');
-  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of reading' });
-  const told = createStatusLine();
-  const reading = element(
-    'div',
-    { class: 'reading', hidden: true },
-    told.node,
-    bar,
-    button('Cancel', () => actions.cancel()),
-  );
+  const choices = createChoices(labels, actions);
+  const reading = createReading(actions);
+  const bones = createLazyBonesForm({ give: actions.giveBones, cancel: actions.cancelBones });
   const opened = element(
     'div',
     { class: 'opened' },
-    element(
-      'div',
-      { class: 'title' },
-      title,
-      button('Close', () => actions.close(), { class: 'quiet' }),
-    ),
+    element('div', { class: 'title' }, title, close),
     timeline.node,
     ...table.nodes,
-    element('div', { class: 'choices' }, clip.node, method.node, beside.node, truth.node, link),
+    choices.node,
   );
-  const node = element('section', { class: 'mocap', 'aria-label': 'Motion capture', hidden: true }, reading, opened);
-  const showOpened = (state: CardState): void => {
-    title.textContent = state.clips[state.clip]!;
-    clip.node.hidden = state.clips.length === 1;
-    listClips(clip.select, state.clips);
-    clip.select.value = String(state.clip);
-    const [first, second] = state.methods;
-    method.select.value = first!.estimator;
-    beside.select.value = second?.estimator ?? 'none';
-    truth.select.value = state.truth;
-    link.disabled = !state.shareable;
-    link.title = state.shareable
-      ? 'To this second and this method'
-      : 'A file on this device has no address that others could open';
-    table.show(state.methods, state.doubts);
-    timeline.show(state);
+  const parts = [reading.node, bones.node, opened];
+  const node = element('section', { class: 'mocap', 'aria-label': 'Motion capture', hidden: true }, ...parts);
+  let isOpen = false;
+  bones.node.hidden = true;
+  /** The form for the bones takes the place of the motion. */
+  const layOut = (): void => {
+    opened.hidden = !isOpen || !bones.node.hidden;
+    node.hidden = parts.every(({ hidden }) => hidden);
   };
   return {
     node,
@@ -244,17 +281,26 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
     },
     /** Shows the progress of reading a file; null: none is being read. */
     showProgress(name: string, progress: WorkProgress | null): void {
-      reading.hidden = progress === null;
-      if (progress) told.show(`Reading ${name}`, `: ${percent(progress)}`);
-      else told.show('');
-      bar.value = progress?.fraction ?? 0;
-      node.hidden = reading.hidden && opened.hidden;
+      reading.show(name, progress);
+      layOut();
+    },
+    /** Shows the form for the bones of a motion; null: none waits for them. */
+    showBones(skeleton: SkeletonToMap | null): void {
+      const hadFocus = bones.node.contains(document.activeElement);
+      bones.node.hidden = skeleton === null;
+      layOut();
+      bones.show(skeleton);
+      if (hadFocus && !skeleton && isOpen) choices.correct.focus();
     },
     /** null: no clip is open. */
     show(state: CardState | null): void {
-      opened.hidden = state === null;
-      node.hidden = reading.hidden && opened.hidden;
-      if (state) showOpened(state);
+      isOpen = state !== null;
+      layOut();
+      if (!state) return;
+      title.textContent = state.clips[state.clip]!;
+      choices.show(state);
+      table.show(state.methods, state.doubts);
+      timeline.show(state);
     },
   };
 }

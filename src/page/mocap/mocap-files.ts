@@ -1,3 +1,4 @@
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { fileNameOf } from 'threepoint-ui/limited-files';
 
 /** A file of this device, or the address of one. */
@@ -13,6 +14,14 @@ export interface MocapFiles {
   readonly skeleton: MocapFile | null;
   /** Which joint of a skeleton that is not known here is which (JSON). */
   readonly map: MocapFile | null;
+}
+
+/** The bone maps that the user gave for files of motion. */
+export interface GivenBones {
+  /** The map of these files, which was given just now; null: none. */
+  readonly bones: BoneMap | null;
+  /** The maps that are stored, by the hashes of the files. */
+  readonly boneMaps: Readonly<Record<string, BoneMap>>;
 }
 
 const endingOf = (file: MocapFile): string => fileNameOf(file).split('.').at(-1)!.toLowerCase();

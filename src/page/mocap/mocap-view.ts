@@ -5,7 +5,7 @@ import type { Avatar } from 'threepoint/avatar/avatar';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { MocapClip, PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
+import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { Replayable } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fileNameOf } from 'threepoint-ui/limited-files';
@@ -14,7 +14,8 @@ import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
 import { type CardActions, createMocapCard, type Labels, type MocapCard } from './mocap-card';
 import { isMap, type MocapFile, pairFiles } from './mocap-files';
-import { readMocap } from './read-mocap';
+import { type BoneMapStore, MotionBones } from './motion-bones';
+import { type ReadMocap, readMocap, UnmatchedMotion } from './read-mocap';
 import { SecondBody } from './second-body';
 import { recordingOf } from './simulated-recording';
 import { Truth } from './truth';
@@ -51,6 +52,7 @@ export interface MocapViewOptions {
   /** The method of the page's body. */
   readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
   readonly networks: BodySolverOptions['networks'];
+  readonly boneMaps: BoneMapStore;
   loadAvatar(): Promise<Avatar>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
@@ -59,19 +61,28 @@ export interface MocapViewOptions {
   tell(level: 'info' | 'warning' | 'error', sentence: string): void;
 }
 
+/** Files to open. */
+interface Request {
+  readonly sources: readonly MocapFile[];
+  readonly outlook: Outlook;
+  /** Its place among the wishes; absent: the newest. */
+  readonly asked?: number | undefined;
+}
+
 /** A clip on the stage. */
-interface Opened {
+interface Opened extends ReadMocap {
   readonly name: string;
-  /** The public addresses of the files; null: they are files of this device. */
-  readonly addresses: readonly string[] | null;
-  readonly clips: readonly MocapClip[];
-  readonly doubts: readonly string[];
+  readonly sources: readonly MocapFile[];
   readonly index: number;
   readonly recording: Replayable;
   readonly truth: Truth;
   readonly meter: ErrorMeter;
   readonly means: ClipMeans;
 }
+
+/** Returns the public addresses of files; null: they are files of this device. */
+const addressesOf = (sources: readonly MocapFile[]): readonly string[] | null =>
+  sources.every((source) => typeof source === 'string') ? sources : null;
 
 /** The distance of the second body, and of the ground truth beside it, to the right of the body [m]. */
 const secondAside = 1.15;
@@ -84,6 +95,7 @@ export class MocapView {
   readonly #options: MocapViewOptions;
   readonly #ghosts = [new Ghost(), new Ghost()] as const;
   readonly #card: MocapCard;
+  readonly #bones: MotionBones<Request>;
   #opened: Opened | null = null;
   #second: SecondBody | null = null;
   #truthPlace: TruthPlace = 'inside';
@@ -99,6 +111,14 @@ export class MocapView {
   constructor(options: MocapViewOptions) {
     this.#options = options;
     this.#card = createMocapCard(options.labels, this.#actions());
+    this.#bones = new MotionBones<Request>({
+      boneMaps: options.boneMaps,
+      show: (skeleton) => {
+        this.#card.showBones(skeleton);
+        options.onCovered();
+      },
+      read: (request, bones) => void this.#read(request, bones),
+    });
     options.region.append(this.#card.node);
     this.#prepared = Promise.all(this.#ghosts.map((ghost) => options.prepare(ghost.object)));
     for (const ghost of this.#ghosts) options.scene.add(ghost.object);
@@ -111,10 +131,17 @@ export class MocapView {
    * files. Never rejects: faults become notices, and the shown motion stays.
    */
   async open(given: readonly MocapFile[], outlook: Outlook = {}, asked?: number): Promise<void> {
-    const { tell } = this.#options;
     // A map that comes alone is of the motion that came before it.
     const sources = given.every(isMap) ? [...this.#asked.filter((file) => !isMap(file)), ...given] : given;
     this.#asked = sources;
+    this.#bones.close();
+    await this.#read({ sources, outlook, asked }, null);
+  }
+
+  /** Reads files with the user's map of their bones; null: with one that is stored, or without. */
+  async #read(request: Request, bones: BoneMap | null): Promise<void> {
+    const { tell, boneMaps } = this.#options;
+    const { sources } = request;
     this.#reading.abort();
     const reading = new AbortController();
     const { signal } = reading;
@@ -124,21 +151,50 @@ export class MocapView {
     try {
       onProgress({ fraction: 0, secondsLeft: null });
       const { others, ...files } = pairFiles(sources);
-      const prepared = await readMocap(files, { signal, onProgress });
+      const read = await readMocap(files, { bones, boneMaps: boneMaps.all }, { signal, onProgress });
       await this.#prepared;
       signal.throwIfAborted();
-      const addresses = sources.every((source) => typeof source === 'string') ? sources : null;
       const motion = fileNameOf(files.motion);
-      this.#show(motion, prepared, addresses, outlook, asked);
-      for (const note of prepared.notes) tell('info', `${motion}: ${note}.`);
+      this.#show({ name: motion, sources, ...read }, request);
+      if (bones && read.map.hash !== null) boneMaps.keep(read.map.hash, bones);
+      this.#bones.close();
+      for (const note of read.prepared.notes) tell('info', `${motion}: ${note}.`);
       if (others.length > 0) tell('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
     } catch (error) {
-      if (!signal.aborted)
-        tell('error', `${name} could not be shown: ${firstLine(reasonOf(error)).replace(`${name}: `, '')}`);
+      if (!signal.aborted) this.#refuse(request, bones, error);
     } finally {
       if (this.#reading === reading) this.#card.showProgress(name, null);
       this.#options.onCovered();
     }
+  }
+
+  /** Says why files could not be shown; bones that match no humanoid can be mapped. */
+  #refuse(request: Request, bones: BoneMap | null, error: unknown): void {
+    const { tell } = this.#options;
+    const name = fileNameOf(request.sources[0]!);
+    const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
+    if (error instanceof UnmatchedMotion) {
+      const { joints, matched, confidence, hash } = error;
+      const again = { sources: request.sources, outlook: request.outlook };
+      this.#bones.offer({ name, request: again, joints, matched, confidence, hash, isShown: false, isOwnMap: false });
+    } else if (bones) this.#bones.complain(bones, reason);
+    else tell('error', `${name} could not be shown: ${reason}`);
+  }
+
+  #correctBones(): void {
+    const opened = this.#opened;
+    if (!opened) return;
+    const { name, sources, index, prepared, map } = opened;
+    const outlook = { clip: index, beside: this.#second?.estimator };
+    const { hash, isUsed } = map;
+    this.#bones.offer({
+      name,
+      request: { sources, outlook },
+      hash,
+      ...prepared.bones,
+      isShown: true,
+      isOwnMap: isUsed,
+    });
   }
 
   /** What the card covers of the window; null: it is not shown. */
@@ -184,14 +240,15 @@ export class MocapView {
     const { replay, method } = this.#options;
     const methods = [method.wanted, ...(this.#second ? [this.#second.estimator] : [])];
     this.#card.show({
-      clips: opened.clips.map(({ name }) => name),
+      clips: opened.prepared.clips.map(({ name }) => name),
       clip: opened.index,
       paused: replay.paused || replay.mode !== 'replaying',
       seconds: replay.seconds,
       duration: replay.duration,
       truth: this.#truthPlace,
-      shareable: opened.addresses !== null,
-      doubts: opened.doubts,
+      shareable: addressesOf(opened.sources) !== null,
+      canCorrectBones: opened.sources.every((source) => !isMap(source)),
+      doubts: opened.prepared.doubts,
       methods: methods.map((estimator, i) => ({
         estimator,
         now: this.#drawn[i] ? this.#errors[i as 0] : null,
@@ -228,6 +285,9 @@ export class MocapView {
       compare: (estimator) => this.#compare(estimator),
       placeTruth: (place) => this.#placeTruth(place),
       copyLink: () => void this.#copyLink(),
+      correctBones: () => this.#correctBones(),
+      giveBones: (bones) => this.#bones.give(bones),
+      cancelBones: () => this.#bones.close(),
       cancel: () => this.#reading.abort(),
       close: () => {
         replay.stop();
@@ -237,12 +297,10 @@ export class MocapView {
   }
 
   #show(
-    name: string,
-    { clips, doubts }: Pick<PreparedMocap, 'clips' | 'doubts'>,
-    addresses: Opened['addresses'],
-    outlook: Outlook,
-    asked?: number,
+    read: ReadMocap & Pick<Opened, 'name' | 'sources'>,
+    { outlook, asked }: Pick<Request, 'outlook' | 'asked'>,
   ): void {
+    const { clips } = read.prepared;
     const longest = clips.reduce((best, { frameCount }, i) => (frameCount > clips[best]!.frameCount ? i : best), 0);
     const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
     const clip = clips[index]!;
@@ -253,17 +311,7 @@ export class MocapView {
     this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);
-    this.#opened = {
-      name,
-      addresses,
-      clips,
-      doubts,
-      index,
-      recording,
-      truth,
-      means,
-      meter: new ErrorMeter(clip.calibration),
-    };
+    this.#opened = { ...read, index, recording, truth, means, meter: new ErrorMeter(clip.calibration) };
     this.#placeTruth(outlook.truth ?? this.#truthPlace);
     if (outlook.beside) this.#compare(outlook.beside);
     if (outlook.at !== undefined) {
@@ -275,7 +323,7 @@ export class MocapView {
 
   #chooseClip(clip: number): void {
     const opened = this.#opened;
-    if (opened) this.#show(opened.name, opened, opened.addresses, { clip, beside: this.#second?.estimator });
+    if (opened) this.#show(opened, { outlook: { clip, beside: this.#second?.estimator } });
   }
 
   #seek(seconds: number): void {
@@ -294,7 +342,7 @@ export class MocapView {
     this.#second?.dispose();
     this.#second = null;
     this.#drawn[1] = false;
-    const clip = this.#opened?.clips[this.#opened.index];
+    const clip = this.#opened?.prepared.clips[this.#opened.index];
     if (!clip || !estimator) return;
     const { scene, networks, replay, loadAvatar, labels, tell } = this.#options;
     this.#second = new SecondBody({
@@ -326,16 +374,17 @@ export class MocapView {
   async #copyLink(): Promise<void> {
     const { replay, method, tell } = this.#options;
     const opened = this.#opened;
-    if (!opened?.addresses) return;
+    const addresses = opened && addressesOf(opened.sources);
+    if (!addresses) return;
     const link = new URL(location.href);
     const { searchParams } = link;
-    searchParams.set('mocap', opened.addresses.join(' '));
+    searchParams.set('mocap', addresses.join(' '));
     searchParams.set('at', replay.seconds.toFixed(2));
     searchParams.set('estimator', method.wanted);
     searchParams.set('truth', this.#truthPlace);
     if (this.#second) searchParams.set('beside', this.#second.estimator);
     else searchParams.delete('beside');
-    if (opened.clips.length > 1) searchParams.set('clip', String(opened.index + 1));
+    if (opened.prepared.clips.length > 1) searchParams.set('clip', String(opened.index + 1));
     history.replaceState(null, '', link);
     try {
       await navigator.clipboard.writeText(link.href);

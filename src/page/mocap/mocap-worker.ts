@@ -1,14 +1,30 @@
+import { hashOf } from 'threepoint/avatar/file/file-hash';
 import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { type FileBones, UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
 import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
-import type { MocapFile, MocapFiles } from './mocap-files';
+import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
 
-/** The worker's messages: progress [0, 1], the result, or the reason of a failure. */
+/** What the worker is to read. */
+export type MocapQuestion = MocapFiles & GivenBones;
+
+/** The user's map of a file's bones. */
+export interface MotionMap {
+  /** The hash of the file that has the skeleton; null: the page cannot compute it, or a JSON map names the joints. */
+  readonly hash: string | null;
+  /** Whether the user's map was used. */
+  readonly isUsed: boolean;
+}
+
+/**
+ * The worker's messages: progress [0, 1], the result, or the reason of a failure with the bones that did not match
+ * (null: they are not at fault).
+ */
 export type MocapAnswer =
   | { readonly share: number }
-  | { readonly prepared: PreparedMocap }
-  | { readonly refused: string };
+  | { readonly prepared: PreparedMocap; readonly map: MotionMap }
+  | { readonly refused: string; readonly bones: FileBones | null; readonly hash: string | null };
 
 const tellEveryMs = 100;
 const tell = (answer: MocapAnswer, transfer: Transferable[] = []): void => self.postMessage(answer, { transfer });
@@ -16,30 +32,50 @@ const tell = (answer: MocapAnswer, transfer: Transferable[] = []): void => self.
 /** What the readers take; half an hour of all joints at 120 Hz. */
 const mocapFile: FileKind = { what: 'a motion capture file', megabytes: 200 };
 const bytesOf = (file: MocapFile): Promise<ArrayBuffer> => readLimited(file, mocapFile);
-const textOf = async (file: MocapFile): Promise<string> => new TextDecoder().decode(await bytesOf(file));
+const named = (file: MocapFile, bytes: ArrayBuffer) => ({
+  name: fileNameOf(file),
+  text: new TextDecoder().decode(bytes),
+});
 
-const named = async (file: MocapFile) => ({ name: fileNameOf(file), text: await textOf(file) });
-
-async function sourceOf({ motion, skeleton, map }: MocapFiles): Promise<MocapSource> {
+/** Reads the files, and hashes the one that has the skeleton. */
+async function sourceOf({ motion, skeleton, map }: MocapFiles) {
   const name = fileNameOf(motion);
-  const mapped = map ? { map: await named(map) } : {};
-  if (skeleton) return { format: 'amc', ...(await named(motion)), skeleton: await named(skeleton), ...mapped };
-  if (isGltfMotion(name)) return { name, ...(await readGltfMotion(await bytesOf(motion), name)), ...mapped };
-  return { format: 'bvh', ...(await named(motion)), ...mapped };
+  const bytes = await bytesOf(motion);
+  const skeletonBytes = skeleton ? await bytesOf(skeleton) : bytes;
+  const hash = map ? null : await hashOf(skeletonBytes);
+  const mapped = map ? { map: named(map, await bytesOf(map)) } : {};
+  const file: MocapSource = skeleton
+    ? { format: 'amc', ...named(motion, bytes), skeleton: named(skeleton, skeletonBytes) }
+    : isGltfMotion(name)
+      ? { name, ...(await readGltfMotion(bytes, name)) }
+      : { format: 'bvh', ...named(motion, bytes) };
+  return { source: { ...file, ...mapped }, hash };
 }
 
-async function read(files: MocapFiles): Promise<void> {
-  const work = prepareMocap(await sourceOf(files));
+async function read({ bones, boneMaps, ...files }: MocapQuestion): Promise<void> {
+  const { source, hash } = await sourceOf(files);
+  const own = bones ?? (hash === null ? undefined : boneMaps[hash]);
+  const work = prepareMocap(own ? { ...source, bones: own } : source);
+  try {
+    const prepared = finish(work);
+    const { clips } = prepared;
+    tell(
+      { prepared, map: { hash, isUsed: own !== undefined } },
+      clips.flatMap(({ tracked, truth }) => [tracked.buffer, truth.buffer]),
+    );
+  } catch (error) {
+    if (!(error instanceof UnknownBones)) throw error;
+    const { joints, matched, confidence } = error;
+    tell({ refused: firstLine(error.message), bones: { joints, matched, confidence }, hash });
+  }
+}
+
+/** Finishes the work and reports its progress. */
+function finish(work: Generator<number, PreparedMocap>): PreparedMocap {
   let told = 0;
   for (;;) {
     const step = work.next();
-    if (step.done) {
-      const { clips } = step.value;
-      return tell(
-        { prepared: step.value },
-        clips.flatMap(({ tracked, truth }) => [tracked.buffer, truth.buffer]),
-      );
-    }
+    if (step.done) return step.value;
     const now = performance.now();
     if (now - told < tellEveryMs) continue;
     told = now;
@@ -47,6 +83,6 @@ async function read(files: MocapFiles): Promise<void> {
   }
 }
 
-self.addEventListener('message', ({ data: files }: MessageEvent<MocapFiles>) => {
-  read(files).catch((error: unknown) => tell({ refused: firstLine(reasonOf(error)) }));
+self.addEventListener('message', ({ data }: MessageEvent<MocapQuestion>) => {
+  read(data).catch((error: unknown) => tell({ refused: firstLine(reasonOf(error)), bones: null, hash: null }));
 });

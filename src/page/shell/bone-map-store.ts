@@ -13,9 +13,14 @@ export class BoneMapStore {
     this.#store = store;
   }
 
+  /** The maps by the files' hashes. */
+  get all(): Readonly<Record<string, BoneMap>> {
+    return this.#store.preferences.bones ?? {};
+  }
+
   /** undefined: none was given for this file. */
   of(hash: string): BoneMap | undefined {
-    return this.#store.preferences.bones?.[hash];
+    return this.all[hash];
   }
 
   /** A map that could not be read again is not kept: all that is remembered would be lost with it. */
@@ -30,6 +35,6 @@ export class BoneMapStore {
   }
 
   #without(hash: string): (readonly [string, BoneMap])[] {
-    return Object.entries(this.#store.preferences.bones ?? {}).filter(([each]) => each !== hash);
+    return Object.entries(this.all).filter(([each]) => each !== hash);
   }
 }

@@ -61,8 +61,10 @@ function createBase(options: PageOptions) {
   const { scene } = studio;
   const prepare = (object: Object3D) => uploadToGpu(renderer, scene, object);
   const onChange = changes.emit;
-  const parts = { ...options, ...pageBody, timing, canvas, quality, stage, renderer, studio, view, scene, prepare };
-  const avatar = new UserAvatar({ ...parts, boneMaps: new BoneMapStore(store), onChange });
+  const boneMaps = new BoneMapStore(store);
+  const drawn = { canvas, quality, stage, renderer, studio, view, scene, prepare };
+  const parts = { ...options, ...pageBody, ...drawn, timing, boneMaps };
+  const avatar = new UserAvatar({ ...parts, onChange });
   const avatarShown = avatar.openBuiltIn(builtInAvatar);
   const recorder = new Recorder(onChange);
   return { ...parts, onChange, avatar, avatarShown, recorder, headset: new Headset(parts) };

@@ -11,6 +11,7 @@ import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
 import { buildBuiltIn } from './avatar-loader';
+import type { BoneMapStore } from './bone-map-store';
 import { estimatorTexts } from './estimator-texts';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
@@ -23,6 +24,7 @@ export interface PageMocapOptions {
   readonly networks: BodySolverOptions['networks'];
   readonly store: Pick<PreferenceStore, 'remember'>;
   readonly notices: Pick<Notices, 'show'>;
+  readonly boneMaps: BoneMapStore;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
   onChange(): void;
@@ -81,11 +83,12 @@ export class PageMocap {
   }
 
   #build(View: typeof MocapView): MocapView {
-    const { scene, body, networks, store, notices, prepare, onChange } = this.#options;
+    const { scene, body, networks, store, notices, boneMaps, prepare, onChange } = this.#options;
     return new View({
       scene,
       networks,
       labels,
+      boneMaps,
       prepare,
       region: document.body,
       replay: this.#replay(),

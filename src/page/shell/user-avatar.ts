@@ -3,13 +3,14 @@ import type { Avatar } from 'threepoint/avatar/avatar';
 import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
-import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
 import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
+import { UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { fileNameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
+import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { Studio } from '../studio/studio';
 import {
   type AvatarFile,
@@ -26,26 +27,6 @@ export interface UserAvatarOptions extends AvatarLoaderOptions {
   readonly body: Pick<BodySolver, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
-}
-
-/**
- * A loaded file whose bones the user maps: they could not be matched to a humanoid, or the shown avatar's are to be
- * corrected.
- */
-export interface WaitingForBones {
-  readonly name: string;
-  /** The file's bones at rest. */
-  readonly joints: UnknownBones['joints'];
-  /** The bones that are known, or that the user gave last. */
-  readonly bones: BoneMap;
-  /** How sure each match of the file's bones is, from 0 to 1. */
-  readonly confidence: UnknownBones['confidence'];
-  /** A sentence about what is wrong with them; null: the user gave none yet. */
-  readonly complaint: string | null;
-  /** Whether the file is the shown avatar. */
-  readonly isShown: boolean;
-  /** Whether the bones are the user's map, and the file is worn without it as well. */
-  readonly canForgetMap: boolean;
 }
 
 /** An avatar that was requested, until it is shown, refused or cancelled. */
@@ -77,7 +58,7 @@ export class UserAvatar {
   #shown = 0;
   /** The file that is loading; null: none. */
   #loading: Request | null = null;
-  #waiting: (WaitingForBones & { readonly checked: AvatarFile }) | null = null;
+  #waiting: (SkeletonToMap & { readonly checked: AvatarFile }) | null = null;
 
   constructor(options: UserAvatarOptions) {
     this.#options = options;
@@ -129,7 +110,7 @@ export class UserAvatar {
   }
 
   /** A file whose bones the user maps; null: none. */
-  get waiting(): WaitingForBones | null {
+  get waiting(): SkeletonToMap | null {
     return this.#waiting;
   }
 

@@ -134,6 +134,13 @@ describe('is refused with a sentence', () => {
     await refused(file.buffer).toThrow('holds more than 40 million numbers');
   });
 
+  test('more packed arrays than are unpacked in a few seconds, before the first one is', async () => {
+    const [array, bytes] = [Int32Array.of(1), deflateSync(Int32Array.of(1, 2))];
+    const arrays = Array.from({ length: 100_001 }, () => array);
+    const many = fbxBinary([fbxNode('Objects', arrays)], () => bytes);
+    await refused(many).toThrow('holds more than 100000 packed arrays');
+  });
+
   test('a polygon without end', async () => {
     const corners = Int32Array.from({ length: 2000 }, (_, i) => i);
     for (const [, write] of forms) {

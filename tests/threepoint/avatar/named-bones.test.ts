@@ -1,16 +1,16 @@
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
 import { boneNode } from 'threepoint/avatar/humanoid/needed-bones';
-import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
 import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
+import { UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { BoneChoices } from 'threepoint-page/bones/bone-choices';
 import { BoneMapStore } from 'threepoint-page/shell/bone-map-store';
-import { BoneChoices } from 'threepoint-page/shell/panel/bone-choices';
 import { createPreferenceStore } from 'threepoint-page/shell/preferences';
 import { describe, expect, test } from 'vitest';
 import { poseOf } from '../core/estimation/drawn';

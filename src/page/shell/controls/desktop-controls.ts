@@ -85,7 +85,7 @@ export class DesktopControls {
       view: stage.view.view,
       avatarName: avatar.current ? avatar.name : 'None yet',
       avatarPending: avatar.pending,
-      avatarOnItsWay: avatar.isLoading || avatar.waiting?.isShown === false,
+      avatarOnItsWay: avatar.isLoading,
       canCorrectBones: avatar.canCorrectBones,
       waitingForBones: avatar.waiting,
       builtInAvatarOffered: !avatar.isBuiltIn || avatar.pending !== null || avatar.current === null,

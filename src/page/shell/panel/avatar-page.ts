@@ -1,12 +1,11 @@
 import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
 import { skinColors } from 'threepoint/avatar/palettes';
 import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';
 import { createStatusLine } from 'threepoint-ui/status-line';
 import { toggle } from 'threepoint-ui/toggle';
-import type { createBonesForm } from './bones-form';
+import { createLazyBonesForm } from '../../bones/lazy-bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 
 /** The colours of a built-in avatar. */
@@ -112,35 +111,18 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   );
 }
 
-/** Shows the form for the bones of a file. Its code is loaded once a file waits for them, or is to be corrected. */
+/** Shows the form for the bones of a file, and the button that opens it for the shown avatar. */
 function createBones(actions: AvatarActions) {
-  const node = element('div', {});
+  const form = createLazyBonesForm({ give: (map) => actions.giveBones(map), cancel: () => actions.cancelAvatar() });
   const correct = button('Correct the bones…', () => actions.correctBones());
-  let waiting: PanelState['waitingForBones'] = null;
-  let form: ReturnType<typeof createBonesForm> | null = null;
-  let isLoading = false;
-  async function load(): Promise<void> {
-    isLoading = true;
-    try {
-      const { createBonesForm } = await import('./bones-form');
-      form = createBonesForm({ give: (map) => actions.giveBones(map), cancel: () => actions.cancelAvatar() });
-      node.replaceChildren(form.node);
-      form.show(waiting);
-    } catch (error) {
-      const text = `The form for the bones could not be loaded: ${firstLine(reasonOf(error))}. Reload the page.`;
-      node.replaceChildren(element('p', { class: 'complaint', role: 'alert' }, text));
-    }
-  }
   return {
-    node,
+    node: form.node,
     correct,
     show({ waitingForBones, canCorrectBones }: PanelState) {
-      const hadFocus = node.contains(document.activeElement);
-      waiting = waitingForBones;
+      const hadFocus = form.node.contains(document.activeElement);
       correct.hidden = !canCorrectBones;
-      if (form) form.show(waiting);
-      else if (waiting && !isLoading) void load();
-      if (hadFocus && !waiting && canCorrectBones) correct.focus();
+      form.show(waitingForBones);
+      if (hadFocus && !waitingForBones && canCorrectBones) correct.focus();
     },
   };
 }

@@ -1,10 +1,10 @@
 import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
+import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { ViewName } from '../../scene/desktop-view';
 import type { Recorder } from '../../studio/recorder';
 import type { Settings, SettingsWriter } from '../settings';
-import type { WaitingForBones } from '../user-avatar';
 
 /** What the recorder is doing; seconds since its start, of how many. */
 export type RecorderState = Pick<Recorder, 'mode' | 'paused' | 'seconds' | 'duration' | 'loop' | 'name'>;
@@ -41,7 +41,7 @@ export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   /** Whether the shown avatar is a file, whose bones the user can correct. */
   readonly canCorrectBones: boolean;
   /** A file whose bones the user maps; null: none. */
-  readonly waitingForBones: WaitingForBones | null;
+  readonly waitingForBones: SkeletonToMap | null;
   /** Which body of our own is shown; null: another avatar is. */
   readonly builtInBody: BuiltInBody | null;
   /** The colours of a built-in avatar; null: another avatar is shown, which keeps its own. */

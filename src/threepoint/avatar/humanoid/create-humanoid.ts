@@ -3,10 +3,10 @@ import { type Group, type Object3D, Vector3 } from 'three';
 import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { fileBones, UnknownBones } from '../../core/humanoid/unknown-bones-error';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import { demandBones } from './needed-bones';
-import { fileBones, UnknownBones } from './unknown-bones-error';
 
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);

@@ -1,9 +1,9 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
 import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { type FileBones, fileBones } from '../../core/humanoid/unknown-bones-error';
 import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
 import { skeletonOf } from './create-humanoid';
-import { type FileBones, fileBones } from './unknown-bones-error';
 
 /** The bones of a file, and whether it is worn without a map of them. */
 export interface ReadBones extends FileBones {

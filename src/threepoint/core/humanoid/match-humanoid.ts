@@ -131,16 +131,16 @@ class Matcher {
     const necks = above.slice(0, Math.max(0, head));
     if (necks.length === 0 && collared) necks.push(spines.pop()!);
     const span = distance(tree.position(trunk[0]!), tree.position(arms.root));
-    const apart = spines.filter((joint, i) => {
-      const before = i > 0 ? spines[i - 1]! : trunk[0]!;
-      return distance(tree.position(joint), tree.position(before)) > 0.01 * span;
-    });
+    const areApart = (a: number, b: number) => distance(tree.position(a), tree.position(b)) > 0.01 * span;
+    const apart = spines.filter((joint, i) => areApart(joint, i > 0 ? spines[i - 1]! : trunk[0]!));
     this.#take('hips', trunk[0]!, 'hips', 'legs and spine meet in it');
     const [spine, chest, upperChest] = spread(apart.length > 0 ? apart : spines);
     if (spine !== undefined) this.#take('spine', spine, 'spine', 'the first joint above the hips');
     if (chest !== undefined) this.#take('chest', chest, 'spine', 'in the middle of the spine');
     if (upperChest !== undefined) this.#take('upperChest', upperChest, 'spine', 'the arms leave it');
-    if (necks[0] !== undefined) this.#take('neck', necks[0], 'neck', 'between the arms and the head');
+    // Programs that draw bones add a neck in the place of the chest, where the clavicles begin.
+    const neck = necks.find((joint) => areApart(joint, tree.parent(joint))) ?? necks[0];
+    if (neck !== undefined) this.#take('neck', neck, 'neck', 'between the arms and the head');
     if (above[head] !== undefined) this.#take('head', above[head], 'head', 'ends the trunk upward');
   }
 

@@ -1,5 +1,6 @@
-import type { BoneName } from '../humanoid/bones';
-import { type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
+import { type BoneMap, type BoneName, neededBones } from '../humanoid/bones';
+import { type BoneMatch, type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
+import { type FileBones, fileBones, UnknownBones } from '../humanoid/unknown-bones-error';
 import { type Side, sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
 import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
@@ -19,7 +20,7 @@ import {
 import { handsOfCmuconvert } from './cmuconvert';
 import { countedFrom } from './mapped-motion';
 import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from './skeleton-map';
-import { type Limbs, straightRest } from './straight-rest';
+import { type Limbs, straightHands, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
 /** A joint above this share of the trunk is a chest, below it a spine. */
@@ -33,22 +34,24 @@ export interface MatchedMotion {
   /** The motion relative to a rest that is a T-pose, or arms between level and hanging. */
   readonly file: FileMotion;
   readonly skeleton: MappedSkeleton;
+  /** The joints of the file, and which bones they are. */
+  readonly bones: FileBones;
   /** What was assumed, a sentence each. */
   readonly notes: readonly string[];
 }
 
 type Joints = Partial<Record<TruthJoint, number>>;
 
+type Match = Pick<HumanoidMatch, 'map'>;
+
 /** Joints by the match, VRM's bones being those of the truth; `between` holds the joints that the file lacks. */
-function jointsOf(match: HumanoidMatch, file: FileMotion) {
+function jointsOf(match: Match, file: FileMotion) {
   const notes: string[] = [];
   const joints: Joints = {};
   for (const joint of truthJoints) {
     const found = match.map[joint satisfies BoneName];
     if (found) joints[joint] = found.joint;
   }
-  for (const [joint, name] of Object.entries(handsOfCmuconvert(file.names)))
-    joints[joint as TruthJoint] = file.names.indexOf(name);
   const between: MappedSkeleton['between'] = {};
   if (joints.neck === undefined) {
     Object.assign(between, {
@@ -56,7 +59,7 @@ function jointsOf(match: HumanoidMatch, file: FileMotion) {
         near: ['leftUpperArm', 'rightUpperArm'],
         far: ['head'],
         share: neckShare,
-        carrier: file.parents![joints.head!]!,
+        carrier: file.parents[joints.head!]!,
       },
     });
     notes.push('it has no neck; one between shoulders and head is assumed');
@@ -81,7 +84,7 @@ function shareOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperArm }
   return dot(subtract(at, low), trunk) / (dot(trunk, trunk) || 1);
 }
 
-function standingJoints(joints: Joints, match: HumanoidMatch): StandingJoints {
+function standingJoints(joints: Joints, match: Match): StandingJoints {
   const pair = (part: 'UpperArm' | 'UpperLeg' | 'Foot' | 'Toes'): [number, number] => [
     joints[`left${part}`] ?? -1,
     joints[`right${part}`] ?? -1,
@@ -93,7 +96,7 @@ function standingJoints(joints: Joints, match: HumanoidMatch): StandingJoints {
   };
 }
 
-function limbsOf(joints: Joints, match: HumanoidMatch): Limbs {
+function limbsOf(joints: Joints, match: Match): Limbs {
   const at = (joint: TruthJoint): number => joints[joint] ?? -1;
   const each = (limb: (side: Side) => readonly number[]) => ({ left: limb('left'), right: limb('right') });
   return {
@@ -120,9 +123,9 @@ function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: B
 }
 
 /** Returns the match with left and right exchanged. */
-function exchanged(match: HumanoidMatch): HumanoidMatch {
+function exchanged({ map }: Match): Match {
   const other = (bone: string): string => bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
-  return { ...match, map: Object.fromEntries(Object.entries(match.map).map(([bone, found]) => [other(bone), found])) };
+  return { map: Object.fromEntries(Object.entries(map).map(([bone, found]) => [other(bone), found])) };
 }
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
@@ -141,28 +144,32 @@ function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): Joi
 }
 
 /**
- * Finds the skeleton of a person in a motion: which joint is which, how the body rests, and which way is up. Throws a
- * sentence with what was found and what is missing.
+ * Finds the skeleton of a person in a motion: which joint is which, how the body rests, and which way is up. `map`: the
+ * user's map of its bones, which decides which joint is which. Throws UnknownBones with what was found and what is
+ * missing where there is no map.
  */
-export function matchSkeleton(file: FileMotion): MatchedMotion {
-  const { match, notes } = matchSides(file);
+export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
+  const { match, notes } = map ? { match: mappedJoints(file, map), notes: [] } : matchSides(file);
   const found = jointsOf(match, file);
   const { joints } = found;
   const standing = standingJoints(joints, match);
   const limbs = limbsOf(joints, match);
   const upright = restAsMoved(file, standing);
   const rested = restOf(upright.file, standing, limbs);
-  notes.push(...found.notes, ...upright.notes, ...rested.notes);
+  const hands = straightHands(rested.file, limbs.arms);
+  const based = hands ? countedFrom(rested.file, hands.pose) : rested.file;
+  notes.push(...found.notes, ...upright.notes, ...rested.notes, ...(hands?.notes ?? []));
   const { turn } = rested.axes;
   const floor = rested.stands ? turn : usualFloor;
-  const up = otherUp(rested.file, floor, standing);
+  const up = otherUp(based, floor, standing);
   if (up)
     notes.push(
       `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
     );
   return {
-    file: rested.file,
+    file: based,
     notes,
+    bones: fileBones(jointsForPicture(file), match.map),
     skeleton: {
       joints: Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at]!])),
       columns: joints,
@@ -174,23 +181,58 @@ export function matchSkeleton(file: FileMotion): MatchedMotion {
   };
 }
 
-/** Matches the joints of a file, left and right by where the toes point. Throws a sentence where they do not match. */
-function matchSides(file: FileMotion) {
-  const match = matchHumanoid(
-    file.rest.map((position, i) => ({
-      ...{ name: file.names[i]!, parent: file.parents![i]!, position },
-      ...(file.names[i]!.endsWith(':end') && { end: true }),
-    })),
-  );
-  const complaint = humanoidComplaint(match);
+/** Returns the joints of a file at these positions. */
+const jointsAt = ({ names, parents }: FileMotion, positions: readonly Vec3[]): FileBones['joints'] =>
+  positions.map((position, i) => ({
+    ...{ name: names[i]!, parent: parents[i]!, position },
+    ...(names[i]!.endsWith(':end') && { end: true }),
+  }));
+
+/** The second extent of positions as a share of the greatest: a folded skeleton has little of it. */
+function spreadOf(positions: readonly Vec3[]): number {
+  const extents = (['x', 'y', 'z'] as const).map((axis) => {
+    const values = positions.map((position) => position[axis]);
+    return values.reduce((a, b) => Math.max(a, b), -Infinity) - values.reduce((a, b) => Math.min(a, b), Infinity);
+  });
+  const [, second, most] = extents.sort((a, b) => a - b) as [number, number, number];
+  return most > 0 ? second / most : 0;
+}
+
+/** Returns the joints for a picture: at rest, or in the first frame where they lie further apart there. */
+export function jointsForPicture(file: FileMotion): FileBones['joints'] {
+  const { positions } = file.pose(0, createJointPoses(file.names.length));
+  return jointsAt(file, spreadOf(positions) > spreadOf(file.rest) ? positions : file.rest);
+}
+
+/** Returns the joints that a map names. Throws a sentence where one is missing. */
+function mappedJoints({ names }: FileMotion, map: BoneMap): Match {
+  const missing = neededBones.filter((bone) => map[bone] === undefined);
+  if (missing.length > 0) throw new Error(`the map of its bones has no ${missing.join(', no ')}`);
+  const matches = Object.entries(map).map(([bone, name]): readonly [string, BoneMatch] => {
+    const joint = names.indexOf(name);
+    if (joint < 0) throw new Error(`no joint “${name}”, which the map of its bones names as ${bone}`);
+    return [bone, { joint, confidence: 1, reason: 'the map names it' }];
+  });
+  return { map: Object.fromEntries(matches) };
+}
+
+/** Matches joints, left and right by where the toes point. Throws UnknownBones where they do not match. */
+function matchSides(file: FileMotion): { readonly match: Match; readonly notes: string[] } {
+  const found = matchHumanoid(jointsAt(file, file.rest));
+  const complaint = humanoidComplaint(found);
   if (complaint)
-    throw new Error(
+    throw new UnknownBones(
       `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
+      fileBones(jointsForPicture(file), found.map),
     );
-  const notes = [...match.notes];
-  if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes };
-  notes.push('the names of left and right are exchanged: the toes point back; the motion was followed');
-  return { match: exchanged(match), notes };
+  const hands = Object.entries(handsOfCmuconvert(file.names)).map(([bone, name]): readonly [string, BoneMatch] => [
+    bone,
+    { joint: file.names.indexOf(name), confidence: 1, reason: 'cmuconvert calls it so' },
+  ]);
+  const match = { map: { ...found.map, ...Object.fromEntries(hands) } };
+  if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes: [...found.notes] };
+  const note = 'the names of left and right are exchanged: the toes point back; the motion was followed';
+  return { match: exchanged(match), notes: [...found.notes, note] };
 }
 
 /**
@@ -222,6 +264,6 @@ function restOf(file: FileMotion, joints: StandingJoints, limbs: Limbs) {
   }
   if (!axes)
     throw new Error('the rest pose is no T-pose: left and right lie on each other. Name a “restFrame” in a map');
-  const built = straightRest(file, file.parents!, limbs, axes.turn);
+  const built = straightRest(file, file.parents, limbs, axes.turn);
   return { file: countedFrom(file, built.pose), axes, notes: built.notes, stands: false };
 }

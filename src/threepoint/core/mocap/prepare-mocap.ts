@@ -1,5 +1,7 @@
 import { type Calibration, calibrationProblem } from '../body/calibration';
 import { reasonOf } from '../errors/reasons';
+import type { BoneMap } from '../humanoid/bones';
+import { type FileBones, UnknownBones } from '../humanoid/unknown-bones-error';
 import { isObject } from '../json';
 import type { FileMotion } from '../motion/file-motion';
 import { readAmc } from '../motion/read-amc';
@@ -12,7 +14,7 @@ import { putBackLostBones } from './cmuconvert';
 import { doubtsOf } from './doubts';
 import { cutAtLeaps, evenClip } from './even-clip';
 import { floorFromFile, fromMappedRest } from './mapped-motion';
-import { type MatchedMotion, matchSkeleton } from './match-skeleton';
+import { jointsForPicture, type MatchedMotion, matchSkeleton } from './match-skeleton';
 import { cmu, rateHz } from './mocap-rules.json';
 import { type OurMotion, toOurJoints, unitOf } from './our-joints';
 import { floorHeight, measuresOf, neutralHead } from './person';
@@ -31,6 +33,8 @@ export type MocapSource = {
   readonly name: string;
   /** The map of a skeleton that is unknown here. */
   readonly map?: Beside;
+  /** The user's map of the file's bones, for a file without the map above. */
+  readonly bones?: BoneMap;
   /** The BVH or AMC file that the map's `restFrame` is of, where it is another. */
   readonly rest?: Beside;
   /** Frames per second, of a file that does not say its own. */
@@ -69,10 +73,15 @@ export interface PreparedMocap {
   readonly notes: readonly string[];
   /** What cannot be right, a sentence each. */
   readonly doubts: readonly string[];
+  /** The joints of the file, and which bones they are. */
+  readonly bones: FileBones;
 }
 
 /** Returns the fault as a sentence that begins with the name of its file. */
-const faultIn = (name: string, error: unknown): Error => new Error(`${name}: ${reasonOf(error)}`, { cause: error });
+function faultIn(name: string, error: unknown): Error {
+  const message = `${name}: ${reasonOf(error)}`;
+  return error instanceof UnknownBones ? new UnknownBones(message, error) : new Error(message, { cause: error });
+}
 
 /** What is read of a file that another needs; a fault in it begins with its own name. */
 function readBeside<Result>({ name, text }: Beside, read: (text: string, name: string) => Result): Result {
@@ -97,7 +106,10 @@ const readAmcFile = (text: string, skeleton: Beside): Generator<number, FileMoti
 function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, MatchedMotion> {
   const bvh = source.format === 'bvh' ? yield* readBvhFile(source.text) : null;
   const file = bvh?.file ?? (yield* readOther(source));
-  if (!map) return source.format === 'amc' ? withMap(file, acclaimMap(file.names)) : matchSkeleton(file);
+  if (!map) {
+    const acclaim = source.format === 'amc' && !source.bones ? acclaimMap(file.names) : null;
+    return acclaim ? withMap(file, acclaim) : matchSkeleton(file, source.bones);
+  }
   if (map.restFile !== undefined && !source.rest)
     throw new Error(
       '“restFrame” of another file is for npm run evaluate; here it is the number of a frame of the file',
@@ -127,6 +139,7 @@ function readGltf(description: unknown, binary: Uint8Array): FileMotion {
 const withMap = (file: FileMotion, map: SkeletonMap): MatchedMotion => ({
   file,
   skeleton: mappedSkeleton(file.names, map, floorFromFile(map)),
+  bones: { joints: jointsForPicture(file), matched: map.joints, confidence: {} },
   notes: [],
 });
 
@@ -154,10 +167,10 @@ function personOf(name: string): string {
  */
 export function* readOurMotion(
   source: MocapSource,
-): Generator<number, { readonly motion: OurMotion } & Pick<PreparedMocap, 'notes' | 'doubts'>> {
+): Generator<number, { readonly motion: OurMotion } & Omit<PreparedMocap, 'clips'>> {
   try {
     const map = source.map && readBeside(source.map, readSkeletonMap);
-    const { file, skeleton, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
+    const { file, skeleton, bones, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
     const rate = file.rateHz ?? map?.frameRate ?? source.rateHz ?? rateOf(source.name);
     if (!(rate >= lowestRateHz && rate <= highestRateHz))
       throw new Error(
@@ -165,7 +178,8 @@ export function* readOurMotion(
       );
     const unit = unitOf(file, skeleton);
     const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton, unit.metres), 0.75, 1);
-    return { motion, notes: [...file.notes, ...notes, ...(unit.note ? [unit.note] : [])], doubts: doubtsOf(motion) };
+    const said = [...file.notes, ...notes, ...(unit.note ? [unit.note] : [])];
+    return { motion, bones, notes: said, doubts: doubtsOf(motion) };
   } catch (error) {
     throw faultIn(source.name, error);
   }
@@ -187,7 +201,7 @@ export function* prepareMocap(source: MocapSource): Generator<number, PreparedMo
 
 function* clipsOf(
   name: string,
-  { motion, notes, doubts }: { readonly motion: OurMotion } & Omit<PreparedMocap, 'clips'>,
+  { motion, notes, doubts, bones }: { readonly motion: OurMotion } & Omit<PreparedMocap, 'clips'>,
 ): Generator<number, PreparedMocap> {
   const { cuts, pieces } = cutAtLeaps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
@@ -205,5 +219,6 @@ function* clipsOf(
     clips.push({ name: clip, calibration, frameCount: even.frameCount, tracked, truth: even.positions });
   }
   const leaps = cuts.slice(0, 5).map((cut) => cut + 1).join(', '); // biome-ignore format: one thought
-  return { clips, doubts, notes: cuts.length > 0 ? [...notes, `it leaps at frame ${leaps}; cut there`] : notes };
+  const said = cuts.length > 0 ? [...notes, `it leaps at frame ${leaps}; cut there`] : notes;
+  return { clips, doubts, bones, notes: said };
 }

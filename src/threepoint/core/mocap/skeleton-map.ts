@@ -100,14 +100,10 @@ export function mappedSkeleton(names: readonly string[], map: SkeletonMap, floor
   };
 }
 
-/** Returns the map of an Acclaim skeleton without what the file lacks. Throws a sentence where needed joints lack. */
-export function acclaimMap(names: readonly string[]): SkeletonMap {
+/** Returns the map of an Acclaim skeleton without what the file lacks; null: it lacks needed joints. */
+export function acclaimMap(names: readonly string[]): SkeletonMap | null {
   const known = new Set(names);
   const map = acclaim as SkeletonMap;
-  const lacks = neededJoints.filter((joint) => !known.has(map.joints[joint]!));
-  if (lacks.length > 0)
-    throw new Error(
-      `the skeleton has no ${lacks.join(' and no ')}, which head and hands and the truth are made of. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
-    );
+  if (neededJoints.some((joint) => !known.has(map.joints[joint]!))) return null;
   return { ...map, joints: Object.fromEntries(Object.entries(map.joints).filter(([, theirs]) => known.has(theirs))) };
 }

@@ -1,5 +1,6 @@
 import { conjugate, fromAxisAngle, multiply, type Quat, rotate, rotationBetween } from '../math/quat';
 import { type Side, sides } from '../math/side';
+import { median } from '../math/statistics';
 import { add, cross, dot, length, normalise, reject, subtract, type Vec3, zero } from '../math/vec3';
 import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
 import { downward, outward, sampledFrames } from './body-axes';
@@ -17,6 +18,10 @@ export interface Limbs {
 const straight = 0.9;
 /** A clavicle may deviate more from the side. */
 const clavicleOutward = 0.5;
+/** A hand at rest that lies further from its forearm than this [cosine] is bent. */
+const bentHand = 0.5;
+/** In the motion such a hand lies nearer by this [cosine] where only its rest is bent. */
+const straighter = 0.5;
 /** An elbow that bends more [sine] shows the axis of its hinge. */
 const bentElbow = 0.35;
 
@@ -79,6 +84,47 @@ function hingeOf(file: FileMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 
     add(sum, rotate(conjugate(rotations[elbow!]!), axis), sum);
   }
   return count >= 3 && length(sum) > 0.3 * count * bentElbow ? normalise(sum, zero) : null;
+}
+
+/**
+ * The cosine between a hand and its forearm in a pose, and the directions of both; null: nothing with a length hangs
+ * from the hand.
+ */
+function handIn(
+  positions: readonly Vec3[],
+  parents: readonly number[],
+  [, , elbow, hand]: LimbJoints,
+): { readonly cosine: number; readonly hand: Vec3; readonly forearm: Vec3 } | null {
+  const [from, wrist] = [positions[elbow!]!, positions[hand!]!];
+  const ends = positions.filter((_, i) => parents[i] === hand);
+  const sum = ends.reduce((all, end) => add(all, subtract(end, wrist)), zero);
+  const forearm = subtract(wrist, from);
+  if (!(length(sum) > 0.05 * ends.length * length(forearm))) return null;
+  const [way, along] = [normalise(sum, zero), normalise(forearm, zero)];
+  return { cosine: dot(way, along), hand: way, forearm: along };
+}
+
+/** Turns hands that are bent at rest and not in the motion along their forearms. null: no hand is bent so. */
+export function straightHands(
+  file: FileMotion,
+  arms: Limbs['arms'],
+): { readonly pose: JointPoses; readonly notes: readonly string[] } | null {
+  const { parents } = file;
+  const body = new Straightener(file, parents);
+  const notes: string[] = [];
+  const poses = createJointPoses(file.names.length);
+  for (const side of sides) {
+    const rest = handIn(file.rest, parents, arms[side]);
+    if (!rest || rest.cosine > bentHand) continue;
+    const cosines = Array.from(
+      sampledFrames(file.frameCount, 100),
+      (frame) => handIn(file.pose(frame, poses).positions, parents, arms[side])?.cosine ?? rest.cosine,
+    );
+    if (median(cosines) - rest.cosine < straighter) continue;
+    body.turn(arms[side][3]!, rotationBetween(rest.hand, rest.forearm));
+    notes.push(`its ${side} hand is bent at rest and not in the motion; it was straightened`);
+  }
+  return notes.length > 0 ? { pose: body.pose, notes } : null;
 }
 
 /**

@@ -40,7 +40,7 @@ export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: Fil
 
 /** Returns the motion with all offsets of its joints turned; rotations and the root's position stay. */
 export function withTurnedRest(file: FileMotion, turn: Quat): FileMotion {
-  const parents = file.parents!;
+  const parents = file.parents;
   const order = parentsFirst(parents);
   const before = createJointPoses(file.names.length);
   const back = quat(0, 0, 0, 1);

@@ -16,8 +16,8 @@ export const createJointPoses = (count: number): JointPoses => ({
 /** What a file of motion says of all joints of a skeleton, whichever format it has; in its own unit and axes. */
 export interface FileMotion {
   readonly names: readonly string[];
-  /** The parent of every joint; −1: a root. Absent where the format fixes which joint is which (ASF). */
-  readonly parents?: readonly number[];
+  /** The parent of every joint; −1: a root. */
+  readonly parents: readonly number[];
   /** The positions of all joints at rest, from the root. */
   readonly rest: readonly Vec3[];
   /** Frames per second; null: the file does not say. */

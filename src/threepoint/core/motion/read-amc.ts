@@ -75,11 +75,12 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
 function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values }: Rows): FileMotion {
   const { bones } = skeleton;
   const names = ['root', ...bones.map(({ name }) => name), ...bones.map(({ name }) => `${name}:end`)];
+  const parents = [-1, ...bones.map(({ parent }) => 1 + parent), ...bones.map((_, bone) => 1 + bone)];
   const rest = player
     .pose(new Float64Array(width), 0, createJointPoses(names.length))
     .positions.map((position) => subtract(position, skeleton.rootPosition));
   return {
-    ...{ names, rest, rateHz: null, frameCount: count, notes: [] },
+    ...{ names, parents, rest, rateHz: null, frameCount: count, notes: [] },
     pose: (frame, target) => player.pose(values, frame * width, target),
   };
 }

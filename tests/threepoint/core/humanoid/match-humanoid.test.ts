@@ -99,6 +99,17 @@ test.each(wings)('wings without names %s are no arms and no head', (_, places) =
   }
 });
 
+test('a joint in the place of the chest is no neck where another one is', () => {
+  const { joints, bones } = rigs.find(({ name }) => name === 'Mixamo')!;
+  const [neck, added] = [bones.neck!, joints.length];
+  const { parent } = joints[neck]!;
+  const doubled = [
+    ...joints.map((joint, i) => (i === neck ? { ...joint, parent: added } : joint)),
+    { name: 'lowerneck', parent, position: joints[parent]!.position },
+  ];
+  expect(matchHumanoid(doubled).map.neck?.joint).toBe(neck);
+});
+
 test('ends of chains that move no skin may lie anywhere', () => {
   for (const { joints, bones } of rigs.filter(({ name }) => /Quaternius|feet that follow a control/.test(name))) {
     const leaf = (i: number) => joints.every(({ parent }) => parent !== i);

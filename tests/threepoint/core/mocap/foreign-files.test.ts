@@ -124,6 +124,18 @@ describe('a BVH is read alike with', () => {
     else expect(notes).toEqual([]);
   });
 
+  test('hands that hang from level arms at rest and never in the motion, which is said', () => {
+    const { clips, notes } = prepare(madeBvh({ anglesOf: { LeftHand: [-90, 0, 0], RightHand: [90, 0, 0] } }));
+    expect(notes.join('\n')).toMatch(/its left hand is bent at rest.*\n.*its right hand is bent at rest/);
+    for (const hand of [7, 14]) {
+      const turnOf = (from: Float32Array) => {
+        const [x, y, z, w] = from.subarray(30 * trackedWidth + hand + 3) as unknown as [number, number, number, number];
+        return quat(x, y, z, w);
+      };
+      expect(turnOf(clips[0]!.tracked)).toBeSameRotationAs(turnOf(expected.tracked), 1);
+    }
+  });
+
   test('left and right exchanged in its names, which is said', () => {
     const swapped = madeBvh({
       nameOf: (name) => name.replace(/Left|Right/, (word) => (word === 'Left' ? 'Right' : 'Left')),

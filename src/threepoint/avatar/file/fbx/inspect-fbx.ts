@@ -6,6 +6,8 @@ const latin = new TextDecoder('latin1');
 
 /** What an FBX file may hold; the converted body is checked again. */
 const mostNumbers = 40e6;
+/** An array takes 65 µs in all, as measured: the tables for unpacking it have 130 kB, here and in the loader. */
+const mostPackedArrays = 100_000;
 const deepestNesting = 32;
 /** The largest polygon that is cut into triangles [corners]. */
 const mostCorners = 1000;
@@ -93,6 +95,16 @@ function unpack(packed: Uint8Array, length: number, keep: boolean): Uint8Array |
   return kept;
 }
 
+/** An array of a file that must be unpacked or looked at. */
+interface StoredArray {
+  readonly name: string;
+  readonly type: string;
+  readonly raw: Uint8Array;
+  readonly isPacked: boolean;
+  /** Unpacked [bytes]. */
+  readonly length: number;
+}
+
 const arrayTypes: Readonly<Record<string, number>> = { b: 1, c: 1, i: 4, f: 4, l: 8, d: 8 };
 const plainTypes: Readonly<Record<string, number>> = { C: 1, Y: 2, I: 4, F: 4, L: 8, D: 8 };
 
@@ -102,6 +114,7 @@ class BinaryWalk {
   readonly #view: DataView;
   readonly #wide: boolean;
   readonly #checks = new ArrayChecks();
+  readonly #arrays: StoredArray[] = [];
   #at = headerLength;
   /** The text of the newest layer that says that its values have a list of indices. */
   #reference: Uint8Array | null = null;
@@ -117,6 +130,9 @@ class BinaryWalk {
     let end = this.#at;
     while (this.#at < this.#bytes.length && this.#node(this.#bytes.length, 0) !== null) end = this.#at;
     if (end === headerLength) throw new Error('holds nothing');
+    const packed = this.#arrays.filter(({ isPacked }) => isPacked).length;
+    if (packed > mostPackedArrays) throw new Error(`holds more than ${mostPackedArrays} packed arrays`);
+    for (const array of this.#arrays) this.#checkArray(array);
     return end;
   }
 
@@ -188,10 +204,14 @@ class BinaryWalk {
     ];
     this.#checks.count(count);
     const length = count * arrayTypes[type]!;
+    const isPacked = encoding !== 0;
+    const begin = this.#take(isPacked ? packedLength : length, end);
+    this.#arrays.push({ name, type, raw: this.#bytes.subarray(begin, this.#at), isPacked, length });
+  }
+
+  #checkArray({ name, type, raw, isPacked, length }: StoredArray): void {
     const needed = this.#checks.needs(name) && (type === 'i' || type === 'f' || type === 'd');
-    const begin = this.#take(encoding === 0 ? length : packedLength, end);
-    const raw = this.#bytes.subarray(begin, this.#at);
-    const values = encoding !== 0 ? unpack(raw, length, needed) : needed ? raw.slice() : null;
+    const values = isPacked ? unpack(raw, length, needed) : needed ? raw.slice() : null;
     if (!values) return;
     const kind = type === 'i' ? Int32Array : type === 'f' ? Float32Array : Float64Array;
     this.#checks.check(name, new kind(values.buffer as ArrayBuffer));

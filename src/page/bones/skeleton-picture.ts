@@ -55,7 +55,7 @@ export function createSkeletonPicture(
       if (!choices.canChoose(i)) continue;
       const part = choices.partOf(i);
       const what = part ? `${labelOfPart(part)}${choices.isUnsure(i) ? ', a guess' : ''}` : 'no part of the body';
-      node.setAttribute('aria-label', `${joints[i]!.name}: ${what}`);
+      node.setAttribute('aria-label', `${choices.fileNameOf(i)}: ${what}`);
       node.setAttribute('aria-selected', String(i === chosen));
       node.setAttribute('tabindex', i === tabStop ? '0' : '-1');
     }

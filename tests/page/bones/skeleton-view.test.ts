@@ -1,4 +1,4 @@
-import { pictureSize, SkeletonView } from 'threepoint-page/shell/panel/skeleton-view';
+import { pictureSize, SkeletonView } from 'threepoint-page/bones/skeleton-view';
 import { describe, expect, test } from 'vitest';
 import { rigs } from '../../threepoint/core/humanoid/rigs';
 

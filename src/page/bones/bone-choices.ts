@@ -1,7 +1,7 @@
 import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
 import { type BoneMap, type BoneName, boneNames, fingerNames, neededBones } from 'threepoint/core/humanoid/bones';
 import { type Side, sides } from 'threepoint/core/math/side';
-import type { WaitingForBones } from '../user-avatar';
+import type { SkeletonToMap } from './skeleton-to-map';
 
 const trunk = {
   hips: 'Hips',
@@ -54,14 +54,14 @@ const sureFrom = 0.75;
 
 /** Which bones of a file are which parts of a body. A bone is one part at most, and a part one bone. */
 export class BoneChoices {
-  readonly joints: WaitingForBones['joints'];
-  readonly #confidence: WaitingForBones['confidence'];
+  readonly joints: SkeletonToMap['joints'];
+  readonly #confidence: SkeletonToMap['confidence'];
   readonly #guesses: BoneMap;
   /** The first joint with each name: a map names its bones. */
   readonly #byName = new Map<string, number>();
   readonly #partOf = new Map<number, BoneName>();
 
-  constructor({ joints, bones, confidence }: Pick<WaitingForBones, 'joints' | 'bones' | 'confidence'>) {
+  constructor({ joints, bones, confidence }: Pick<SkeletonToMap, 'joints' | 'bones' | 'confidence'>) {
     this.joints = joints;
     this.#confidence = confidence;
     this.#guesses = bones;
@@ -75,6 +75,12 @@ export class BoneChoices {
   /** Whether a map can name this joint: it has a name that no joint before it has. */
   canChoose(joint: number): boolean {
     return this.#byName.get(this.joints[joint]!.name) === joint;
+  }
+
+  /** Returns the name of a joint for the user. */
+  fileNameOf(joint: number): string {
+    const { name, end } = this.joints[joint]!;
+    return end ? `end of ${name.replace(/:end$/, '')}` : name;
   }
 
   /** null: the bone is no part of the body. */

@@ -1,8 +1,8 @@
-import type { BoneMap, BoneName } from '../../core/humanoid/bones';
-import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
-import type { HumanoidMatch } from '../../core/humanoid/match-humanoid';
+import type { BoneMap, BoneName } from './bones';
+import type { SkeletonJoint } from './joint-tree';
+import type { HumanoidMatch } from './match-humanoid';
 
-/** The bones of a file at rest; of a file without skins, all its nodes. */
+/** The bones of a file, at rest or as they can be drawn; of a file without skins, all its nodes. */
 export interface FileBones {
   readonly joints: readonly SkeletonJoint[];
   /** The bones that were matched, by what the file calls them. */
