@@ -280,7 +280,7 @@ export const attackRows = {
   'mutated-avatars': {
     inject: '100,000 mutated avatar files and as many FBX files (1,000 and 250 by day)',
     sees: 'A sentence that names the file, or a finite body',
-    target: '0 other exceptions, 0 NaN, no file over 1 s; three times its memory, of FBX without garbage',
+    target: '0 other exceptions, 0 NaN, no file over 1 s; GLB in three times its memory, FBX holds 20 times',
     shows: ['longest work on one check [ms of the processor]'],
     tests: [
       'tests/threepoint/avatar/mutated-files.test.ts',

