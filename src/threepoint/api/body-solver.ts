@@ -4,6 +4,7 @@ import { createEstimator, type NetworkName } from '../core/estimation/estimators
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { Pinning } from '../core/estimation/pinning';
 import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-estimator';
+import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
@@ -49,6 +50,11 @@ export interface BodyEvents {
   trackinglost?(point: TrackedPoint): void;
   /** The point is tracked, for the first time or again. */
   trackingfound?(point: TrackedPoint): void;
+  /**
+   * The joint of a tracker beyond head and hands has been out of the body's reach for a second. The tracker is worn
+   * elsewhere, or the measures are another person's. Called once until the body reaches it.
+   */
+  trackermismatch?(mismatch: TrackerMismatch): void;
   /** A session starts: frames of its wearer follow. */
   sessionstart?(): void;
   /** The session is over: `pose` is null. Others must not be shown the last pose any longer. */
@@ -99,6 +105,7 @@ const eventNames = optionNames<BodyEvents>({
   discontinuity: true,
   trackinglost: true,
   trackingfound: true,
+  trackermismatch: true,
   sessionstart: true,
   sessionend: true,
 });
@@ -150,7 +157,8 @@ export class BodySolver {
   constructor(options: BodySolverOptions) {
     assertOptions('Body', options, bodyOptions);
     assertOptions('the events of Body', options.events ?? {}, eventNames);
-    const { estimator = 'learned', calibration = 'auto', networks, profiler = null, pinning } = options;
+    const { estimator = 'learned', calibration = 'auto', networks, profiler = null } = options;
+    const pinning = options.pinning?.reportingTo((mismatch) => this.#events.trackermismatch?.(mismatch));
     this.#events = options.events ?? {};
     this.#clock = options.clock ?? createPageClock(() => performance.now());
     this.#profiler = profiler;

@@ -26,6 +26,7 @@ const callbackNames = {
   discontinuity: 'onDiscontinuity',
   trackinglost: 'onTrackingLost',
   trackingfound: 'onTrackingFound',
+  trackermismatch: 'onTrackerMismatch',
   sessionstart: 'onSessionStart',
   sessionend: 'onSessionEnd',
 } as const satisfies Record<keyof BodyTrackerEvents, string>;

@@ -9,6 +9,7 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
+import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { nameOfAddress } from '../core/files';
 import type { BoneMap } from '../core/humanoid/bones';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
@@ -139,6 +140,7 @@ export interface BodyTrackerEvents {
   readonly discontinuity: object;
   readonly trackinglost: { readonly point: TrackedPoint };
   readonly trackingfound: { readonly point: TrackedPoint };
+  readonly trackermismatch: TrackerMismatch;
   readonly sessionstart: object;
   readonly sessionend: object;
 }
@@ -232,6 +234,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
             networks: (name: string) =>
               name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noRuntimeError),
           };
+    const passes = (type: 'estimatorchange' | 'discontinuity' | 'sessionstart' | 'sessionend') => () =>
+      this.dispatchEvent({ type });
     this.body = new Body({
       ...networks,
       ...bodyOptions,
@@ -241,16 +245,17 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
           this.dispatchEvent({ type: 'calibrated', calibration, source });
         },
         heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
-        estimatorchange: () => this.dispatchEvent({ type: 'estimatorchange' }),
-        discontinuity: () => this.dispatchEvent({ type: 'discontinuity' }),
+        estimatorchange: passes('estimatorchange'),
+        discontinuity: passes('discontinuity'),
         fallback: (estimator, reason) => {
           if (this.#fallbackListeners.size > 0) this.dispatchEvent({ type: 'fallback', estimator, reason });
           else warnOfFallback(estimator, reason);
         },
         trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
         trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
-        sessionstart: () => this.dispatchEvent({ type: 'sessionstart' }),
-        sessionend: () => this.dispatchEvent({ type: 'sessionend' }),
+        trackermismatch: (mismatch) => this.dispatchEvent({ type: 'trackermismatch', ...mismatch }),
+        sessionstart: passes('sessionstart'),
+        sessionend: passes('sessionend'),
       },
     });
     ownedAvatars.set(avatar, 'drawn');

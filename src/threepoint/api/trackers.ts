@@ -3,5 +3,6 @@ export type { TrackerName, TrackerOffset, TrackerOffsets } from '../core/body/tr
 export { trackerAtJoint } from '../core/body/tracker-offsets';
 export type { Pinning, Pins } from '../core/estimation/pinning';
 export { pinning } from '../core/estimation/pinning';
+export type { TrackerMismatch } from '../core/estimation/tracker-watch';
 export type { TrackerMeasuring, TrackerSample } from '../core/tracking/measure-trackers';
 export type { BodyTrackers } from '../core/tracking/tracking-frame';

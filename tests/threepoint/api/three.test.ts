@@ -78,6 +78,21 @@ describe('a body in a session of three.js', () => {
     expect(tracker.pose!.feet).toBeUndefined();
   });
 
+  test('reports a tracker that the body does not reach for a second, with a sentence', async () => {
+    const calibration = { ...defaultCalibration, trackerOffsets: { hips: trackerAtJoint } };
+    const hips = { position: { x: 0, y: 0.4, z: 0 }, orientation: identity, tracking: 'tracked' as const };
+    const { headset, tracker, run } = await begin({ calibration, pinning, trackers: () => ({ hips }) });
+    const messages: string[] = [];
+    tracker.addEventListener('trackermismatch', ({ message }) => messages.push(message));
+    headset.putOn();
+    run(40);
+    expect(messages).toEqual([]);
+    run(120);
+    expect(messages).toEqual([
+      expect.stringMatching(/^The hips tracker is \d+ cm further from the head than this body/),
+    ]);
+  });
+
   test('refuses trackers without the part that draws them, and offsets that no tracker is worn with', async () => {
     const trackers = () => null;
     await expect(begin({ trackers })).rejects.toThrow(/pinning.*threepoint\/trackers/);

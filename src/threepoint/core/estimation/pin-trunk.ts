@@ -75,11 +75,9 @@ export interface PinTrunkState {
   readonly chest: TrunkPin;
 }
 
-export const makePinTrunkState = (): PinTrunkState => ({
-  known: false,
-  hips: { ...makePin(), bend: vec3(0, 0, 0), bow: null },
-  chest: { ...makePin(), bend: vec3(0, 0, 0), bow: null },
-});
+const makeTrunkPin = (): TrunkPin => ({ ...makePin(), bend: vec3(0, 0, 0), bow: null });
+
+export const makePinTrunkState = (): PinTrunkState => ({ known: false, hips: makeTrunkPin(), chest: makeTrunkPin() });
 
 /** A trunk before a pin moves it; floor frame. */
 interface TrunkBefore extends Pick<TorsoPose, 'neck' | 'chest' | 'hips' | 'rotations'> {}

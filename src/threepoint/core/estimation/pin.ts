@@ -15,11 +15,11 @@ import { lerp } from '../math/vec3';
 export const handOverSeconds = 0.3;
 
 /** How far [m] beyond the reach of its bones a tracked joint starts to count less, and counts as lost. */
-const doubtful = { from: 0.1, to: 0.3 };
+const doubtfulFrom = 0.1;
+const lostFrom = 0.3;
 
 /** Returns how much a tracked joint counts that is `beyond` [m] out of the reach of its bones: 1, less, or 0. */
-export const trustBeyond = (beyond: number): number =>
-  clamp((doubtful.to - beyond) / (doubtful.to - doubtful.from), 0, 1);
+export const trustBeyond = (beyond: number): number => clamp((lostFrom - beyond) / (lostFrom - doubtfulFrom), 0, 1);
 
 /** A joint that a tracker pins, and its way there and back. */
 export interface Pin {

@@ -7,6 +7,7 @@ import type { BodyTrackers } from '../tracking/tracking-frame';
 import type { CompletedFrame } from './complete-hands';
 import { makePinTrunkState, pinTrunk, resetPinTrunk } from './pin-trunk';
 import { makeTrackedJointsState, placeTrackedJoints } from './tracked-joints';
+import { type TrackerReport, TrackerWatch } from './tracker-watch';
 import type { TorsoBones, TorsoPose } from './trunk/fit-torso';
 
 /** The joints of one estimator that trackers pin. */
@@ -14,15 +15,18 @@ export class Pins {
   readonly #joints = makeTrackedJointsState();
   readonly #trunk = makePinTrunkState();
   readonly #feet: Mutable<TrackedFeet> = { left: null, right: null };
+  readonly #watch: TrackerWatch;
   #offsets: Calibration['trackerOffsets'];
 
-  constructor(calibration: Calibration) {
+  constructor(calibration: Calibration, report?: TrackerReport) {
     this.#offsets = calibration.trackerOffsets;
+    this.#watch = new TrackerWatch(calibration, report);
   }
 
   /** Sets how the trackers are worn from the next frame on. */
   calibrate(calibration: Calibration): void {
     this.#offsets = calibration.trackerOffsets;
+    this.#watch.calibrate(calibration);
   }
 
   /** Forgets the past: the next frame is the first. */
@@ -40,6 +44,7 @@ export class Pins {
   ): TrackedFeet | undefined {
     const joints = placeTrackedJoints(this.#joints, trackers, this.#offsets);
     pinTrunk(this.#trunk, torso, joints, frame, bones, deltaSeconds);
+    this.#watch.follow(joints, torso, deltaSeconds);
     this.#feet.left = joints.leftFoot;
     this.#feet.right = joints.rightFoot;
     return joints.leftFoot || joints.rightFoot ? this.#feet : undefined;
@@ -50,6 +55,8 @@ export class Pins {
 export interface Pinning extends TrackerMeasuring {
   /** Creates the pins of one estimator. */
   create(calibration: Calibration): Pins;
+  /** Returns the same part, which passes `report` each tracker that the body does not reach for a second. */
+  reportingTo(report: TrackerReport): Pinning;
   /** Throws a RangeError where the offset of a tracker is no pose, or longer than a tracker is from its joint. */
   assertOffsets(calibration: Calibration): void;
 }
@@ -57,6 +64,7 @@ export interface Pinning extends TrackerMeasuring {
 export const pinning: Pinning = {
   ...trackerMeasuring,
   create: (calibration) => new Pins(calibration),
+  reportingTo: (report) => ({ ...pinning, create: (calibration) => new Pins(calibration, report) }),
   assertOffsets({ trackerOffsets }) {
     for (const name of trackerNames) {
       const offset = trackerOffsets?.[name];

@@ -7,8 +7,9 @@ import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/sk
 import { type TrackerOffsets, trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { pinning } from 'threepoint/core/estimation/pinning';
+import type { TrackerMismatch } from 'threepoint/core/estimation/tracker-watch';
 import { type Pose, type TrackedPose, transformPoint } from 'threepoint/core/math/pose';
-import { angleBetween, multiply, rotate } from 'threepoint/core/math/quat';
+import { angleBetween, identity, multiply, rotate } from 'threepoint/core/math/quat';
 import { randomNumbers } from 'threepoint/core/math/random';
 import {
   add,
@@ -289,6 +290,50 @@ describe('a pinned trunk', () => {
       }),
       { seed, numRuns: cases(20), endOnFailure: true },
     );
+  });
+
+  test.each([
+    [
+      'hips',
+      vec3(0, -0.12, 0),
+      /^The hips tracker is 1[0-3] cm further from the head than this body’s trunk reaches\./,
+    ],
+    ['hips', vec3(0.9, 0, 0), /^The hips tracker is 90 cm further from the head/],
+    [
+      'chest',
+      vec3(0, 0.1, 0),
+      /^The chest tracker is ([5-9]|10) cm from where head and hips leave this body’s chest\./,
+    ],
+    [
+      'leftFoot',
+      vec3(0, -0.15, 0),
+      /^The left foot tracker is \d+ cm further from the hips than this body’s leg reaches/,
+    ],
+  ] as const)('reports a %s tracker that it does not reach for a second, once', (name, by, sentence) => {
+    const reports: TrackerMismatch[] = [];
+    const watched = { pinning: pinning.reportingTo((mismatch) => reports.push(mismatch)) };
+    const estimator = createEstimator('ik', withOffsets(calibration), null, watched);
+    const frame = movingPerson(4, calibration, { x: 1, z: 2, yaw: 0.4 })(3);
+    const { hips, chest } = draw(createEstimator('ik', calibration), frame);
+    const { x, z } = hips.position;
+    const leftFoot = { position: vec3(x, hips.position.y - 0.59 * calibration.eyeHeight, z), orientation: identity };
+    const trueJoints = { hips, chest, leftFoot };
+    const away = { ...trueJoints, [name]: { ...trueJoints[name], position: add(trueJoints[name].position, by) } };
+    const show = (from: number, to: number, joints: TrueJoints) => {
+      for (let time = from; time < to; time += rate)
+        poseOf(estimator, { ...frame, time, trackers: trackersOn(joints) });
+    };
+    show(0, 2, trueJoints);
+    show(2, 2.9, away);
+    expect(reports).toEqual([]);
+    show(2.9, 5, away);
+    expect(reports.map(({ tracker }) => tracker)).toEqual([name]);
+    expect(reports[0]!.message).toMatch(sentence);
+    expect(reports[0]!.message).toMatch(/Calibrate, or check where it is worn\.$/);
+    expect(reports[0]!.far).toBeGreaterThan(0.05);
+    show(5, 6, trueJoints);
+    show(6, 8, away);
+    expect(reports).toHaveLength(2);
   });
 
   test('is the estimate again when its trackers have been lost for 0.3 s', () => {
