@@ -9,15 +9,16 @@ process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
  * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm
  * run nightly` @nightly. Asked for without a word, a file runs all but the nightly ones.
  */
+export const choices: Readonly<Record<string, { readonly grep?: RegExp; readonly grepInvert?: RegExp }>> = {
+  'day and full': { grepInvert: /@nightly/ },
+  day: { grepInvert: /@(full|realtime|nightly)/ },
+  full: { grep: /@full/ },
+  realtime: { grep: /@realtime/ },
+  nightly: { grep: /@nightly/ },
+  all: {},
+};
+
 function chosenBy(word = 'day and full') {
-  const choices: Readonly<Record<string, { readonly grep?: RegExp; readonly grepInvert?: RegExp }>> = {
-    'day and full': { grepInvert: /@nightly/ },
-    day: { grepInvert: /@(full|realtime|nightly)/ },
-    full: { grep: /@full/ },
-    realtime: { grep: /@realtime/ },
-    nightly: { grep: /@nightly/ },
-    all: {},
-  };
   const choice = choices[word];
   if (!choice) throw new Error(`THREEPOINT_TESTS=${word}: expected one of ${Object.keys(choices).join(', ')}`);
   return choice;

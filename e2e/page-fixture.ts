@@ -3,6 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { serve } from 'threepoint-http/web-server';
+import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import type { Probe } from 'threepoint-page/shell/probe';
 import { createPageHandler } from '../server/page-handler';
 import { drawSeldom, screenshot } from './draw-seldom';
@@ -307,3 +308,17 @@ export const freshTest = test.extend({
     await page.context().close();
   },
 });
+
+/** Returns whether the boxes of two parts of the page overlap. */
+export async function overlap(page: Page, one: string, other: string): Promise<boolean> {
+  const [a, b] = await Promise.all([page.locator(one).boundingBox(), page.locator(other).boundingBox()]);
+  if (!a || !b) throw new Error(`${one} or ${other} is not shown`);
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/** Returns the ball game of a page; throws if the page plays none. */
+export async function ballMatch(page: Page): Promise<BallProbe> {
+  const { game } = await probe(page);
+  if (game?.name !== 'ball') throw new Error('the page plays no ball game');
+  return game;
+}

@@ -25,20 +25,20 @@ function projectOf(files: Readonly<Record<string, string>>): string {
 const importRules = await extractDepcruiseOptions(join(root, '.dependency-cruiser.mjs'));
 const tsConfig = extractTsConfig(join(root, 'tsconfig.json'));
 
-/** Returns the names of the import rules that these files break, without duplicates. */
-async function brokenImportRules(files: Readonly<Record<string, string>>): Promise<string[]> {
+/** Cruises a project of these files; returns the broken rules as pairs of the importing file and the rule's name. */
+async function violationsIn(files: Readonly<Record<string, string>>): Promise<(readonly [string, string])[]> {
   const folders = [...new Set(Object.keys(files).map((path) => path.split('/')[0] as string))];
   const options = { ...structuredClone(importRules), baseDir: projectOf(files) };
   const { output } = await cruise(folders, options, undefined, { tsConfig });
   const { modules, summary } = output as ICruiseResult;
   expect(modules.map(({ source }) => source)).toEqual(expect.arrayContaining(Object.keys(files)));
-  return [...new Set(summary.violations.map(({ rule }) => rule.name))].sort();
+  return summary.violations.map(({ from, rule }) => [from, rule.name] as const);
 }
 
 describe('the import rules', () => {
   const empty = 'export {};\n';
 
-  test.each([
+  const forbidden: readonly (readonly [fact: string, rule: string, from: string, to: string, names?: string])[] = [
     ['the library knows no rooms', 'package-threepoint', 'src/threepoint/xr/a.ts', '../../rooms/client/b'],
     ['rooms know no game', 'package-threepoint-rooms', 'src/rooms/room/a.ts', '../../games/ball/b'],
     ['the study knows no rooms', 'package-threepoint-study', 'src/study/server/a.ts', '../../rooms/server/b'],
@@ -86,14 +86,25 @@ describe('the import rules', () => {
     ['what ships needs no tests', 'shipped-code-knows-no-tests', 'src/rooms/client/a.ts', '../../../tests/b'],
     ['nor a tool', 'shipped-packages-are-no-tools', 'server/a-worker.mjs', 'fast-check'],
     ['nor does the library', 'shipped-packages-are-no-tools', 'src/threepoint/xr/a.ts', 'fast-check'],
-  ])('%s (%s)', async (_, rule, importer, imported, names = '') => {
-    const target = imported.startsWith('.') ? { [`${join(dirname(importer), imported)}.ts`]: empty } : {};
-    expect(await brokenImportRules({ [importer]: `import ${names} '${imported}';`, ...target })).toContain(rule);
+  ];
+
+  test('refuse each import that the design forbids', async () => {
+    const files: Record<string, string> = {};
+    const broken = forbidden.map(([fact, rule, importer, imported, names = ''], index) => {
+      // Each import has a file of its own.
+      const from = importer.replace(/\/a\.ts$/, `/a-${index}.ts`);
+      files[from] = `import ${names} '${imported}';`;
+      if (imported.startsWith('.')) files[`${join(dirname(importer), imported)}.ts`] = empty;
+      return { fact, violation: [from, rule] };
+    });
+    const violations = await violationsIn(files);
+    for (const { fact, violation } of broken) expect(violations, fact).toContainEqual(violation);
   });
 
   test('imports lead somewhere, and no circles (imports-resolve, no-cycles)', async () => {
     const files = { 'src/ui/a.ts': "import './b';", 'src/ui/b.ts': "import './a';\nimport './gone';" };
-    expect(await brokenImportRules(files)).toEqual(['imports-resolve', 'no-cycles']);
+    const rules = (await violationsIn(files)).map(([, rule]) => rule);
+    expect([...new Set(rules)].toSorted()).toEqual(['imports-resolve', 'no-cycles']);
   });
 
   test('what the design allows breaks none', async () => {
@@ -123,7 +134,7 @@ describe('the import rules', () => {
       'server/main.ts':
         "import 'node:http';\nimport '../src/games/ball/rules';\nimport '../src/study/server/routes/routes';",
     };
-    expect(await brokenImportRules(allowed)).toEqual([]);
+    expect(await violationsIn(allowed)).toEqual([]);
   });
 });
 

@@ -3,7 +3,7 @@ import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { processesOf } from '../browser-processes';
 import { drawSeldom } from '../draw-seldom';
-import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
+import { ballMatch, collectErrors, expect, joinedRoom, probe } from '../page-fixture';
 import { test } from '../study-participant';
 
 const hour = 3_600_000;
@@ -28,13 +28,8 @@ const withClocks = (page: Page) =>
     window.requestAnimationFrame = (draw) => next((time) => draw(time + slept.running));
   });
 
-async function match(page: Page): Promise<BallProbe> {
-  const { game } = await probe(page);
-  if (game?.name !== 'ball') throw new Error('the page plays no ball game');
-  return game;
-}
-
-const plays = (page: Page) => expect.poll(async () => (await match(page)).phase, { timeout: 60_000 }).toBe('running');
+const plays = (page: Page) =>
+  expect.poll(async () => (await ballMatch(page)).phase, { timeout: 60_000 }).toBe('running');
 
 const health = async (origin: string) =>
   (await (await fetch(`${origin}/healthz`)).json()) as { readonly rooms: number; readonly sockets: number };
@@ -45,16 +40,16 @@ async function inMatch(page: Page, origin: string, room: string): Promise<BallPr
   await page.goto(`${origin}/?${query}`);
   await joinedRoom(page);
   await plays(page);
-  return match(page);
+  return ballMatch(page);
 }
 
 /** The match goes on: its clock runs as the server's does, and the others are drawn. */
 async function goesOn(page: Page): Promise<void> {
   // A clock that leapt while the server's did not is right again with the server's next answer.
-  await expect.poll(async () => (await match(page)).secondsLeft).toBeGreaterThan(400);
-  const { secondsLeft } = await match(page);
-  await expect.poll(async () => (await match(page)).secondsLeft, { timeout: 30_000 }).toBeLessThan(secondsLeft - 1);
-  expect((await match(page)).secondsLeft).toBeGreaterThan(secondsLeft - 40);
+  await expect.poll(async () => (await ballMatch(page)).secondsLeft).toBeGreaterThan(400);
+  const { secondsLeft } = await ballMatch(page);
+  await expect.poll(async () => (await ballMatch(page)).secondsLeft, { timeout: 30_000 }).toBeLessThan(secondsLeft - 1);
+  expect((await ballMatch(page)).secondsLeft).toBeGreaterThan(secondsLeft - 40);
   await expect.poll(async () => (await probe(page)).players.length).toBe(2);
 }
 
@@ -92,7 +87,7 @@ for (const { asleep, name, tag } of sleeps) {
       await joinedRoom(page);
       const seconds = (Date.now() - awake) / 1000;
       await plays(page);
-      expect(await match(page)).toMatchObject({ seat, voided: asleep === 'while its seat is held' ? 0 : 1 });
+      expect(await ballMatch(page)).toMatchObject({ seat, voided: asleep === 'while its seat is held' ? 0 : 1 });
       await goesOn(page);
       expect(errors.filter((text) => !/WebSocket/.test(text))).toEqual([]);
       reportFigures('asleep', { [`${name}, ${asleep}`]: `back in its seat after ${seconds.toFixed(1)} s` });

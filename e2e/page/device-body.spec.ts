@@ -2,20 +2,10 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
-import { rolldown } from 'rolldown';
-import { sourceResolution } from '../../scripts/source-condition.mjs';
 import { endDrivenTime, pass } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { enterVr, expect, keepPicture, open, probe, freshTest as test } from '../page-fixture';
-
-/** Our own polyfill in one piece: it stands for a headset that tracks its wearer's body. */
-async function polyfill(): Promise<string> {
-  const input = fileURLToPath(new URL('../../src/threepoint/api/polyfill.ts', import.meta.url));
-  const build = await rolldown({ input, platform: 'browser', resolve: sourceResolution('browser') });
-  const { output } = await build.generate({ format: 'iife', name: 'bodyPolyfill', codeSplitting: false });
-  await build.close();
-  return output[0].code;
-}
+import { bundlePolyfill } from '../polyfill-bundle';
 
 /**
  * The page with the measures of a person, on an emulated headset that tracks bodies as inverse kinematics draws them.
@@ -28,7 +18,7 @@ async function openOnTrackingHeadset(page: Page): Promise<void> {
   await page.getByLabel('Arm span in centimetres').blur();
   const { calibration } = await probe(page);
   const options = JSON.stringify({ estimator: 'ik', calibration });
-  await page.evaluate(`${await polyfill()}; bodyPolyfill.installBodyTracking(${options}); null`);
+  await page.evaluate(`${await bundlePolyfill()}; bodyPolyfill.installBodyTracking(${options}); null`);
 }
 
 /** What `npm run evaluate -- --recording` says of the only recording. */

@@ -2,12 +2,11 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
-import { rolldown } from 'rolldown';
 import { readHeadsetReport } from 'threepoint-page/check/headset-report';
-import { sourceResolution } from '../../scripts/source-condition.mjs';
 import { driveTime, endDrivenTime, pass } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { expect, keepPicture, freshTest as test } from '../page-fixture';
+import { bundlePolyfill } from '../polyfill-bundle';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
 const rateHz = 60;
@@ -15,15 +14,6 @@ const rateHz = 60;
 const noise = { headMm: 0.1, headDegrees: 0.05, handsMm: 0.4 };
 /** How long hands are out of view [frames]: the left twice, the right once. */
 const lost = { left: [6, 30], right: [12] };
-
-/** The library's own polyfill stands for a headset that tracks bodies. */
-async function polyfill(): Promise<string> {
-  const input = fileURLToPath(new URL('../../src/threepoint/api/polyfill.ts', import.meta.url));
-  const build = await rolldown({ input, platform: 'browser', resolve: sourceResolution('browser') });
-  const { output } = await build.generate({ format: 'iife', name: 'bodyPolyfill', codeSplitting: false });
-  await build.close();
-  return output[0].code;
-}
 
 /** Moves the emulated devices in every frame: sway and known noise, and known losses in the step “Lost hands”. */
 const wear = (page: Page) =>
@@ -96,7 +86,7 @@ test('a headset check measures the known noise and losses of the emulator, and w
   await expect(start).toBeEnabled({ timeout: 60_000 });
   await keepPicture(page, 'headset-check-start');
   await emulatedHeadset(page);
-  await page.evaluate(`${await polyfill()}; bodyPolyfill.installBodyTracking({ estimator: 'ik' }); null`);
+  await page.evaluate(`${await bundlePolyfill()}; bodyPolyfill.installBodyTracking({ estimator: 'ik' }); null`);
   // Time stands still until the devices move.
   await driveTime(page, 1000 / rateHz);
   await page.evaluate(() => window.drivenTime?.hold());

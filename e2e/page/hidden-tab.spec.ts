@@ -1,21 +1,14 @@
 import type { Page } from '@playwright/test';
-import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { startTabbedBrowser } from '../background-tab';
 import { drawSeldom } from '../draw-seldom';
 import { countsOf, megabytes } from '../memory-usage';
-import { collectErrors, expect, joinedRoom, newPage, probe } from '../page-fixture';
+import { ballMatch, collectErrors, expect, joinedRoom, newPage, probe } from '../page-fixture';
 import { test } from '../study-participant';
-
-async function match(page: Page): Promise<BallProbe> {
-  const { game } = await probe(page);
-  if (game?.name !== 'ball') throw new Error('the page plays no ball game');
-  return game;
-}
 
 /** Returns the presence of everyone in the match as this page shows it, by name. */
 const presences = async (page: Page) =>
-  Object.fromEntries((await match(page)).people.flatMap((one) => (one ? [[one.name, one.presence]] : [])));
+  Object.fromEntries((await ballMatch(page)).people.flatMap((one) => (one ? [[one.name, one.presence]] : [])));
 
 /** Waits until the page shows these presences; returns the seconds that took. */
 async function shows(page: Page, expected: Readonly<Record<string, string>>): Promise<number> {
@@ -62,10 +55,10 @@ for (const [seconds, suite] of [
       await play(page, origin, room, 'ann');
       await play(other, origin, room, 'ben');
       for (const one of [page, other]) {
-        await expect.poll(async () => (await match(one)).phase, { timeout: 60_000 }).toBe('running');
+        await expect.poll(async () => (await ballMatch(one)).phase, { timeout: 60_000 }).toBe('running');
         await shows(one, { ann: 'here', ben: 'here', Kim: 'here' });
       }
-      const { seat } = await match(page);
+      const { seat } = await ballMatch(page);
       const cdp = await page.context().newCDPSession(page);
       await cdp.send('Performance.enable');
       const heap = async () => megabytes((await countsOf(cdp))('JSHeapUsedSize'));
@@ -89,11 +82,11 @@ for (const [seconds, suite] of [
       await expect.poll(() => drawn(page)).toEqual({ count: 2, opacity: 1 });
       await expect
         .poll(async () => {
-          const [ours, theirs] = await Promise.all([match(page), match(other)]);
+          const [ours, theirs] = await Promise.all([ballMatch(page), ballMatch(other)]);
           return Math.abs(ours.secondsLeft - theirs.secondsLeft);
         })
         .toBeLessThan(1);
-      expect(await match(page)).toMatchObject({ seat, voided: 0, welcomes: 1, phase: 'running' });
+      expect(await ballMatch(page)).toMatchObject({ seat, voided: 0, welcomes: 1, phase: 'running' });
       await shows(page, { ann: 'here', ben: 'here', Kim: 'here' });
       expect(grown).toBeLessThan(4);
       expect(errors).toEqual([]);

@@ -3,19 +3,12 @@ import { devices, type Page } from '@playwright/test';
 import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, endDrivenTime } from '../driven-time';
-import { collectErrors, expect, keepPicture, probe, freshTest as test } from '../page-fixture';
+import { collectErrors, expect, keepPicture, overlap, probe, freshTest as test } from '../page-fixture';
 
 /** The round of archery; null before its first frame. */
 async function archery(page: Page): Promise<ArcheryProbe | null> {
   const { game } = await probe(page);
   return game?.name === 'archery' ? game : null;
-}
-
-/** Whether the boxes of two parts of the page lie over each other. */
-async function overlap(page: Page, one: string, other: string): Promise<boolean> {
-  const [a, b] = await Promise.all([page.locator(one).boundingBox(), page.locator(other).boundingBox()]);
-  if (!a || !b) throw new Error(`${one} or ${other} is not shown`);
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
 /** Opens the page on a phone with this width and height [CSS pixels]. */

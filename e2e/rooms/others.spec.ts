@@ -1,6 +1,6 @@
 import { emulatedHeadset, frames } from '../emulated-headset';
 import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText, waitForCanvasText } from '../hands-on-menu';
-import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, probe, test } from '../page-fixture';
+import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, overlap, probe, test } from '../page-fixture';
 import { serveStudies } from '../study-server';
 
 type Page = Parameters<typeof open>[0];
@@ -9,13 +9,6 @@ test.use({ viewport: { width: 900, height: 560 } });
 freshTest.use({ viewport: { width: 900, height: 560 } });
 
 const bar = (page: Page) => page.getByRole('region', { name: 'Play' });
-
-/** Whether two boxes of the page lie over each other. */
-async function overlap(page: Page, one: string, other: string): Promise<boolean> {
-  const [a, b] = await Promise.all([page.locator(one).boundingBox(), page.locator(other).boundingBox()]);
-  if (!a || !b) throw new Error(`${one} or ${other} is not shown`);
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
-}
 
 test('a newcomer alone reads rules, what is waited for and a clock that stands after the match @full', async ({
   page,

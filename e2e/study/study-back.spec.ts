@@ -36,7 +36,9 @@ test('the back button leads out of a study and the forward button back to where 
   origin,
 }) => {
   test.setTimeout(300_000);
-  await experimenter(origin).begin(shortStudy('back'), true);
+  const plan = shortStudy('back');
+  const tasks = plan.tasks.map((task) => ({ ...task, tutorial: { ...task.tutorial, when: 'never' as const } }));
+  await experimenter(origin).begin({ ...plan, tasks }, true);
   let journeys = 0;
   const returns = () => {
     journeys += 1;
@@ -70,8 +72,7 @@ test('the back button leads out of a study and the forward button back to where 
   };
   await wear();
   await calibrate(page);
-  await press(page, 'start');
-  await reaches(page, 'trial-ready', 60_000);
+  await reaches(page, 'trial-ready');
   await press(page, 'start');
   await expect.poll(async () => (await study(page)).running, { intervals: [20] }).toBe(true);
   await returns();
@@ -87,8 +88,6 @@ test('the back button leads out of a study and the forward button back to where 
   await returns();
   await reaches(page, 'question-Q3');
   await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
-  for (let i = 0; i < 3; i++) await returns();
-  await reaches(page, 'question-Q3');
   await expect.poll(async () => (await study(page)).unsent).toBe(0);
 
   const records = await recordsOf(origin, 'back');
@@ -99,7 +98,7 @@ test('the back button leads out of a study and the forward button back to where 
     ['consent', 1],
     ['demographics', 1],
     ['calibration', 1],
-    ['trial', 2],
+    ['trial', 1],
     ['interrupted', 1],
   ]);
   reportFigures('study-back', {

@@ -141,10 +141,13 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await rateAtDesk(page, ['mental', 'physical', 'temporal', 'performance', 'effort', 'frustration']);
   await reaches(page, 'end');
   await expect.poll(async () => (await study(page)).unsent).toBe(0);
+  await keepPicture(page, 'study-end');
 
-  const answers = (await recordsOf(origin, 'every-kind')).flatMap((record) =>
-    record.kind === 'answers' ? [record.body] : [],
-  );
+  const records = await recordsOf(origin, 'every-kind');
+  const trials = records.flatMap((record) => (record.kind === 'trial' ? [record.body] : []));
+  expect(trials.map(({ condition }) => condition).toSorted()).toEqual(['hands-only', 'learned']);
+  for (const { condition, estimator } of trials) expect(estimator).toBe(condition);
+  const answers = records.flatMap((record) => (record.kind === 'answers' ? [record.body] : []));
   expect(answers.map(({ questionnaire, language }) => [questionnaire, language])).toEqual([
     ['body', 'de'],
     ['nasa-tlx-raw', 'de'],
@@ -152,8 +155,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
     ['nasa-tlx-raw', 'de'],
   ]);
   // Answers are recorded as values that do not depend on the language.
-  const told = (await recordsOf(origin, 'every-kind')).find(({ kind }) => kind === 'demographics');
-  expect(told?.body).toEqual({
+  expect(records.find(({ kind }) => kind === 'demographics')?.body).toEqual({
     ...{ gender: 'not-said', age: 26, major: 'Informatik', vrExperience: 'once-or-twice', vrSystems: '' },
     ...{ handedness: 'right', vision: 'normal' },
   });
@@ -165,6 +167,8 @@ test('questions of every kind are answered alike in the headset and at the desk,
   expect(atDesk?.answers).toEqual(inHeadset?.answers);
 
   await openResults(page, 'every-kind');
+  await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
+  await expect(page.getByRole('img', { name: /Archery: scores, means/ })).toBeVisible();
   await expect(page.getByRole('heading', { name: 'Scales' })).toBeVisible();
   await expect(page.getByRole('row', { name: /^Embodiment, Archery 1 6\.00/ })).toBeVisible();
   await page.screenshot({ path: 'artifacts/screenshots/study-scales.png', fullPage: true });

@@ -6,7 +6,6 @@ import {
   calibrate,
   fillInDemographics,
   headsetOf,
-  openResults,
   press,
   reaches,
   recordsOf,
@@ -19,7 +18,7 @@ import {
 } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
-test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @full', async ({
+test('a participant from consent to the second block, with a reload in a questionnaire while the server is away @full', async ({
   page,
   origin,
   complaints,
@@ -27,7 +26,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   complaints.allow(/ERR_FAILED.*\/api\/studies/);
   test.setTimeout(240_000);
   await experimenter(origin).begin(shortStudy('short'), true);
-  let headset = await takePart(page, origin, 'short', 'P01');
+  const headset = await takePart(page, origin, 'short', 'P01');
 
   await expect(page.getByRole('heading', { name: /Taking part/ })).toBeVisible();
   await expect(page.getByRole('button', { name: 'I agree' })).toBeDisabled();
@@ -57,79 +56,54 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await reaches(page, 'trial-ready', 30_000);
   await keepPicture(page, 'study-ready');
 
-  for (const block of [1, 2]) {
-    if (block === 2) {
-      await enterVr(page, tenHertz);
-      await headset.place(stretched);
-      await calibrate(page);
-      await reaches(page, 'trial-ready');
-    }
-    await press(page, 'start');
-    // The round of five seconds may be over between two looks.
-    await expect
-      .poll(async () => {
-        const { running, screen } = await study(page);
-        return running || /^(rest|question-Q1)$/.test(screen);
-      })
-      .toBe(true);
-    if (block === 1) await keepPicture(page, 'study-playing');
-    // The rest of a second may be over between two looks.
-    await expect.poll(() => screen(page), { timeout: 40_000, intervals: [100] }).toMatch(/^(rest|question-Q1)$/);
-    await reaches(page, 'question-Q1');
-    await press(page, 'answer-4');
-    if (block === 1) await keepPicture(page, 'study-question');
-    await press(page, 'next');
-    await press(page, 'answer-5');
-    await press(page, 'back');
-    await reaches(page, 'question-Q1');
-    await press(page, 'answer-3');
-    if (block === 1) {
-      // Half of it in the headset, the rest at the desk after a reload.
-      await expect.poll(async () => (await study(page)).unsent).toBe(0);
-      await page.route('**/api/studies/**', (route) => route.abort());
-      await page.reload();
-      headset = await headsetOf(page);
-      await reaches(page, 'question-Q3');
-      await expect(page.getByText(/No connection: .* kept on this device/)).toBeVisible();
-      await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
-      await page.getByRole('button', { name: 'Question 7, needs an answer' }).click();
-      await page.getByRole('button', { name: 'Submit' }).click();
-      await reaches(page, 'question-Q3');
-      await expect(page.getByText('* This question still needs an answer.')).toBeVisible();
-      await keepPicture(page, 'study-question-desktop');
-      for (const value of [4, 4, 5, 3]) {
-        await page.getByRole('radio', { name: String(value) }).check();
-        await page.getByRole('button', { name: 'Next' }).click();
-      }
-      await page.getByRole('radio', { name: '5' }).check();
-      await page.getByRole('button', { name: 'Submit' }).click();
-      await reaches(page, 'calibration-enter');
-      expect((await study(page)).unsent).toBeGreaterThan(0);
-      await expect.poll(async () => (await study(page)).unsaved).toBe(0);
-      await page.unroute('**/api/studies/**');
-      await expect.poll(async () => (await study(page)).unsent, { timeout: 40_000 }).toBe(0);
-      continue;
-    }
-    for (const id of ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']) {
-      await reaches(page, `question-${id}`);
-      await press(page, 'answer-4');
-      await press(page, id === 'Q7' ? 'submit' : 'next');
-    }
-  }
-
-  await reaches(page, 'end');
+  await press(page, 'start');
+  // The round of five seconds may be over between two looks.
+  await expect
+    .poll(async () => {
+      const { running, screen } = await study(page);
+      return running || /^(rest|question-Q1)$/.test(screen);
+    })
+    .toBe(true);
+  await keepPicture(page, 'study-playing');
+  await reaches(page, 'question-Q1', 40_000);
+  await press(page, 'answer-4');
+  await keepPicture(page, 'study-question');
+  await press(page, 'next');
+  await press(page, 'answer-5');
+  await press(page, 'back');
+  await reaches(page, 'question-Q1');
+  await press(page, 'answer-3');
+  // Half of it in the headset, the rest at the desk after a reload.
   await expect.poll(async () => (await study(page)).unsent).toBe(0);
-  await keepPicture(page, 'study-end');
+  await page.route('**/api/studies/**', (route) => route.abort());
+  await page.reload();
+  await headsetOf(page);
+  await reaches(page, 'question-Q3');
+  await expect(page.getByText(/No connection: .* kept on this device/)).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
+  await page.getByRole('button', { name: 'Question 7, needs an answer' }).click();
+  await page.getByRole('button', { name: 'Submit' }).click();
+  await reaches(page, 'question-Q3');
+  await expect(page.getByText('* This question still needs an answer.')).toBeVisible();
+  await keepPicture(page, 'study-question-desktop');
+  for (const value of [4, 4, 5, 3]) {
+    await page.getByRole('radio', { name: String(value) }).check();
+    await page.getByRole('button', { name: 'Next' }).click();
+  }
+  await page.getByRole('radio', { name: '5' }).check();
+  await page.getByRole('button', { name: 'Submit' }).click();
+  await reaches(page, 'calibration-enter');
+  expect((await study(page)).unsent).toBeGreaterThan(0);
+  await expect.poll(async () => (await study(page)).unsaved).toBe(0);
+  await page.unroute('**/api/studies/**');
+  await expect.poll(async () => (await study(page)).unsent, { timeout: 40_000 }).toBe(0);
 
   const records = await recordsOf(origin, 'short');
   expect(records.every(({ simulated }) => simulated)).toBe(true);
   const answers = records.filter((record) => record.kind === 'answers');
-  expect(answers.map(({ body }) => body.answers)).toEqual([
-    { Q1: 3, Q2: 5, Q3: 4, Q4: 4, Q5: 5, Q6: 3, Q7: 5 },
-    { Q1: 4, Q2: 4, Q3: 4, Q4: 4, Q5: 4, Q6: 4, Q7: 4 },
-  ]);
+  expect(answers.map(({ body }) => body.answers)).toEqual([{ Q1: 3, Q2: 5, Q3: 4, Q4: 4, Q5: 5, Q6: 3, Q7: 5 }]);
   const trials = records.filter((record) => record.kind === 'trial');
-  expect(trials.map(({ body }) => body.condition === null)).toEqual([true, false, false]);
+  expect(trials.map(({ body }) => body.condition === null)).toEqual([true, false]);
   for (const { body } of trials) {
     expect(body.outcome.ended).toBe('time');
     // How many frames there are in some seconds is the machine's affair; each of them was timed.
@@ -138,17 +112,10 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
     expect(body.outcome.device.input).toBe('simulated');
     expect(body.outcome.calibration?.eyeHeight).toBeCloseTo(1.7, 1);
   }
-  expect(new Set(trials.slice(1).map(({ body }) => body.condition))).toEqual(new Set(['ik', 'learned']));
-  for (const { body } of trials.slice(1)) expect(body.estimator).toBe(body.condition);
 
   const zip = test.info().outputPath('short.zip');
   const exported = await experimenter(origin).ask('/short/export');
   await writeFile(zip, Buffer.from(await exported.arrayBuffer()));
   const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'study:verify', '--', zip]);
   expect(stdout).toMatch(/: sound: \d+ files, recomputed from \d+ records\./);
-
-  await openResults(page, 'short');
-  await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
-  await expect(page.getByRole('row', { name: /^Q1 presence 1 / })).toBeVisible();
-  await expect(page.getByRole('img', { name: /Archery: scores, means/ })).toBeVisible();
 });

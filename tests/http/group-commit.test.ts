@@ -1,7 +1,6 @@
 import { GroupCommit } from 'threepoint-http/group-commit';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
-import { paperPlan } from '../study/model/studies';
+import { consentAt } from '../study/model/studies';
 import { now, servedPaperStudy } from '../study/server/running-studies';
 
 /** A disk whose flushes end when the test says so. */
@@ -85,14 +84,7 @@ describe('the server of studies', () => {
     await disk.begun(1);
     disk.end();
     const { token } = (await claimed).json;
-    const consent: StudyRecord = {
-      ...{ version: recordVersion, study: 'paper', participant: 'P01', simulated: false, at: now },
-      ...{
-        kind: 'consent',
-        id: 'consent',
-        body: { version: paperPlan().consent.version, given: true, motion: false, at: now },
-      },
-    };
+    const consent = consentAt(now);
     const sent = ask('POST', `${own}/records`, { token, json: { records: [consent] } }).then(({ status }) => {
       log.push(`acknowledged ${status}`);
     });

@@ -36,7 +36,10 @@ function withChoices(session: KeptSession, { motion, language }: ConsentChoices)
 
 const noMotionHere = 'On another device the participant did not agree to have motion kept: from here on none is.';
 
-export type OpeningOptions = Omit<ParticipantSessionOptions, 'vault'>;
+export interface OpeningOptions extends Omit<ParticipantSessionOptions, 'vault'> {
+  /** The time limit of requests to the storage [ms]; undefined: the default. */
+  readonly storageLimitMs?: number | undefined;
+}
 
 interface OnDevice {
   /** null: this browser stores nothing. */
@@ -45,9 +48,9 @@ interface OnDevice {
   readonly kept: (Unsent & { readonly session: KeptSession }) | null;
 }
 
-async function readDevice(place: StudyPlace): Promise<OnDevice> {
+async function readDevice(place: StudyPlace, storageLimitMs?: number): Promise<OnDevice> {
   try {
-    const vault = await openStudyVault();
+    const vault = await openStudyVault(undefined, storageLimitMs);
     const session = await vault.session(place);
     if (!session) return { vault, kept: null };
     const [records, motion] = await Promise.all([vault.records(place), vault.motion(place)]);
@@ -98,7 +101,7 @@ export async function openSession(place: StudyPlace, opening: OpeningOptions): P
   const { participant } = place;
   const { client } = opening;
   if (!(await alone(place))) throw new PhrasedError('entrance.otherTab', { participant });
-  const { vault, kept } = await readDevice(place);
+  const { vault, kept } = await readDevice(place, opening.storageLimitMs);
   const options = { ...opening, vault };
   if (kept) {
     const known = await reportedProgress(client, kept.session);

@@ -39,4 +39,6 @@ export interface StudyPage {
   /** Returns the time in seconds since 1970, never earlier than before. */
   readonly now: () => number;
   readonly after: After;
+  /** The time limit of requests to the storage [ms]; undefined: the default. */
+  readonly storageLimitMs?: number | undefined;
 }

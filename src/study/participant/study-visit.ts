@@ -114,6 +114,7 @@ export class StudyVisit {
       {
         client: this.#client,
         now: this.#page.now,
+        storageLimitMs: this.#page.storageLimitMs,
         onChange: () => this.#running?.show(),
         onCommand: () => this.#running?.conclude(),
       },

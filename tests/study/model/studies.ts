@@ -6,7 +6,7 @@ import { applyEvent, type ProgressEvent } from 'threepoint-study/model/progress/
 import { begin, currentStep, type Progress } from 'threepoint-study/model/progress/progress';
 import type { Answer, AnswerForm } from 'threepoint-study/model/questionnaires/question-kind';
 import { questionKind } from 'threepoint-study/model/questionnaires/question-kinds';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { TrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
 
 const shippedFile = (name: string): string =>
@@ -31,6 +31,12 @@ export function planWith(plan: object, path: string, value: unknown): unknown {
   else parent[last] = value;
   return copy;
 }
+
+/** Returns the record of a participant of the paper's study who consented, without motion, at this time. */
+export const consentAt = (at: number, participant = 'P01'): StudyRecord => ({
+  ...{ version: recordVersion, study: 'paper', participant, simulated: false, at, kind: 'consent', id: 'consent' },
+  body: { version: paperPlan().consent.version, given: true, motion: false, at },
+});
 
 export const aWomanOf26 = {
   gender: 'woman',

@@ -8,6 +8,9 @@ import { agree, beforeTheQuestions, choose } from './participant-steps';
 import { browser, type Tab } from './study-browser';
 import { place, type StudyServer, studyServer } from './study-server';
 
+/** How long these pages wait for their storage [ms]: far longer than a request takes, far shorter than in a browser. */
+const limitMs = 250;
+
 const blockedFactories = {
   'is null': null,
   'is missing': undefined,
@@ -44,7 +47,7 @@ test.each(Object.entries(blockedFactories))(
   },
   async (how, factory) => {
     const server = await studyServer();
-    const device = browser(server);
+    const device = browser(server, limitMs);
     vi.stubGlobal('indexedDB', factory);
     const tab = await device.open();
     await agree(tab);
@@ -88,7 +91,7 @@ test.each(Object.entries(failures))(
   { tags: ['full'] },
   async (how, fail) => {
     const server = await studyServer();
-    const { tab } = await beforeTheQuestions(server);
+    const { tab } = await beforeTheQuestions(server, limitMs);
     await tab.exchange();
     await fail();
     choose(tab, 4);
@@ -98,7 +101,7 @@ test.each(Object.entries(failures))(
 );
 
 test('storage that answers again takes what it missed', { tags: ['full'] }, async () => {
-  const { tab } = await beforeTheQuestions(await studyServer());
+  const { tab } = await beforeTheQuestions(await studyServer(), limitMs);
   await tab.exchange();
   const letGo = await occupyStorage();
   tab.display.press('pause');
@@ -114,7 +117,7 @@ test('a session that the storage does not give out is not begun a second time, a
   tags: ['full'],
 }, async () => {
   const server = await studyServer();
-  const { device, tab } = await beforeTheQuestions(server);
+  const { device, tab } = await beforeTheQuestions(server, limitMs);
   await tab.exchange();
   tab.close();
   const letGo = await occupyStorage();

@@ -30,8 +30,8 @@ export function play(tab: Tab, points: number): void {
 }
 
 /** P01 in the headset before the first round, measured and practised. */
-export async function beforeTheRound(server: StudyServer, motion = false) {
-  const device = browser(server);
+export async function beforeTheRound(server: StudyServer, motion = false, storageLimitMs?: number) {
+  const device = browser(server, storageLimitMs);
   const tab = await device.open();
   await agree(tab, motion);
   expect(tab.display.asked('demographics').done(aWomanOf26)).toBeNull();
@@ -43,8 +43,8 @@ export async function beforeTheRound(server: StudyServer, motion = false) {
 }
 
 /** A participant who has played the round and sits before its questions, the headset on. */
-export async function beforeTheQuestions(server: StudyServer) {
-  const visit = await beforeTheRound(server);
+export async function beforeTheQuestions(server: StudyServer, storageLimitMs?: number) {
+  const visit = await beforeTheRound(server, false, storageLimitMs);
   play(visit.tab, 40);
   expect(visit.tab.display.shown).toBe('rest');
   visit.tab.pass(61);

@@ -243,8 +243,9 @@ export type Tab = Awaited<ReturnType<ReturnType<typeof browser>['open']>>;
 
 /**
  * A browser with its own storage, in which P01's place is opened; tabs share its storage and see each other's locks.
+ * `storageLimitMs` is how long a page waits for its storage [ms].
  */
-export function browser(server: StudyServer) {
+export function browser(server: StudyServer, storageLimitMs?: number) {
   vi.stubGlobal('indexedDB', new IDBFactory());
   const locks = new Map<string, object>();
 
@@ -275,7 +276,8 @@ export function browser(server: StudyServer) {
       withdrawalPage: () => `${server.origin}/withdraw?study=${study}`,
       reloadWhenChanged: () => undefined,
     };
-    const page: StudyPage = { display, address, languages: ['en-GB'], now: clock.now, after: clock.after };
+    const languages = ['en-GB'];
+    const page: StudyPage = { display, address, languages, now: clock.now, after: clock.after, storageLimitMs };
     const visit = new StudyVisit({ study, participant }, createParticipantClient(server.origin), host, page);
     await visit.enter();
     let stamp = 100;

@@ -9,9 +9,11 @@ import { askHowToVoid, isIn } from './void-block-dialog';
 /** Does something with the server; resolves with a notice for the experimenter, or null for none. */
 export type ServerAction = (client: ExperimenterClient) => Promise<string | null>;
 
+/** Runs an action, and shows its notice or why it failed. */
+type Attempt = (action: ServerAction) => Promise<void>;
+
 export interface ParticipantActionOptions {
-  /** Runs an action, and shows its notice or why it failed. */
-  readonly attempt: (action: ServerAction) => Promise<void>;
+  readonly attempt: Attempt;
   /** Returns the newest state of the study. */
   readonly newest: () => OpenStudy;
 }
@@ -27,13 +29,33 @@ export async function download(
   return `${file.name} is in your downloads.`;
 }
 
-/** Returns what an experimenter can do about the participants of a study. */
-export function participantActions(
+/** Asks for a sentence and acts with it; nothing happens if the experimenter cancels. */
+async function withSentence(
+  attempt: Attempt,
+  question: SentenceQuestion,
+  act: (client: ExperimenterClient, sentence: string) => Promise<string>,
+): Promise<void> {
+  const sentence = await askForSentence(question);
+  if (sentence !== null) await attempt((client) => act(client, sentence));
+}
+
+async function copyLink(participant: string, link: string): Promise<string> {
+  const address = new URL(link, `${pageFolder()}/`).href;
+  try {
+    await navigator.clipboard.writeText(address);
+    return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
+  } catch {
+    // reason: a browser that lets no page write to the clipboard still shows the link
+    return `The link of ${participant}: ${address}`;
+  }
+}
+
+/** Returns the actions on a participant's running session. */
+function sessionActions(
   study: OpenStudy,
   { attempt, newest }: ParticipantActionOptions,
-): ParticipantActions {
-  const { plan } = study;
-  const { id } = plan;
+): Pick<ParticipantActions, 'command' | 'voidBlock' | 'stop'> {
+  const { id } = study.plan;
 
   async function voidBlock(participant: string): Promise<void> {
     const voided = await askHowToVoid(study, participant);
@@ -48,26 +70,6 @@ export function participantActions(
     });
   }
 
-  /** Asks for a sentence and acts with it; nothing happens if the experimenter cancels. */
-  async function withSentence(
-    question: SentenceQuestion,
-    act: (client: ExperimenterClient, sentence: string) => Promise<string>,
-  ): Promise<void> {
-    const sentence = await askForSentence(question);
-    if (sentence !== null) await attempt((client) => act(client, sentence));
-  }
-
-  async function copyLink(participant: string, link: string): Promise<string> {
-    const address = new URL(link, `${pageFolder()}/`).href;
-    try {
-      await navigator.clipboard.writeText(address);
-      return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
-    } catch {
-      // reason: a browser that lets no page write to the clipboard still shows the link
-      return `The link of ${participant}: ${address}`;
-    }
-  }
-
   return {
     command: (participant, command) =>
       void attempt(async (client) => {
@@ -77,6 +79,7 @@ export function participantActions(
     voidBlock: (participant) => void voidBlock(participant),
     stop: (participant) =>
       void withSentence(
+        attempt,
         {
           title: `Stop the session of ${participant}`,
           label:
@@ -88,8 +91,45 @@ export function participantActions(
           return `${participant}: the session is being stopped.`;
         },
       ),
+  };
+}
+
+/** Returns the actions on a participant's place: its device and its link. */
+function placeActions(
+  { plan: { id, entry } }: OpenStudy,
+  attempt: Attempt,
+): Pick<ParticipantActions, 'release' | 'copyLink' | 'reinvite'> {
+  return {
+    release(participant) {
+      const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
+      if (!confirm(question)) return;
+      void attempt(async (client) => {
+        await client.release(id, participant);
+        return `${participant} may be taken by another device.`;
+      });
+    },
+    copyLink: (participant, link) => void attempt(() => copyLink(participant, link)),
+    reinvite(participant) {
+      const holder = entry === 'open' ? 'all participants' : participant;
+      const question = `Make a new link for ${holder}? The old link stops working; a place that is taken stays taken.`;
+      if (!confirm(question)) return;
+      void attempt(async (client) => {
+        await client.reinvite(id, participant);
+        return `${participant} has a new link.`;
+      });
+    },
+  };
+}
+
+/** Returns the actions on what is stored of a participant. */
+function recordActions(
+  { plan: { id } }: OpenStudy,
+  attempt: Attempt,
+): Pick<ParticipantActions, 'remark' | 'exportZip' | 'remove'> {
+  return {
     remark: (participant) =>
       void withSentence(
+        attempt,
         {
           title: `Remark on ${participant}`,
           label: 'It is stored with the participant’s records.',
@@ -100,17 +140,10 @@ export function participantActions(
           return `${participant}: remark stored.`;
         },
       ),
-    release(participant) {
-      const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
-      if (!confirm(question)) return;
-      void attempt(async (client) => {
-        await client.release(id, participant);
-        return `${participant} may be taken by another device.`;
-      });
-    },
     exportZip: (participant) => void attempt((client) => download(client, id, { participant })),
     remove: (participant) =>
       void withSentence(
+        attempt,
         {
           title: `Delete everything of ${participant}`,
           label: `This cannot be undone. Type ${participant} to delete its records, movements and commands.`,
@@ -121,15 +154,15 @@ export function participantActions(
           return `${participant} is deleted. ${receiptText(await client.delete(id, participant))}`;
         },
       ),
-    copyLink: (participant, link) => void attempt(() => copyLink(participant, link)),
-    reinvite(participant) {
-      const holder = plan.entry === 'open' ? 'all participants' : participant;
-      const question = `Make a new link for ${holder}? The old link stops working; a place that is taken stays taken.`;
-      if (!confirm(question)) return;
-      void attempt(async (client) => {
-        await client.reinvite(id, participant);
-        return `${participant} has a new link.`;
-      });
-    },
+  };
+}
+
+/** Returns what an experimenter can do about the participants of a study. */
+export function participantActions(study: OpenStudy, options: ParticipantActionOptions): ParticipantActions {
+  const { attempt } = options;
+  return {
+    ...sessionActions(study, options),
+    ...placeActions(study, attempt),
+    ...recordActions(study, attempt),
   };
 }

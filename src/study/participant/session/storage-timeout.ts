@@ -1,10 +1,8 @@
 /** The error of a request that the storage neither carries out nor refuses. */
 export const silentStorage = 'the storage of this browser does not answer';
 
-/**
- * The time limit of a request [ms]: the strict write of a long recording takes a second on a slow device.
- */
-const limitMs = 5000;
+/** The default time limit of a request [ms]: the strict write of a long recording takes a second on a slow device. */
+const defaultLimitMs = 5000;
 
 /**
  * Limits the time of requests to a browser's storage, which does not answer while its disk hangs or another page
@@ -13,6 +11,11 @@ const limitMs = 5000;
 export class StorageTimeout {
   /** The number of open requests that timed out. */
   #open = 0;
+  readonly #limitMs: number;
+
+  constructor(limitMs = defaultLimitMs) {
+    this.#limitMs = limitMs;
+  }
 
   /**
    * Returns the answer of a request, or rejects with `silentStorage` after the time limit. A request that timed out may
@@ -30,7 +33,7 @@ export class StorageTimeout {
         };
         answer.then(answered, answered);
         reject(new Error(silentStorage));
-      }, limitMs);
+      }, this.#limitMs);
     });
     try {
       return await Promise.race([answer, silence]);

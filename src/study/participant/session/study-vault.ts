@@ -132,9 +132,12 @@ export class StudyVault {
   }
 }
 
-/** Opens the vault; rejects if the browser has none, as some in private windows. */
-export async function openStudyVault(name = 'threepoint-studies'): Promise<StudyVault> {
-  const timeout = new StorageTimeout();
+/**
+ * Opens the vault; rejects if the browser has none, as some in private windows. `limitMs` is the time limit of each
+ * request [ms].
+ */
+export async function openStudyVault(name = 'threepoint-studies', limitMs?: number): Promise<StudyVault> {
+  const timeout = new StorageTimeout(limitMs);
   const database = await timeout.limit(() =>
     openDB<Schema>(name, 1, {
       upgrade(fresh) {

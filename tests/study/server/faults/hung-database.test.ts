@@ -11,7 +11,7 @@ import { heardFrom, kill } from '../../../server/child-process';
 import { installed } from '../../../server/installed';
 import { experimenterToken, forkServer } from '../../../server/server-child';
 import { directoryWith } from '../../../temporary-directory';
-import { paperPlan } from '../../model/studies';
+import { consentAt, paperPlan } from '../../model/studies';
 
 const now = 1_800_000_000;
 /** How long the disk hangs, or another program holds the lock [s]. */
@@ -25,15 +25,7 @@ function begunStudy() {
   const store = openStudyStore(file);
   store.plans.add(paperPlan(), { simulated: false, at: now });
   const { token } = store.places.claim('paper', 'P01', now);
-  const consent: StudyRecord = {
-    ...{ version: recordVersion, study: 'paper', participant: 'P01', simulated: false, at: now },
-    ...{
-      kind: 'consent',
-      id: 'consent',
-      body: { version: paperPlan().consent.version, given: true, motion: false, at: now },
-    },
-  };
-  store.records.store('paper', 'P01', [consent], now);
+  store.records.store('paper', 'P01', [consentAt(now)], now);
   store.close();
   return { directory, file, token };
 }

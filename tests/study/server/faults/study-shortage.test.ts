@@ -9,7 +9,7 @@ import { withSourceCondition } from '../../../../scripts/source-condition.mjs';
 import { reportFigures } from '../../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../../server/server-child';
 import { directoryWith } from '../../../temporary-directory';
-import { paperPlan } from '../../model/studies';
+import { consentAt, paperPlan } from '../../model/studies';
 
 /** A folder of a server with a study in which P01 has stored so many remarks of 2 kB. */
 function studyWith(remarks: number) {
@@ -22,15 +22,11 @@ function studyWith(remarks: number) {
   for (let number = 0; number <= remarks / 5000; number++) {
     const participant = `P0${number + 1}`;
     store.places.claim('paper', participant, at);
-    const consent: StudyRecord = {
-      ...{ ...base, participant, at, kind: 'consent', id: 'consent' },
-      body: { version: paperPlan().consent.version, given: true, motion: false, at },
-    };
     const rest = Array.from({ length: Math.min(5000, remarks - 5000 * number) }, (_, index): StudyRecord => {
       const text = `${index} `.padEnd(2000, 'a remark ');
       return { ...base, participant, at, id: `event-${index}`, kind: 'event', body: { type: 'remark', text } };
     });
-    store.records.store('paper', participant, [consent, ...rest], at);
+    store.records.store('paper', participant, [consentAt(at, participant), ...rest], at);
   }
   store.close();
   return { directory, file };
