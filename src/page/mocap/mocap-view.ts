@@ -54,8 +54,6 @@ export interface MocapViewOptions {
   loadAvatar(): Promise<Avatar>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
-  /** The card came or went. */
-  onCovered(): void;
   tell(level: 'info' | 'warning' | 'error', sentence: string): void;
 }
 
@@ -137,13 +135,7 @@ export class MocapView {
         tell('error', `${name} could not be shown: ${firstLine(reasonOf(error)).replace(`${name}: `, '')}`);
     } finally {
       if (this.#reading === reading) this.#card.showProgress(name, null);
-      this.#options.onCovered();
     }
-  }
-
-  /** What the card covers of the window; null: it is not shown. */
-  get covers(): DOMRect | null {
-    return this.#card.covers;
   }
 
   /** The distance of the middle of all shown bodies to the right of the page's body [m]. */
@@ -207,7 +199,6 @@ export class MocapView {
     this.#compare(null);
     this.#hide();
     this.#card.show(null);
-    this.#options.onCovered();
   }
 
   #actions(): CardActions {
