@@ -111,8 +111,8 @@ const parts = [
 ];
 
 /**
- * Returns the pairs of shown parts that lie over each other, the parts that lie over the body, and those that the window
- * cuts off. A notice may lie over the body: it leaves.
+ * Returns the pairs of shown parts that lie over each other, the parts that lie over the body, and those beyond the
+ * window. A notice may lie over the body: it leaves.
  */
 const collisions = (page: Page): Promise<string[]> =>
   page.evaluate((parts) => {
