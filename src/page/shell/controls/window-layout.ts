@@ -22,8 +22,8 @@ export interface WindowLayoutOptions {
 }
 
 /**
- * Chooses how the page's parts are arranged. The style sheet gives each part its cell of one grid. The cell that is left
- * is `main`: the body is fitted to it.
+ * Chooses how the page's parts are arranged. The style sheet gives each part its cell of one grid. The cell that is
+ * left is `main`: the body is fitted to it.
  */
 export class WindowLayout {
   readonly #options: WindowLayoutOptions;
