@@ -239,7 +239,6 @@ export class DesktopView {
   /** Fits the picture to the window, and the body to the part of it that is left to the picture. */
   #project(): void {
     const { camera } = this;
-    const { left, right } = this.#insets;
     const width = window.innerWidth;
     const height = window.innerHeight;
     camera.aspect = width / height;
@@ -247,18 +246,18 @@ export class DesktopView {
       camera.zoom = 1;
       camera.clearViewOffset();
     } else {
-      const { zoom, rise } = this.#fitBody(this.#view);
+      const { zoom, shift, rise } = this.#fitBody(this.#view);
       camera.zoom = zoom;
-      camera.setViewOffset(width, height, (right - left) / 2, rise, width, height);
+      camera.setViewOffset(width, height, shift, rise, width, height);
     }
     camera.updateProjectionMatrix();
   }
 
   /**
    * Returns the zoom at which a standing body is no larger than the part that is left to the picture, and how far the
-   * picture moves up [CSS pixels] to show it there. The scene's own composition is changed no further than that.
+   * picture moves left and up [CSS pixels] to show it there. The scene's own composition is changed no further.
    */
-  #fitBody(view: Exclude<ViewName, 'first-person'>): { readonly zoom: number; readonly rise: number } {
+  #fitBody(view: Exclude<ViewName, 'first-person'>): Readonly<Record<'zoom' | 'shift' | 'rise', number>> {
     const { left, right, top, bottom } = this.#insets;
     const height = window.innerHeight;
     const freeHeight = Math.max(1, height - top - bottom);
@@ -268,7 +267,13 @@ export class DesktopView {
     const margin = ((1 - bodyShare) / 2) * freeHeight;
     const least = bottom + margin - height / 2 - zoom * feet;
     const most = height / 2 - top - margin - zoom * head;
-    return { zoom, rise: Math.min(most, Math.max(least, (bottom - top) / 2)) };
+    // What the picture shows beside the body may lie under a column at the left.
+    const leftEdge = window.innerWidth / 2 - (zoom * bodyWidth * (head - feet)) / 2;
+    return {
+      zoom,
+      shift: Math.max((right - left) / 2, Math.min(right / 2, leftEdge - left - margin)),
+      rise: Math.min(most, Math.max(least, (bottom - top) / 2)),
+    };
   }
 
   /** Returns how far head and feet of a standing body are above the window's middle at the start [CSS pixels]. */
