@@ -91,19 +91,74 @@ test.describe('on a phone', () => {
   });
 });
 
-for (const [width, height] of [
-  [390, 844],
-  [720, 800],
-  [760, 600],
-] as const)
-  test(`at ${width} × ${height} no part of a game lies over another @full`, async ({ page }) => {
-    await page.setViewportSize({ width, height });
-    for (const play of ['archery', 'ball'] as const) {
-      await openOnPhone(page, `&play=${play}&panel=off&actor=off&emulate`);
-      await keepPicture(page, `narrow-${play}-${width}`);
-      expect(await overlap(page, '#masthead h1', '.panel-bar'), play).toBe(false);
-      expect(await overlap(page, '#masthead h1', '#play'), play).toBe(false);
-      expect(await overlap(page, '#play .round:not([hidden])', 'button.enter'), play).toBe(false);
+/** The parts of the page that never lie over each other. */
+const parts = [
+  '#masthead h1',
+  '#play > .segments',
+  '#play > .round',
+  '.panel-bar',
+  '.panel',
+  'button.enter',
+  'button.enter-ar',
+  '#notices',
+];
+
+/**
+ * Returns the pairs of shown parts that lie over each other, the parts that lie over the body, and those beyond the
+ * window. A notice may lie over the body: it leaves.
+ */
+const collisions = (page: Page): Promise<string[]> =>
+  page.evaluate((parts) => {
+    const { box } = window.threepoint!.probe().avatar;
+    const boxes = parts.flatMap((part) => {
+      const shown = document.querySelector(part)?.getBoundingClientRect();
+      return shown?.height
+        ? [{ part, left: shown.left, right: shown.right, top: shown.top, bottom: shown.bottom }]
+        : [];
+    });
+    type Box = Pick<DOMRect, 'left' | 'right' | 'top' | 'bottom'>;
+    const meet = (a: Box, b: Box) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const inWindow = ({ left, right, top, bottom }: Box) =>
+      left >= 0 && top >= 0 && right <= window.innerWidth && bottom <= window.innerHeight;
+    return [
+      ...boxes.flatMap((a, index) =>
+        boxes.slice(index + 1).flatMap((b) => (meet(a, b) ? [`${a.part} over ${b.part}`] : [])),
+      ),
+      ...boxes.flatMap(({ part, ...each }) =>
+        part !== '#notices' && meet(each, box) ? [`${part} over the body`] : [],
+      ),
+      ...[...boxes, { part: 'the body', ...box }].flatMap(({ part, ...each }) =>
+        inWindow(each) ? [] : [`${part} beyond the window`],
+      ),
+    ];
+  }, parts);
+
+for (const play of ['studio', 'archery', 'ball'] as const)
+  test(`in no window does a part of the page lie over another or over the body: ${play} @full`, async ({ page }) => {
+    await page.setViewportSize({ width: 1280, height: 720 });
+    // An address without an avatar leaves a notice.
+    await openOnPhone(page, `&play=${play}&panel=off&actor=off&emulate&seed=5&avatar=`);
+    if (play !== 'studio') await expect(page.locator('#play > .round')).toBeVisible();
+    const notice = page.locator('.notice').first();
+    await expect(notice).toBeVisible();
+    for (const [width, height] of [
+      [390, 844],
+      [720, 800],
+      [760, 600],
+      [800, 500],
+      [800, 360],
+      [640, 360],
+      [1280, 720],
+    ] as const) {
+      await page.setViewportSize({ width, height });
+      for (const controls of ['open', 'closed']) {
+        await page.getByRole('button', { name: 'Controls' }).click();
+        await page.getByRole('button', { name: 'Recentre' }).click();
+        const where = `${width} × ${height}, controls ${controls}`;
+        await expect.poll(() => collisions(page), { message: where }).toEqual([]);
+        expect((await notice.boundingBox())!.width, where).toBeGreaterThan(200);
+        if (width === 390 || height === 500) await keepPicture(page, `narrow-${play}-${width}x${height}-${controls}`);
+      }
     }
   });
 

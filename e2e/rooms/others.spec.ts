@@ -126,9 +126,10 @@ test('between a room and the open controls the button that enters VR is read who
       }
     }
   }
-  // If both leave no space for the button, it is hidden until the controls are closed.
+  // If there is no space for both, the controls take the place of the room until they are closed.
   await page.setViewportSize({ width: 780, height: 600 });
-  await expect(page.locator('button.enter')).toBeHidden();
+  await expect(page.locator('#play .round')).toBeHidden();
+  await expect(page.locator('button.enter')).toBeVisible();
   await controls.click();
   await expect(page.locator('button.enter')).toBeVisible();
   expect(await overlap(page, 'button.enter', '#play .round:not([hidden])')).toBe(false);

@@ -275,10 +275,6 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
   };
   return {
     node,
-    /** What it covers of the window; null: it is not shown. */
-    get covers(): DOMRect | null {
-      return node.hidden ? null : node.getBoundingClientRect();
-    },
     /** Shows the progress of reading a file; null: none is being read. */
     showProgress(name: string, progress: WorkProgress | null): void {
       reading.show(name, progress);

@@ -56,8 +56,6 @@ export interface MocapViewOptions {
   loadAvatar(): Promise<Avatar>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
-  /** The card came or went. */
-  onCovered(): void;
   tell(level: 'info' | 'warning' | 'error', sentence: string): void;
 }
 
@@ -115,7 +113,6 @@ export class MocapView {
       boneMaps: options.boneMaps,
       show: (skeleton) => {
         this.#card.showBones(skeleton);
-        options.onCovered();
       },
       read: (request, bones) => void this.#read(request, bones),
     });
@@ -164,7 +161,6 @@ export class MocapView {
       if (!signal.aborted) this.#refuse(request, bones, error);
     } finally {
       if (this.#reading === reading) this.#card.showProgress(name, null);
-      this.#options.onCovered();
     }
   }
 
@@ -195,11 +191,6 @@ export class MocapView {
       isShown: true,
       isOwnMap: isUsed,
     });
-  }
-
-  /** What the card covers of the window; null: it is not shown. */
-  get covers(): DOMRect | null {
-    return this.#card.covers;
   }
 
   /** The distance of the middle of all shown bodies to the right of the page's body [m]. */
@@ -264,7 +255,6 @@ export class MocapView {
     this.#compare(null);
     this.#hide();
     this.#card.show(null);
-    this.#options.onCovered();
   }
 
   #actions(): CardActions {

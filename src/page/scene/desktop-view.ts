@@ -9,10 +9,19 @@ export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
 export type ViewName = (typeof viewNames)[number];
 
-/** Parts of the window [CSS pixels] that the controls cover, so that the body is centred in what is left. */
+/** Distances of the part that is left to the picture from the window's edges [CSS pixels]. */
 export interface Insets {
   readonly left: number;
   readonly right: number;
+  readonly top: number;
+  readonly bottom: number;
+}
+
+/** A box in the window [CSS pixels]. */
+export interface WindowBox {
+  readonly left: number;
+  readonly right: number;
+  readonly top: number;
   readonly bottom: number;
 }
 
@@ -20,6 +29,12 @@ export interface Insets {
 const followHalfLife = 0.35;
 /** What is no taller [m] is seen whole from where the view begins. */
 const tallest = 1.95;
+/** The height of the pelvis of a standing person [m]. */
+const pelvisHeight = 1;
+/** The share of the picture's height that a body takes at most. */
+const bodyShare = 0.94;
+/** The width of a body with lowered arms as a share of its height. */
+const bodyWidth = 0.45;
 /** Radians a press of an arrow key turns the camera. */
 const keyStep = Math.PI / 36;
 
@@ -28,6 +43,8 @@ export interface CameraStart {
   readonly offset: Vec3;
   readonly aim: Vec3;
   readonly fovDegrees: number;
+  /** What stays in sight above the body [m]; default 0. */
+  readonly headroom?: number;
 }
 
 /** The starts of the camera in one place. */
@@ -88,7 +105,9 @@ export class DesktopView {
   #view: ViewName = 'third-person';
   #scene = studioScene;
   #orbit = true;
-  #insets: Insets = { left: 0, right: 0, bottom: 0 };
+  #insets: Insets = { left: 0, right: 0, top: 0, bottom: 0 };
+  /** The way from the target to where the view began [m]. */
+  readonly #start = new Vector3();
 
   constructor(canvas: HTMLCanvasElement) {
     this.#controls = createControls(this.camera, canvas);
@@ -146,6 +165,7 @@ export class DesktopView {
   /** Back to where the view began. */
   recentre(): void {
     this.#place();
+    this.#project();
   }
 
   /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
@@ -182,6 +202,21 @@ export class DesktopView {
     this.#controls.update();
   }
 
+  /** Returns the box of these points, floor frame [m], in the window. */
+  boxOf(points: Iterable<Vec3>): WindowBox {
+    const box = { left: Infinity, right: -Infinity, top: Infinity, bottom: -Infinity };
+    for (const point of points) {
+      const { x, y } = new Vector3().copy(point).project(this.camera);
+      const across = ((1 + x) / 2) * window.innerWidth;
+      const down = ((1 - y) / 2) * window.innerHeight;
+      box.left = Math.min(box.left, across);
+      box.right = Math.max(box.right, across);
+      box.top = Math.min(box.top, down);
+      box.bottom = Math.max(box.bottom, down);
+    }
+    return box;
+  }
+
   /** Puts the camera where the view begins. */
   #place(): void {
     if (this.#view === 'first-person') return;
@@ -197,26 +232,62 @@ export class DesktopView {
     camera.fov = fovDegrees;
     camera.up.copy(up);
     this.#controls.target.copy(this.#target).add(aim);
-    camera.position.copy(this.#target).addScaledVector(offset, distance);
+    camera.position.copy(this.#target).add(this.#start.copy(offset).multiplyScalar(distance));
     this.#controls.update();
   }
 
-  /** Fits the picture to the window and centres the body in what the controls leave of it. */
+  /** Fits the picture to the window, and the body to the part of it that is left to the picture. */
   #project(): void {
     const { camera } = this;
-    const { left, right, bottom } = this.#insets;
     const width = window.innerWidth;
     const height = window.innerHeight;
-    const whole = this.#view === 'first-person';
     camera.aspect = width / height;
-    const shiftX = whole ? 0 : (right - left) / 2;
-    const shiftY = whole ? 0 : bottom / 2;
-    // What is left above a tall sheet of controls still holds the whole body.
-    const room = Math.min(1, (1 - bottom / height) / 0.75);
-    // Half of what is taller is met by looking higher, the other half from further away.
-    camera.zoom = whole ? 1 : (room * tallest) / (tallest + 2 * this.#rise);
-    camera.setViewOffset(width, height, shiftX, shiftY, width, height);
+    if (this.#view === 'first-person') {
+      camera.zoom = 1;
+      camera.clearViewOffset();
+    } else {
+      const { zoom, shift, rise } = this.#fitBody(this.#view);
+      camera.zoom = zoom;
+      camera.setViewOffset(width, height, shift, rise, width, height);
+    }
     camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Returns the zoom at which a standing body is no larger than the part that is left to the picture, and how far the
+   * picture moves left and up [CSS pixels] to show it there. The scene's own composition is changed no further.
+   */
+  #fitBody(view: Exclude<ViewName, 'first-person'>): Readonly<Record<'zoom' | 'shift' | 'rise', number>> {
+    const { left, right, top, bottom } = this.#insets;
+    const height = window.innerHeight;
+    const freeHeight = Math.max(1, height - top - bottom);
+    const freeWidth = Math.max(1, window.innerWidth - left - right);
+    const { head, feet } = this.#standing(view);
+    const zoom = Math.min(1, (bodyShare * freeHeight) / (head - feet), freeWidth / (bodyWidth * (head - feet)));
+    const margin = ((1 - bodyShare) / 2) * freeHeight;
+    const least = bottom + margin - height / 2 - zoom * feet;
+    const most = height / 2 - top - margin - zoom * head;
+    // What the picture shows beside the body may lie under a column at the left.
+    const leftEdge = window.innerWidth / 2 - (zoom * bodyWidth * (head - feet)) / 2;
+    return {
+      zoom,
+      shift: Math.max((right - left) / 2, Math.min(right / 2, leftEdge - left - margin)),
+      rise: Math.min(most, Math.max(least, (bottom - top) / 2)),
+    };
+  }
+
+  /** Returns how far head and feet of a standing body are above the window's middle at the start [CSS pixels]. */
+  #standing(view: Exclude<ViewName, 'first-person'>): { readonly head: number; readonly feet: number } {
+    const { aim, fovDegrees, headroom = 0 } = this.#scene[view];
+    const start = new PerspectiveCamera(fovDegrees, this.camera.aspect, 0.05, 90);
+    start.position.copy(this.#start);
+    start.lookAt(aim.x, aim.y, aim.z);
+    start.updateMatrixWorld();
+    const heightAt = (y: number) => (new Vector3(0, y, 0).project(start).y * window.innerHeight) / 2;
+    return {
+      head: heightAt(tallest - pelvisHeight + this.#rise + headroom),
+      feet: heightAt(-pelvisHeight - this.#rise),
+    };
   }
 
   #pressed(event: KeyboardEvent): void {

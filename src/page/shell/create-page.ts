@@ -120,7 +120,7 @@ function createPlay(base: ReturnType<typeof createBase>) {
 function createInterface(play: ReturnType<typeof createPlay>) {
   const { headset } = play;
   const difference = new DeviceDifference();
-  const mocap: PageMocap = new PageMocap({ ...play, onCovered: () => controls.layOut() });
+  const mocap = new PageMocap(play);
   const controls = new Controls({ ...play, mocap, difference });
   const passthrough = new PassthroughHost({
     ...play,

@@ -7,6 +7,7 @@ import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { recordOf } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { pageElement } from 'threepoint-ui/element';
 import type { Notices } from 'threepoint-ui/notices';
 import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
@@ -28,8 +29,6 @@ export interface PageMocapOptions {
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
   onChange(): void;
-  /** What its card covers of the window has changed. */
-  onCovered(): void;
 }
 
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
@@ -62,11 +61,6 @@ export class PageMocap {
     await this.#view?.open(sources, outlook, asked);
   }
 
-  /** What its card covers of the window; null: it is not shown. */
-  get covers(): DOMRect | null {
-    return this.#view?.covers ?? null;
-  }
-
   /** The distance of the middle of what is shown to the right of the body [m]. */
   get aside(): number {
     return this.#view?.aside ?? 0;
@@ -90,7 +84,7 @@ export class PageMocap {
       labels,
       boneMaps,
       prepare,
-      region: document.body,
+      region: pageElement('play', HTMLElement),
       replay: this.#replay(),
       method: {
         get wanted() {
@@ -103,7 +97,6 @@ export class PageMocap {
         },
       },
       loadAvatar: () => this.#loadAvatar(),
-      onCovered: this.#options.onCovered,
       tell: (level, sentence) => notices.show(level, sentence),
     });
   }

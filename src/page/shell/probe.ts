@@ -57,11 +57,13 @@ const triples = <Name extends string>(points: Readonly<Partial<Record<Name, Vec3
   ) as Readonly<Partial<Record<Name, Triple>>>;
 
 /** Joints of the avatar's bones as drawn, and the tips of its fingers; floor frame [m]. */
-function avatarOf({ current, name }: ProbeParts['avatar']) {
+function avatarOf({ current, name }: ProbeParts['avatar'], { view }: ProbeParts['stage']) {
   const tips = (side: Side) => triples(current?.fingertips(side));
   return {
     name,
     joints: triples<string>(current?.jointPositions()) as Readonly<Record<string, Triple>>,
+    /** The box of the joints in the desktop's window. */
+    box: view.boxOf(Object.values(current?.jointPositions() ?? {})),
     fingertips: { left: tips('left'), right: tips('right') },
   };
 }
@@ -95,7 +97,7 @@ export function readProbe(parts: ProbeParts) {
     provider: body.provider ?? 'none',
     /** `count`: frames drawn since the page opened. */
     frame: { ...timing.summary(), count: frame.count },
-    avatar: avatarOf(parts.avatar),
+    avatar: avatarOf(parts.avatar, parts.stage),
     tracking: trackingOf(source.newest),
     calibration: { ...body.calibration, source: settings.calibrationSource },
     session: { state: headset.visibility, emulated: headset.emulator !== null },

@@ -37,7 +37,7 @@ export interface ControlledParts {
   readonly study: Pick<PageStudy, 'run'>;
   readonly server: ServerPresence;
   readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;
-  readonly mocap: Pick<PageMocap, 'open' | 'show' | 'covers'>;
+  readonly mocap: Pick<PageMocap, 'open' | 'show'>;
   /** Something changed that is on the screen. */
   onChange(): void;
 }

@@ -47,9 +47,9 @@ export class Controls {
     this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, rays: createVrPointers() });
     this.#layout = new WindowLayout({
       stage,
+      settings: parts.settings,
       panelRegion,
       panelOpen: () => this.#desktop.panelOpen,
-      card: () => parts.mocap.covers,
     });
     stage.studio.scene.add(...this.#inHeadset.objects);
     measuring.steps.listen(() => this.#inHeadset.show());
@@ -69,6 +69,7 @@ export class Controls {
     avatar.current?.setUpperBodyOnly(settings.upperBodyOnly);
     this.#desktop.show();
     this.#play.show();
+    this.#layout.arrange();
     this.#inHeadset.show();
   }
 
@@ -94,6 +95,7 @@ export class Controls {
     this.#play.caption(text);
   }
 
+  /** Arranges the page's parts in the window. */
   layOut(): void {
     this.#layout.layOut();
   }
@@ -129,6 +131,7 @@ export class Controls {
     else if (activities.current) this.#play.show();
     if (activities.current) this.#inHeadset.show();
     this.#play.showBanner();
+    this.#layout.arrange();
   }
 
   /** What frames cost over the last seconds, and what estimates the body in them. */

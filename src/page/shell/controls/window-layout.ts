@@ -1,66 +1,70 @@
 import { pageElement } from 'threepoint-ui/element';
 import type { Stage } from '../stage';
 
-/** The window width up to which the controls lie below the picture instead of beside it [CSS pixels]. */
+/** The window width up to which the open controls leave the picture little room beside them [CSS pixels]. */
 const narrowest = 760;
-/** The width that the panel covers, with its margins [CSS pixels]. */
-const panelWidth = 352;
-/** The share of a narrow window's height that the panel covers. */
-const panelShare = 0.48;
-/** Between the body and the button that enters VR [CSS pixels]. */
-const besideEnter = 8;
+/** The window width up to which what is played and the open controls have no room side by side [CSS pixels]. */
+const widestForOne = 900;
+/** The window width up to which what is played has no room beside the picture [CSS pixels]. */
+const widestPhone = 480;
+/** The factor of larger text, as in `windows.css`. */
+const textScale = 1.3;
 
-/** Whether the window is too narrow for the panel beside the picture. */
+/** Whether the controls stay closed until their button is pressed. */
 export const isNarrow = (): boolean => window.innerWidth <= narrowest;
 
 export interface WindowLayoutOptions {
   readonly stage: Pick<Stage, 'layOut'>;
+  readonly settings: { readonly largerText: boolean };
   /** Emits the event `toggle` when the panel opens or closes. */
   readonly panelRegion: HTMLElement;
   panelOpen(): boolean;
-  /** What a card covers of the window, on the left or, of a narrow one, below; null: there is none. */
-  card(): DOMRect | null;
 }
 
-/** Centres the body in the part of the window that the controls leave free. */
+/**
+ * Chooses how the page's parts are arranged. The style sheet gives each part its cell of one grid. The cell that is
+ * left is `main`: the body is fitted to it.
+ */
 export class WindowLayout {
   readonly #options: WindowLayoutOptions;
-  readonly #enter = pageElement('enter', HTMLElement);
+  readonly #picture = document.querySelector('main')!;
   readonly #play = pageElement('play', HTMLElement);
 
   constructor(options: WindowLayoutOptions) {
     this.#options = options;
     const layOut = () => this.layOut();
     window.addEventListener('resize', layOut);
-    const sizes = new ResizeObserver(layOut);
-    sizes.observe(this.#enter);
-    // It grows and shrinks with what is played.
-    sizes.observe(this.#play);
     options.panelRegion.addEventListener('toggle', layOut);
+    new ResizeObserver(() => this.#fitPicture()).observe(this.#picture);
   }
 
   layOut(): void {
-    const { stage, panelOpen, card } = this.#options;
-    const narrow = isNarrow();
+    this.arrange();
+    this.#fitPicture();
+  }
+
+  /** Sets the classes that choose between the arrangements of the style sheet. */
+  arrange(): void {
+    const { settings, panelOpen } = this.#options;
+    const { innerWidth, innerHeight } = window;
     const open = panelOpen();
-    const right = narrow || !open ? 0 : panelWidth;
-    document.body.classList.toggle('panel-open', open);
-    document.body.style.setProperty('--panel-inset', `${right}px`);
-    const covered = card();
-    const left = narrow ? this.#columnRight() : (covered?.right ?? 0);
-    const below = narrow && covered?.height ? window.innerHeight - covered.top : this.#coveredBelow();
-    stage.layOut({ left, right, bottom: narrow && open ? window.innerHeight * panelShare : below });
+    const width = innerWidth / (settings.largerText ? textScale : 1);
+    const portrait = innerHeight > innerWidth;
+    const playing = this.#play.querySelector(':is(.round, .mocap):not([hidden])') !== null;
+    const stacked =
+      (open && width <= widestForOne) || (playing ? portrait && width <= widestPhone : width <= narrowest);
+    const { classList } = document.body;
+    classList.toggle('panel-open', open);
+    // The controls are below everything else.
+    classList.toggle('with-sheet', portrait && isNarrow());
+    // What is played is above the picture, else at its left.
+    classList.toggle('stacked', stacked);
+    classList.toggle('with-column', playing && !stacked);
   }
 
-  /** The right edge of what is played where a narrow window has it beside the picture [CSS pixels]; else 0. */
-  #columnRight(): number {
-    const { right, width } = this.#play.getBoundingClientRect();
-    return this.#play.querySelector('.round:not([hidden])') && 2 * width < window.innerWidth ? right : 0;
-  }
-
-  /** What the button that enters VR covers [CSS pixels]. */
-  #coveredBelow(): number {
-    if (this.#enter.offsetHeight === 0) return 0;
-    return window.innerHeight - this.#enter.getBoundingClientRect().top + besideEnter;
+  #fitPicture(): void {
+    const { left, right, top, bottom } = this.#picture.getBoundingClientRect();
+    const { innerWidth, innerHeight } = window;
+    this.#options.stage.layOut({ left, right: innerWidth - right, top, bottom: innerHeight - bottom });
   }
 }
