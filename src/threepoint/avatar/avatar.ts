@@ -24,6 +24,7 @@ import type { LoadedAvatar } from './load-avatar';
 import { meshesOf } from './meshes-of';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
+import { mergeFlatParts } from './rig/flat-parts';
 import { tieLooseParts } from './rig/loose-parts';
 import { OwnTrunk } from './rig/own-trunk';
 import { type AvatarJoint, Rig } from './rig/rig';
@@ -101,6 +102,7 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   object.name = 'avatar';
   object.add(vrm.scene);
   vrm.humanoid.autoUpdateHumanBones = false;
+  yield* mergeFlatParts(vrm);
   object.updateMatrixWorld(true);
   const rig = new Rig(vrm);
   yield* tieLooseParts(vrm, rig);
@@ -121,6 +123,8 @@ function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
   const unnamed = () => [{ meshes: meshesOf(scene), type: 'auto' as const }];
   for (const { meshes, type } of firstPerson?.meshAnnotations ?? unnamed()) {
     for (const mesh of meshes) {
+      // A primitive that was merged with its siblings has left the scene.
+      if (!mesh.parent) continue;
       yield;
       new VRMFirstPerson(humanoid, [{ meshes: [mesh], type }]).setup();
     }
