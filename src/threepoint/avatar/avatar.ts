@@ -23,6 +23,7 @@ import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
+import { mergeFlatParts } from './rig/flat-parts';
 import { tieLooseParts } from './rig/loose-parts';
 import { type AvatarJoint, Rig } from './rig/rig';
 import { OwnTrunk } from './rig/rig-trunk';
@@ -103,6 +104,7 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   object.name = 'avatar';
   object.add(vrm.scene);
   vrm.humanoid.autoUpdateHumanBones = false;
+  yield* mergeFlatParts(vrm);
   object.updateMatrixWorld(true);
   const rig = new Rig(vrm);
   yield* tieLooseParts(vrm, rig);
@@ -124,6 +126,8 @@ function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
   const unnamed = () => [{ meshes: meshesOf(scene), type: 'auto' as const }];
   for (const { meshes, type } of firstPerson?.meshAnnotations ?? unnamed()) {
     for (const mesh of meshes) {
+      // A primitive that was merged with its siblings has left the scene.
+      if (!mesh.parent) continue;
       yield;
       new VRMFirstPerson(humanoid, [{ meshes: [mesh], type }]).setup();
     }

@@ -1,8 +1,10 @@
 import { readFileSync } from 'node:fs';
-import { type Material, type Mesh, MeshStandardMaterial, type Object3D, PropertyBinding, Scene, Vector3 } from 'three';
+import { type Color, type Mesh, MeshStandardMaterial, type Object3D, PropertyBinding, Scene, Vector3 } from 'three';
 import type { WorkerAnswer, WorkerQuestion } from 'threepoint/avatar/file/avatar-check-worker';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
 import { palettes, skinColors } from 'threepoint/avatar/palettes';
+import { FlatPartsMaterial } from 'threepoint/avatar/rig/flat-parts';
+import { skinnedMeshesOf } from 'threepoint/avatar/scene-meshes';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { distance } from 'threepoint/core/math/vec3';
@@ -34,10 +36,13 @@ test('a body of ours keeps the colours of its seat when another takes its place,
     onChange: () => undefined,
   });
   const colourOf = (material: string): string => {
-    const found: Material[] = [];
-    scene.traverse((node) => found.push(...[(node as Mesh).material ?? []].flat()));
+    const found: { readonly name: string; readonly color: Color }[] = [];
+    for (const { material } of skinnedMeshesOf(scene)) {
+      if (material instanceof FlatPartsMaterial) found.push(...material.parts);
+      else if (material instanceof MeshStandardMaterial) found.push(material);
+    }
     const named = found.find(({ name }) => name === material);
-    return named instanceof MeshStandardMaterial ? `#${named.color.getHexString()}` : 'none';
+    return named ? `#${named.color.getHexString()}` : 'none';
   };
   await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('porcelain'), skinColors.dark]);

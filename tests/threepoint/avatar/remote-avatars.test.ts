@@ -3,6 +3,7 @@ import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import { FlatPartsMaterial } from 'threepoint/avatar/rig/flat-parts';
 import {
   type AvatarHash,
   type AvatarRef,
@@ -99,6 +100,7 @@ describe('bodies of others', () => {
       meshes
         .flatMap(({ material }) => material as MeshStandardMaterial | MeshStandardMaterial[])
         .flat()
+        .flatMap((material) => (material instanceof FlatPartsMaterial ? material.parts : [material]))
         .map(({ name, color }) => `${name} ${color.getHexString()}`),
     );
     expect(suits[0]).not.toEqual(suits[1]);

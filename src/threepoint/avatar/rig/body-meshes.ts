@@ -14,6 +14,7 @@ import { recordOf } from '../../core/records';
 import type { Steps } from '../between-frames';
 import { palettes, skinColors } from '../palettes';
 import { meshesOf } from '../scene-meshes';
+import { FlatPartsMaterial } from './flat-parts';
 import type { Rig } from './rig';
 import { type SkinPart, skinParts, sortByPart } from './skin-parts';
 
@@ -170,6 +171,7 @@ export class BodyMeshes {
   private recolour(colors: Readonly<Record<string, string>>): void {
     for (const { mesh } of this.meshes) {
       for (const material of materialsOf(mesh)) {
+        if (material instanceof FlatPartsMaterial) material.recolour(colors);
         const color = colors[material.name];
         if (color && material instanceof MeshStandardMaterial) material.color = new Color(color);
       }

@@ -1,0 +1,45 @@
+import { readFileSync } from 'node:fs';
+import type { BufferAttribute, MeshStandardMaterial, SkinnedMesh } from 'three';
+import { createAvatar } from 'threepoint/avatar/avatar';
+import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { FlatPartsMaterial } from 'threepoint/avatar/rig/flat-parts';
+import { skinnedMeshesOf } from 'threepoint/avatar/scene-meshes';
+import { expect, test } from 'vitest';
+
+const read = (name: string) => parseAvatar(new Uint8Array(readFileSync(`public/avatars/${name}.vrm`)).buffer, name);
+
+/** Returns the colour that is drawn at each vertex of a mesh, by the vertex's place at rest. */
+function colorsOf(mesh: SkinnedMesh): Map<string, string> {
+  const { position, uv, color } = mesh.geometry.attributes as Record<string, BufferAttribute>;
+  const colors = new Map<string, string>();
+  for (let vertex = 0; vertex < position!.count; vertex++) {
+    const material = mesh.material as MeshStandardMaterial;
+    const { parts } = material as FlatPartsMaterial;
+    const part = parts ? parts[Math.floor(uv!.getX(vertex) * parts.length)]! : material;
+    const tint = color ? [color.getX(vertex), color.getY(vertex), color.getZ(vertex)] : [1, 1, 1];
+    const place = [position!.getX(vertex), position!.getY(vertex), position!.getZ(vertex)].join();
+    colors.set(
+      `${part.name} ${place}`,
+      part.color
+        .toArray()
+        .map((value, i) => (value * tint[i]!).toFixed(6))
+        .join(),
+    );
+  }
+  return colors;
+}
+
+const all = (meshes: readonly SkinnedMesh[]) => new Map(meshes.flatMap((mesh) => [...colorsOf(mesh)]));
+
+test.each([
+  ['mannequin', 2],
+  ['man', 3],
+] as const)('the %s is drawn by %i meshes, every vertex in the colour of its material', async (name, drawn) => {
+  const before = (await read(name)).vrm.scene;
+  const file = all(skinnedMeshesOf(before));
+  const { object } = createAvatar(await read(name));
+  const meshes = skinnedMeshesOf(object);
+  expect(meshes).toHaveLength(drawn);
+  expect(meshes.some(({ material }) => material instanceof FlatPartsMaterial)).toBe(true);
+  expect(all(meshes)).toEqual(file);
+});
