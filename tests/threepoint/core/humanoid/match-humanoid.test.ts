@@ -153,6 +153,21 @@ describe.each(rigs.filter(({ name }) => /^(LAFAN1|Mixamo)$/.test(name)))(
   },
 );
 
+test('the fingers of Perception Neuron begin beyond its bones inside the hand', () => {
+  const { joints, bones } = rigs.find(({ name }) => name === 'Mixamo')!;
+  const longer = joints.map((joint) => ({ ...joint, name: joint.name.replace('mixamorig:', '') }));
+  for (const finger of ['Index', 'Middle', 'Ring', 'Little'] as const) {
+    for (const side of ['left', 'right'] as const) {
+      const [hand, first] = [bones[`${side}Hand`]!, bones[`${side}${finger}Proximal`]!];
+      const position = lerp(joints[hand]!.position, joints[first]!.position, 0.3);
+      const name = longer[first]!.name.replace(/Hand(\w+)1$/, 'InHand$1');
+      longer[first] = { ...longer[first]!, parent: longer.push({ name, parent: hand, position }) - 1 };
+    }
+  }
+  const { map } = matchHumanoid(longer);
+  expect(Object.fromEntries(Object.entries(map).map(([bone, { joint }]) => [bone, joint]))).toMatchObject(bones);
+});
+
 describe('what is no humanoid is refused with what was found and what is missing', () => {
   const at = (x: number, y: number) => ({ x, y, z: 0 });
   test.each<[string, readonly SkeletonJoint[], RegExp]>([
