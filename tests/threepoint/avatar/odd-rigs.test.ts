@@ -250,6 +250,15 @@ const oddBones: readonly (readonly [string, Partial<RigOptions>])[] = [
     },
   ],
   [
+    'with upper arms and forearms of two bones in line, under names that mean nothing',
+    {
+      nameOf: (bone) => `q${[...bone].reduce((sum, letter) => (31 * sum + letter.charCodeAt(0)) % 1e6, 0)}`,
+      place: (bone, at) => void (/LowerArm$/.test(bone) && at.setZ(-0.03)),
+      parents: { leftLowerArm: 'x1_l', rightLowerArm: 'x1_r', leftHand: 'x2_l', rightHand: 'x2_r' },
+      more: [...onBoth('x1', '$UpperArm', [0.245, 1.3, -0.025]), ...onBoth('x2', '$LowerArm', [0.47, 1.3, -0.025])],
+    },
+  ],
+  [
     'with goals and controls in its skin',
     {
       more: [

@@ -1,4 +1,5 @@
 import type { Side } from '../math/side';
+import { cross, dot, length, subtract } from '../math/vec3';
 import type { JointTree } from './joint-tree';
 import type { Part } from './name-votes';
 
@@ -27,6 +28,20 @@ const shortestLimb = 0.12;
 const mostPairs = 24;
 const mostBranches = 60;
 
+/** A chain bends at a joint by less than this where the joint only divides a bone [rad]. */
+const leastBend = 0.02;
+
+/** Whether a joint of a chain only divides a bone, as twist bones do: the chain is straight there. */
+function isInLine(tree: JointTree, chain: readonly number[], at: number): boolean {
+  const [before, here, after] = [chain[at - 1], chain[at]!, chain[at + 1]];
+  if (before === undefined || after === undefined) return false;
+  const [near, far] = [
+    subtract(tree.position(here), tree.position(before)),
+    subtract(tree.position(after), tree.position(here)),
+  ];
+  return dot(near, far) > 0 && length(cross(near, far)) < leastBend * length(near) * length(far);
+}
+
 /** The three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
 export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   const chainOfAll = tree.mainChain(first, longestChain);
@@ -44,7 +59,10 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
     number[],
     number[],
   ];
-  const helper = chain.map((joint) => (tree.auxiliary[joint] ? 0.3 : 0));
+  const inLine = chain.map((_, at) => isInLine(tree, chain, at));
+  // A chain that bends nowhere shows no elbow.
+  const bends = kind === 'arm' && inLine.slice(1, -1).includes(false);
+  const helper = chain.map((joint, at) => (tree.auxiliary[joint] || (bends && inLine[at]) ? 0.3 : 0));
   // The whole of an arm counts where fingers show its end; a leg has no clavicle before it.
   const whole = fan >= 0 || kind === 'leg' ? 0.8 : 0.3;
   const skipped = fan >= 0 ? 0 : kind === 'leg' ? 0.05 : 0.12;
@@ -59,7 +77,8 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
         // Names show a bone that a file lost: the reader of the limb refuses it.
         if (!(near > 0 && far > 0) && names < 0.8) continue;
         const likeness = Math.min(near, far) / (Math.max(near, far) || 1);
-        const against = skipped * (k - i - 2) + loose + helper[i]! + helper[j]! + helper[k]!;
+        const between = inLine.slice(i + 1, k).filter((straight, at) => !straight && i + 1 + at !== j).length;
+        const against = skipped * between + loose + helper[i]! + helper[j]! + helper[k]!;
         const shape = 1.2 * likeness + (whole * (near + far)) / total + reached - against;
         if (!best || shape + 4 * names > best.shape + 4 * best.names)
           best = { chain: chainOfAll, at: [i, j, k], shape, names };

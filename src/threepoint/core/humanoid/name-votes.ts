@@ -72,7 +72,7 @@ type Votes = NameVotes['parts'];
 
 /** Patterns of names without side and number. The first that matches counts. */
 const patterns: readonly (readonly [RegExp, Votes])[] = [
-  [/metacarpal|carpal/, { metacarpal: 1 }],
+  [/carpal|^inhand/, { metacarpal: 1 }],
   [/thumb/, { thumb: 1 }],
   [/^(hand|finger)?(index|pointer)/, { index: 1 }],
   [/^(hand|finger)?(middle|mid)(?!spine)/, { middle: 1 }],

@@ -3,7 +3,7 @@ import { neededBones } from 'threepoint/core/humanoid/bones';
 import type { SkeletonJoint } from 'threepoint/core/humanoid/joint-tree';
 import { humanoidComplaint, leastConfidence, matchHumanoid } from 'threepoint/core/humanoid/match-humanoid';
 import { normaliseQuat, quat, rotate } from 'threepoint/core/math/quat';
-import { distance, scale } from 'threepoint/core/math/vec3';
+import { distance, lerp, scale } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { rigs } from './rigs';
 
@@ -125,6 +125,58 @@ test('ends of chains that move no skin may lie anywhere', () => {
       for (const [bone, joint] of Object.entries(bones)) expect(map[bone as keyof typeof map]?.joint, bone).toBe(joint);
     }
   }
+});
+
+describe.each(rigs.filter(({ name }) => /^(LAFAN1|Mixamo)$/.test(name)))(
+  'the arms of $name with more bones in line, without telling names',
+  ({ joints, bones }) => {
+    test.each([
+      [2, 1],
+      [1, 2],
+      [2, 2],
+      [3, 1],
+      [1, 3],
+      [3, 2],
+      [3, 3],
+    ])('%i from shoulder to elbow, %i from elbow to wrist', (upper, lower) => {
+      const longer = joints.map((joint) => ({ ...joint }));
+      for (const side of ['left', 'right'] as const) {
+        const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
+        for (const [from, to, count] of [
+          [bones[shoulder]!, bones[elbow]!, upper],
+          [bones[elbow]!, bones[hand]!, lower],
+        ] as const) {
+          let parent = from;
+          for (let i = 1; i < count; i++) {
+            const position = lerp(joints[from]!.position, joints[to]!.position, i / count);
+            parent = longer.push({ name: '', parent, position }) - 1;
+          }
+          longer[to] = { ...longer[to]!, parent };
+        }
+      }
+      const { map } = matchHumanoid(renamed(longer, (_, i) => `q${i}`));
+      for (const bone of neededBones.filter((each) => /Arm|Hand/.test(each))) {
+        const found = longer[map[bone]?.joint ?? -1];
+        // Wrist and hand may be two joints, 3 cm apart.
+        expect(found && distance(found.position, joints[bones[bone]!]!.position), bone).toBeLessThan(4);
+      }
+    });
+  },
+);
+
+test('the fingers of Perception Neuron begin beyond its bones inside the hand', () => {
+  const { joints, bones } = rigs.find(({ name }) => name === 'Mixamo')!;
+  const longer = joints.map((joint) => ({ ...joint, name: joint.name.replace('mixamorig:', '') }));
+  for (const finger of ['Index', 'Middle', 'Ring', 'Little'] as const) {
+    for (const side of ['left', 'right'] as const) {
+      const [hand, first] = [bones[`${side}Hand`]!, bones[`${side}${finger}Proximal`]!];
+      const position = lerp(joints[hand]!.position, joints[first]!.position, 0.3);
+      const name = longer[first]!.name.replace(/Hand(\w+)1$/, 'InHand$1');
+      longer[first] = { ...longer[first]!, parent: longer.push({ name, parent: hand, position }) - 1 };
+    }
+  }
+  const { map } = matchHumanoid(longer);
+  expect(Object.fromEntries(Object.entries(map).map(([bone, { joint }]) => [bone, joint]))).toMatchObject(bones);
 });
 
 describe('what is no humanoid is refused with what was found and what is missing', () => {
