@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
+import type { BallProbe } from 'threepoint-page/ball/match/ball-probe';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { startTabbedBrowser } from '../background-tab';
 import { drawSeldom } from '../draw-seldom';

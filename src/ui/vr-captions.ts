@@ -3,7 +3,8 @@ import { dampVec3 } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createVrPanel, drawText, fillRoundedRect, textWidth, vrColors } from './vr-panel';
+import { drawText, fillRoundedRect, textWidth, vrColors } from './canvas-drawing';
+import { createVrPanel } from './vr-panel';
 
 const [width, height] = [1000, 96];
 /** How far away [m], and how far below the gaze [m] there: 13 degrees. */

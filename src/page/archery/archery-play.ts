@@ -13,7 +13,7 @@ import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/ar
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import { createMatch, type Match } from 'threepoint-games/match';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */

@@ -17,7 +17,7 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
-import { drawText } from 'threepoint-ui/vr-panel';
+import { drawText } from 'threepoint-ui/canvas-drawing';
 import { ink } from '../../scene/boards/board-style';
 import { createLabelQuad } from '../../scene/boards/label-quad';
 import { createCanvasTexture, type DrawableTexture } from '../../scene/canvas-texture';

@@ -11,12 +11,17 @@ import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
-import { BallBots, type CourtView, createGestures, playFrame, readyAfter } from './ball-bots';
-import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
+import { BallBots, readyAfter } from './ball-bots';
+import type { BallFrame } from './ball-frame';
+import type { BallProbe } from './ball-probe';
+import { probeOf } from './ball-probe';
+import { CourtPeople } from './court-people';
 import { joined, SimulatedPlayer } from './simulated-player';
+import type { CourtView } from './simulated-seat';
+import { createGestures, playFrame } from './simulated-seat';
 
 export interface BallPlayOptions {
   connect(visitor: Visitor, time: number): BallConnection;

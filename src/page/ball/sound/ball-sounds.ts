@@ -15,7 +15,7 @@ import {
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import type { PlayerFrame } from '../match/ball-frame';
-import type { DisplayedPlayer } from '../view/board-drawing';
+import type { DisplayedPlayer } from '../view/displayed-match';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 

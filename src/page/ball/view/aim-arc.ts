@@ -9,8 +9,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import { landsIn, type Opening } from 'threepoint-games/ball/basket';
-import { basketRadius } from 'threepoint-games/ball/flight';
+import { basketRadius, landsIn, type Opening } from 'threepoint-games/ball/basket';
 import { fallTime, type Launch, positionAt } from 'threepoint-games/ballistics';
 import { doubleSided } from '../../scene/double-sided';
 

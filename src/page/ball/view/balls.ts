@@ -24,7 +24,8 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { BallPlace, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
-import { ballRadius, basketDepth, basketRadius } from 'threepoint-games/ball/flight';
+import { basketDepth, basketRadius } from 'threepoint-games/ball/basket';
+import { ballRadius } from 'threepoint-games/ball/flight';
 import { ballPosition } from 'threepoint-games/ball/state-selectors';
 import { ballsPerRack } from 'threepoint-games/ball/stations';
 import { painted } from '../../scene/painted-geometry';

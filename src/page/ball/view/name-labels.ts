@@ -1,12 +1,13 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { drawText, textWidth } from 'threepoint-ui/vr-panel';
+import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
 import { ink } from '../../scene/boards/board-style';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
-import { roleTexts, seatLooks } from '../court/court-plan';
-import { type DisplayedPlayer, displayName } from './board-drawing';
+import { roleTexts, seatLooks } from '../seat-looks';
+import type { DisplayedPlayer } from './displayed-match';
+import { displayName } from './displayed-match';
 
 export interface Label {
   readonly person: DisplayedPlayer;
