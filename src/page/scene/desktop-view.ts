@@ -16,9 +16,9 @@ export interface Insets {
   readonly bottom: number;
 }
 
-/** Seconds in which the camera makes half the way to a body that walks. */
+/** Half-life of the camera's motion towards the body [s]. */
 const followHalfLife = 0.35;
-/** What is no taller [m] is seen whole from where the view begins. */
+/** A body up to this height [m] fits into the initial view. */
 const tallest = 1.95;
 /** Radians a press of an arrow key turns the camera. */
 const keyStep = Math.PI / 36;
@@ -97,7 +97,7 @@ export class DesktopView {
     this.#project();
   }
 
-  /** From where and whereto the camera looks. */
+  /** The pose of the camera. */
   get pose(): Pose<'floor'> {
     const { position, quaternion } = this.camera;
     return {
@@ -143,7 +143,7 @@ export class DesktopView {
     this.#project();
   }
 
-  /** Back to where the view began. */
+  /** Moves the camera back to the start of the view. */
   recentre(): void {
     this.#place();
   }
@@ -155,7 +155,7 @@ export class DesktopView {
     return { origin: { ...origin }, direction: { ...direction } };
   }
 
-  /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
+  /** Sets the height of the body [m]: the view also fits bodies taller than people. */
   setHeight(height: number): void {
     const rise = Math.max(0, height - tallest) / 2;
     if (rise === this.#rise) return;
@@ -182,7 +182,7 @@ export class DesktopView {
     this.#controls.update();
   }
 
-  /** Puts the camera where the view begins. */
+  /** Moves the camera to the start of the view. */
   #place(): void {
     if (this.#view === 'first-person') return;
     const { camera } = this;

@@ -1,14 +1,14 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Notices } from 'threepoint-ui/notices';
 
-/** What no part has caught becomes a sentence. */
+/** Shows uncaught errors as notices. */
 export function reportFaults(notices: Pick<Notices, 'show'>): void {
   const wentWrong = (text: string) => notices.show('error', `Something went wrong: ${firstLine(text)}`);
   window.addEventListener('error', ({ message }) => wentWrong(message));
   window.addEventListener('unhandledrejection', ({ reason }) => wentWrong(reasonOf(reason)));
 }
 
-/** In place of a page that cannot start. */
+/** Replaces a page that cannot start by its error. */
 export function showStartFailure(error: unknown): void {
   const text = document.createElement('p');
   text.className = 'fault';

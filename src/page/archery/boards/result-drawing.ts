@@ -4,7 +4,7 @@ import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
 import { ink, paintCard } from '../../scene/boards/board-style';
 import { paintButton } from '../../scene/boards/sheet';
 
-/** How an arrow's end reads on a board. */
+/** Describes the result of an arrow for the board. */
 export function arrowResult(state: ArcheryState, index: number): string {
   const arrow = state.arrows[index];
   if (!arrow) return 'not shot';
@@ -25,7 +25,7 @@ const headline: Record<NonNullable<ArcheryState['end']>, string> = {
   time: 'Time is up',
 };
 
-/** What a round came to: score, percentage, each arrow, and the way to another round. */
+/** Paints the result of a round: score, percentage, each arrow, and the button for another round. */
 export function paintResult(context: CanvasRenderingContext2D, state: ArcheryState, hovered: boolean): void {
   const { width, height } = resultSize;
   paintCard(context, width, height);

@@ -18,7 +18,7 @@ export interface BoardText {
   readonly line: string;
 }
 
-/** The last sentence of the board at a time of the match [s]. */
+/** Returns the last line of the board at a match time [s]. */
 export function statusLine(state: ArcheryState, time: number): string {
   if (!state.inZone) return 'Step back onto the deck';
   if (state.phase === 'ready')
@@ -56,7 +56,7 @@ export function boardText(state: ArcheryState, time: number): BoardText {
 
 export const boardSize = { width: 1024, height: 640 } as const;
 
-/** An arrow as a mark, pointing up: full where it is left, an outline where it was shot. */
+/** Draws an arrow that points up: filled if it is left, an outline if it was shot. */
 function pip(context: CanvasRenderingContext2D, x: number, y: number, height: number, left: boolean): void {
   context.save();
   context.translate(x, y);

@@ -39,7 +39,7 @@ const emptyHands: Readonly<Record<Side, number | null>> = { left: null, right: n
 /** The time for which a person can read a result before a simulated player asks for another round [s]. */
 const rematchAfter = 7;
 
-/** The start of a list that has nothing in it mostly. */
+/** The empty list, shared. */
 const none: readonly never[] = [];
 
 /** A match and its players, without the view. */
@@ -71,7 +71,7 @@ export class BallPlay {
     return this.client.room;
   }
 
-  /** How this page sets up voices with the others; null: not connected yet. */
+  /** The channel for setting up voice connections; null: not connected yet. */
   get voices(): VoiceChannel | null {
     return this.connection?.voices ?? null;
   }
@@ -112,7 +112,7 @@ export class BallPlay {
     return this.simulated.act(this.connection, this.gestures, time, catchUp);
   }
 
-  /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
+  /** Advances the match by a tracked frame and its buttons. `frame`: null if nothing is tracked, or for a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null {
     const line = this.connection;
     const before = line?.room;

@@ -4,7 +4,7 @@ import type { BallPlace } from 'threepoint-games/ball/ball-state';
 import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-selectors';
 import type { BallFrame } from './ball-frame';
 
-/** Returns what tools may know of this frame of a match. */
+/** Returns the state of a match as plain data, for tests and tools. */
 export function probeOf(
   { state, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
   connection: BallConnection,

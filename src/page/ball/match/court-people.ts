@@ -23,7 +23,7 @@ import { seatLooks } from '../seat-looks';
 import type { BodyFrame, PlayerFrame } from './ball-frame';
 import { proximityFade } from './proximity-fade';
 
-/** What is shown of one seat, and the memory for it. */
+/** The frame of one seat, with the buffers that it overwrites. */
 interface SeatView {
   readonly player: Mutable<Omit<PlayerFrame, 'palms'>> & { readonly palms: Record<Side, Vec3 | null> };
   readonly body: Mutable<BodyFrame>;
@@ -104,7 +104,7 @@ export class CourtPeople {
     }
   }
 
-  /** By the rules: in hands that are seen, of a holder at their mark; null: the basket stays where it was. */
+  /** Returns the opening by the rules; null: no tracked hand or a holder outside the zone, so the basket stays. */
   private openingOf(
     { head, leftHand, rightHand }: Place,
     arenaFromFloor: Transform<'arena', 'floor'>,

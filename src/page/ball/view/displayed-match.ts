@@ -18,7 +18,7 @@ export interface DisplayedMatch {
   readonly acting: boolean;
 }
 
-/** What a player reads in place of a name that they have not given. */
+/** The displayed name of the user if none was given. */
 export const ownName = 'You';
 
 /** Returns a name that marks bots as such. */

@@ -2,7 +2,7 @@ import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import { rotationForRound } from 'threepoint-games/ball/stations';
 import { type DisplayedMatch, type DisplayedPlayer, displayName } from './displayed-match';
 
-/** What the last thing that happened reads like on the board; null: nothing to say. */
+/** Returns the line of the board for an event; null: none. */
 export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | null)[]): string | null {
   const who = 'player' in event ? people[event.player] : null;
   const name = who?.me ? 'you' : (who?.name ?? 'A player');

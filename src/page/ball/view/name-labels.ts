@@ -28,7 +28,7 @@ const metres = 0.86;
 const above = 0.25;
 /** Seen from further away than this it grows with the distance, so that a name stays as large to the eye [m]. */
 const readableFrom = 2.8;
-/** Larger than this it would hide a neighbour's. */
+/** A larger label would hide its neighbour. */
 const maxScale = 3;
 
 /** How many times its own size a label is drawn for a camera this far away [m]. */
@@ -148,7 +148,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
   };
   sprite.onBeforeRender = (_renderer, _scene, { matrixWorld }) => place(sprite, matrixWorld, metres, height);
   ring.onBeforeRender = (_renderer, _scene, { matrixWorld }) => place(ring, matrixWorld, wide, wide);
-  // It is where it is drawn only once it is drawn.
+  // The position is set when the sprite is drawn, so frustum culling has no valid position.
   for (const one of [sprite, ring]) {
     one.frustumCulled = false;
     one.visible = false;

@@ -3,9 +3,9 @@ import { ink } from './board-style';
 
 export interface ScoreHeading {
   readonly score: number;
-  /** The most that can be had. */
+  /** The highest possible score. */
   readonly of: number;
-  /** Left on the clock. */
+  /** The time that is left [s]. */
   readonly seconds: number;
   readonly running: boolean;
 }
