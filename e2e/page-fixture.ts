@@ -3,7 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { serve } from 'threepoint-http/web-server';
-import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
+import type { BallProbe } from 'threepoint-page/ball/match/ball-probe';
 import type { Probe } from 'threepoint-page/shell/probe';
 import { createPageHandler } from '../server/page-handler';
 import { drawSeldom, screenshot } from './draw-seldom';

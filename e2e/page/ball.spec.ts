@@ -2,7 +2,7 @@ import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
 import type { BallActivityProbe } from 'threepoint-page/ball/ball-activity';
-import type { BallProbe } from 'threepoint-page/ball/match/ball-frame';
+import type { BallProbe } from 'threepoint-page/ball/match/ball-probe';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, goOn, holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';

@@ -25,23 +25,6 @@ export const velocityAt = ({ velocity }: Launch, seconds: number, target: Mutabl
   setVec3(target, velocity.x, velocity.y - gravity * seconds, velocity.z);
 
 /**
- * Writes the real roots of a·t² + b·t + c into `target`, ascending and without cancellation. With a near 0 the equation
- * is linear; without real roots the list is empty.
- */
-export function roots(a: number, b: number, c: number, target: number[] = []): readonly number[] {
-  target.length = 0;
-  const discriminant = b * b - 4 * a * c;
-  if (discriminant < 0) return target;
-  const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(discriminant));
-  if (q !== 0) target.push(c / q);
-  // A coefficient this small is the rounding of an upright disc's normal; its root lies beyond every flight.
-  if (Math.abs(a) > 1e-12) target.push(q / a);
-  return target.sort(ascending);
-}
-
-const ascending = (first: number, second: number): number => first - second;
-
-/**
  * Returns the seconds until the flight comes down through a height [m]; 0 if it starts below, or at the height without
  * rising.
  */

@@ -1,7 +1,5 @@
-import type { Buttons } from 'threepoint/core/input/button-presses';
 import { fromAxes, type MutableQuat } from 'threepoint/core/math/quat';
 import { cross, type MutableVec3, normalise, scale, setVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /**
  * Arm length (shoulder to wrist) and half the shoulder width, as shares of the standing eye height (averages of the
@@ -35,9 +33,3 @@ export function lookAlong(direction: Vec3, target?: MutableQuat): MutableQuat {
 /** Returns the postural sway of head and hands at a time [s], some millimetres. */
 export const swayAt = (time: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, 0.006 * Math.sin(time * 0.61), 0.002 * Math.sin(time * 1.5), 0.005 * Math.sin(time * 0.43 + 1));
-
-/** Head, hands and buttons of a simulated player at one moment: new objects in every frame. */
-export interface PlayerInput {
-  readonly frame: TrackingFrame;
-  readonly buttons: Buttons;
-}

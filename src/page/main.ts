@@ -10,7 +10,7 @@ import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
 import { joinStudy } from './shell/study/join-study';
 
-/** What entering would mean: a real headset, or why not and the emulated one. */
+/** Prepares the headset, and enables the button for a real or an emulated session. */
 async function offerSessions(headset: Headset, button: EnterButton, study: boolean): Promise<void> {
   const { real, sentence, passthrough } = await headset.prepare();
   button.show({
@@ -21,7 +21,7 @@ async function offerSessions(headset: Headset, button: EnterButton, study: boole
   });
 }
 
-/** Lets frames be drawn; the panel is as the address asks, else as it was left. */
+/** Starts the frame loop. The panel is open as the address asks, else as in the last visit. */
 function run({ controls, stage, frame, body, timing, switches, settings }: Page): void {
   controls.setPanelOpen(settings.panel);
   if (switches.view) stage.view.setView(switches.view);
@@ -44,7 +44,7 @@ async function showFirstBody({ avatarShown, frame, loading }: Page): Promise<voi
  * closes the controls.
  */
 async function openFromAddress({ activities, controls, mocap, recorder, switches }: Page): Promise<void> {
-  // Before anything that the user opens meanwhile.
+  // These requests precede anything that the user opens meanwhile.
   const [replay, motion] = [recorder.nextRequest(), recorder.nextRequest()];
   await activities.goTo(switches.play);
   if (switches.panel) controls.setPanelOpen(true);
@@ -62,11 +62,10 @@ async function joinStudyOfAddress(page: Page): Promise<void> {
 }
 
 /**
- * Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server
- * serves.
+ * Stores an offline copy of the page after everything has loaded. A study needs its server, so it stores none.
  */
 function storeOfflineCopy({ kept, switches }: Page): void {
-  // Only what has been built for good can be kept.
+  // Only a production build has a service worker.
   if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);
 }
 

@@ -22,7 +22,7 @@ export function calibrationHeadline(step: CalibrationStep): string {
 }
 
 /**
- * The guided calibration as people see it: an instruction, a countdown, then a bar that fills. A modal dialog; Escape
+ * The dialog of the guided calibration: an instruction, a countdown, then a bar that fills. A modal dialog; Escape
  * and the button cancel.
  */
 export function createCalibrationDialog(onCancel: () => void, onAgain: () => void) {

@@ -1,4 +1,4 @@
-/** Hands a text or a file to the browser's downloads under a name. */
+/** Downloads a text or a file under a name. */
 export function offerDownload(name: string, type: string, content: string | Blob): void {
   const address = URL.createObjectURL(new Blob([content], { type }));
   const link = document.createElement('a');

@@ -21,7 +21,7 @@ export interface FrameReport {
   readonly fromDevice: readonly { readonly name: string; readonly cm: number }[] | null;
 }
 
-/** Milliseconds with as many digits as mean something. */
+/** Formats milliseconds with two or three significant digits. */
 export function milliseconds(ms: number): string {
   if (!Number.isFinite(ms)) return '–';
   return ms < 0.995 ? ms.toFixed(2) : ms < 9.95 ? ms.toFixed(1) : ms.toFixed(0);
@@ -33,7 +33,7 @@ export function missedFrames(report: Pick<FrameReport, 'missed' | 'frames' | 'ra
   return `${share.toFixed(share > 0 && share < 9.95 ? 1 : 0)} % missed at ${Math.round(report.rateHz)} Hz`;
 }
 
-/** How far the drawn body is from the device's, joint by joint, in two lines; left before right. */
+/** Formats the distance of the drawn joints from the device's in two lines; left before right. */
 export function differenceLines(fromDevice: NonNullable<FrameReport['fromDevice']>): readonly [string, string] {
   const of = (joint: string) => {
     const found = fromDevice.filter(({ name }) => name.endsWith(joint)).map(({ cm }) => cm.toFixed(1));

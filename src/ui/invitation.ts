@@ -5,7 +5,7 @@ import { qrCode, qrPicture } from './qr-code';
 /** Whether other devices can open an address of this host. */
 const onlyHere = (hostname: string): boolean => /^(localhost|.*\.localhost|127\..*|\[::1\])$/.test(hostname);
 
-/** What others need to come into a room. */
+/** The link with which other people join a room. */
 export interface RoomLink {
   readonly room: string;
   readonly address: string;
@@ -13,7 +13,7 @@ export interface RoomLink {
   readonly limit: string | null;
 }
 
-/** The way into a room of the ball game on this page's server. */
+/** Returns the link to a room of the ball game on this page's server. */
 export const linkTo = (room: string): RoomLink => ({
   room,
   address: `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`,
@@ -22,7 +22,7 @@ export const linkTo = (room: string): RoomLink => ({
     : null,
 });
 
-/** The link to a room, to copy and as a QR code; `main`: the button that copies is what one came for. */
+/** The link to a room, to copy and as a QR code. `main`: copying is the primary action of the dialog. */
 export function createRoomLink({ main }: { readonly main: boolean }) {
   // Two lines: a bar is too narrow for an address, and its end names the room.
   const link = element('textarea', { rows: 2, readonly: true, 'aria-label': 'Link for the others' });

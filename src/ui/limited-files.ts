@@ -8,13 +8,13 @@ import { nameOfAddress } from 'threepoint/core/files';
 
 export type { FileKind } from 'threepoint/avatar/file/limited-download';
 
-/** What sentences call a file: its name, of an address the last part. */
+/** The name of a file for messages: its file name, or the last segment of an address. */
 export const fileNameOf = (source: string | File): string =>
   typeof source === 'string' ? nameOfAddress(source) : source.name;
 
 /**
- * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused
- * before it is read, or as soon as that shows. Rejects with a sentence that names the file; with a TransientError where
+ * Reads the bytes of a local file or of an address. A file above the limit of its kind is refused before it is read, or
+ * as soon as the download exceeds the limit. Rejects with a sentence that names the file; with a TransientError where
  * the network or the server is to blame.
  */
 export async function readLimited(

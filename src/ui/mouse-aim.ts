@@ -1,8 +1,8 @@
-/** Whether fingers are the usual way to point here, as on a phone. */
+/** Returns whether touch is the primary input of this device, as on a phone. */
 export const isTouchFirst = (): boolean => matchMedia('(pointer: coarse)').matches;
 
 /**
- * What mouse, pen or finger want of an archer: where they point in the window, and whether they hold. Listens on the
+ * The aim of a mouse, pen or finger: its position in the window, and whether it is pressed. Listens on the
  * canvas while enabled.
  */
 export function createMouseAim(canvas: HTMLCanvasElement) {

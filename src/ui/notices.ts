@@ -50,7 +50,7 @@ export function createNotices(region: HTMLElement) {
     show(level: NoticeLevel, text: string): void {
       const of = shown.get(text) ?? open(level, text);
       if (of.notice.level !== 'info') return;
-      // Said again, it stays as long again.
+      // A repeated notice starts its time again.
       clearTimeout(of.leaving);
       of.leaving = setTimeout(() => close(text), infoDurationMs);
     },

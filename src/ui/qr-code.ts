@@ -18,7 +18,7 @@ export async function qrCode(text: string): Promise<QrCode> {
 
 const svgNamespace = 'http://www.w3.org/2000/svg';
 
-/** For a page; the white is the ground's. */
+/** Returns the code as an SVG. It has no white of its own: the page's background is white. */
 export function qrPicture({ side, isDark }: QrCode): SVGSVGElement {
   const svg = document.createElementNS(svgNamespace, 'svg');
   svg.setAttribute('viewBox', `0 0 ${side} ${side}`);

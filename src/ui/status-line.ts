@@ -7,7 +7,7 @@ export function createStatusLine(attributes: { readonly class?: string } = {}) {
   return {
     node: element('p', attributes, status, running),
     show(words: string, figures: string = ''): void {
-      // Said again, it would be announced again.
+      // Writing the same words again would make screen readers announce them again.
       if (status.textContent !== words) status.textContent = words;
       running.textContent = figures;
     },

@@ -1,6 +1,6 @@
 import { element } from './element';
 
-/** Tabs by the book: one in the tab order, arrow keys walk. */
+/** Creates tabs after the ARIA pattern: one tab is in the tab order, and arrow keys move between them. */
 export function createTabs(
   label: string,
   pages: readonly { readonly name: string; readonly content: readonly Node[] }[],

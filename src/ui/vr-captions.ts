@@ -3,14 +3,15 @@ import { dampVec3 } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createVrPanel, drawText, fillRoundedRect, textWidth, vrColors } from './vr-panel';
+import { drawText, fillRoundedRect, textWidth, vrColors } from './canvas-drawing';
+import { createVrPanel } from './vr-panel';
 
 const [width, height] = [1000, 96];
 /** How far away [m], and how far below the gaze [m] there: 13 degrees. */
 const away = 1.5;
 const below = 0.35;
 const readFor = 2.5;
-/** It comes after the head, so that a glance at it does not chase it away [s]. */
+/** Half-life of the motion towards the gaze [s], so that a glance at the caption does not move it away. */
 const halfLife = 0.12;
 
 /** Shows captions of sounds in the headset: a line low in the view, for players without sound. */
@@ -39,7 +40,7 @@ export function createVrCaptions() {
         drawText(context, text, [width / 2, height / 2 + 2], { ...writing, maxWidth: width - 48 });
       });
     },
-    /** At this time [s] before these eyes, floor frame; null: no one reads. */
+    /** Shows the caption at this time [s] before these eyes, floor frame; null: no user wears the headset. */
     show(time: number, eyes: Pose<'floor'> | null): void {
       if (current) current.until ??= time + readFor;
       if (!current?.until || time > current.until || !eyes) {

@@ -20,11 +20,11 @@ import {
   zero,
 } from 'threepoint/core/math/vec3';
 import { wristAround } from '../fist';
+import type { PlayerInput } from '../player-input';
 import {
   armRatio,
   halfShoulderRatio,
   lookAlong,
-  type PlayerInput,
   shoulderBehindRatio,
   shoulderDropRatio,
   swayAt,

@@ -1,5 +1,5 @@
 import { type MutablePose, makePose, type Pose } from 'threepoint/core/math/pose';
-import { fromAxes, identity, quat, rotate, rotationBetween, slerp } from 'threepoint/core/math/quat';
+import { fromAxes, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import {
   add,
@@ -77,12 +77,3 @@ const toNock = vec3(0, 0, 0);
 /** Returns the nocking point of a bow without an arrow. */
 export const nockingPointOf = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   add(arrowRestOf(bow, target), rotate(bow.orientation, stringInBow, toNock), target);
-
-const arc = quat(0, 0, 0, 1);
-const turned = vec3(0, 0, 0);
-
-/** Writes the unit vector at `share` of the shorter arc from a to b. */
-export function turnTowards(a: Vec3, b: Vec3, share: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
-  rotate(slerp(identity, rotationBetween(a, b, arc), share, arc), a, turned);
-  return normalise(turned, a, target);
-}

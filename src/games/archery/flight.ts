@@ -1,5 +1,6 @@
+import { quadraticRoots } from 'threepoint/core/math/quadratic';
 import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { fallTime, gravity, type Launch, launchDirection, positionAt, roots } from '../ballistics';
+import { fallTime, gravity, type Launch, launchDirection, positionAt } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
 
@@ -30,7 +31,7 @@ const crossings: number[] = [];
 export function timeToTarget(launch: Launch, { centre, normal, radius }: Target): number | null {
   const towards = dot(normal, launch.velocity);
   const away = dot(normal, subtract(launch.position, centre, point));
-  for (const time of roots(-0.5 * gravity * normal.y, towards, away, crossings)) {
+  for (const time of quadraticRoots(-0.5 * gravity * normal.y, towards, away, crossings)) {
     if (time < 0 || towards - gravity * normal.y * time >= 0) continue;
     if (distance(positionAt(launch, time, point), centre) <= radius) return time;
   }

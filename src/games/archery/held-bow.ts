@@ -1,8 +1,9 @@
 import { smoothingFactor } from 'threepoint/core/math/damper';
 import { makePose, type Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
+import { slerpDirection } from 'threepoint/core/math/slerp-direction';
 import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { bowDirection, bowInHand, nockingPointOf, turnBow, turnTowards } from './bow-pose';
+import { bowDirection, bowInHand, nockingPointOf, turnBow } from './bow-pose';
 
 /** A press takes the bow out of the other hand within this distance of the fist from its grip [m]. */
 export const takeReach = 0.1;
@@ -80,7 +81,7 @@ export class HeldBow {
   settle(delta: number): void {
     if (!this.#settling) return;
     bowDirection(this.inHand, ahead);
-    turnTowards(this.#settling, ahead, smoothingFactor(settleHalfLife, delta), this.#settling);
+    slerpDirection(this.#settling, ahead, smoothingFactor(settleHalfLife, delta), this.#settling);
     if (dot(this.#settling, ahead) > settled) this.#settling = null;
   }
 

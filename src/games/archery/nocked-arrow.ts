@@ -2,6 +2,7 @@ import type { Button } from 'threepoint/core/input/button-presses';
 import { clamp, damp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper';
 import { makePose, type Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
+import { slerpDirection } from 'threepoint/core/math/slerp-direction';
 import {
   addScaled,
   copyVec3,
@@ -15,7 +16,7 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { BowView } from './archery-state';
 import { braceHeight, maximumDraw } from './bow';
-import { arrowRestOf, bowDirection, turnBow, turnTowards } from './bow-pose';
+import { arrowRestOf, bowDirection, turnBow } from './bow-pose';
 
 /** Half-life of a drawn arrow's direction [s]. */
 export const aimHalfLife = 0.05;
@@ -93,9 +94,9 @@ export class NockedArrow {
     const behind = dot(line, reference) > 0;
     const draw = behind ? clamp(length(line) - braceHeight, 0, maximumDraw) : 0;
     const share = smoothstep(handAims, lineAims, draw);
-    if (behind) turnTowards(held, normalise(line, undefined, line), share, goal);
+    if (behind) slerpDirection(held, normalise(line, undefined, line), share, goal);
     else copyVec3(held, goal);
-    turnTowards(direction, goal, this.#smoothing(aimHalfLife * share, delta), direction);
+    slerpDirection(direction, goal, this.#smoothing(aimHalfLife * share, delta), direction);
     if (delta > 0) this.#drawSpeed = damp(this.#drawSpeed, (draw - this.draw) / delta, drawSpeedHalfLife, delta);
     this.draw = draw;
     return this.#settle(delta);
@@ -104,7 +105,7 @@ export class NockedArrow {
   /** Draws with the button, while the bow hand aims. Returns whether this frame anchors the draw. */
   drawWithButton(inHand: Pose<'floor'>, delta: number): boolean {
     this.#leap(bowDirection(inHand, held));
-    turnTowards(this.direction, held, this.#smoothing(oneHandedAimHalfLife, delta), this.direction);
+    slerpDirection(this.direction, held, this.#smoothing(oneHandedAimHalfLife, delta), this.direction);
     this.draw = Math.min(oneHandedDraw, this.draw + oneHandedDrawSpeed * delta);
     if (this.draw < oneHandedDraw) this.stage = this.#stageOfDraw();
     else if (this.stage !== 'anchored') return this.#anchor();

@@ -1,6 +1,7 @@
 import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
-import { minimumJerk, type PlayerInput, yawOf } from '../simulated-body';
+import type { PlayerInput } from '../player-input';
+import { minimumJerk, yawOf } from '../simulated-body';
 import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';
 
 /** What a pointer asks of an archer. */

@@ -19,7 +19,13 @@ import {
 } from 'threepoint/core/math/vec3';
 import { fallTime, type Launch, positionAt } from '../ballistics';
 import { fistOf, thumbOf } from '../fist';
-import { ballRadius, basketRadius } from './flight';
+import { ballRadius } from './flight';
+
+/** Radius of the basket's opening, and depth of its straight walls [m]. */
+export const basketRadius = 0.22;
+export const basketDepth = 0.3;
+/** Radius of the rim's tube about the edge of the opening [m]. */
+export const rimTube = 0.017;
 
 /** Returns whether the middle of a launched ball goes into a level basket whose opening is here (arena frame). */
 export function landsIn(launch: Launch, basket: Vec3): boolean {

@@ -22,15 +22,8 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { wristAround } from '../fist';
-import {
-  armRatio,
-  halfShoulderRatio,
-  type PlayerInput,
-  shoulderBehindRatio,
-  shoulderDropRatio,
-  swayAt,
-  yawOf,
-} from '../simulated-body';
+import type { PlayerInput } from '../player-input';
+import { armRatio, halfShoulderRatio, shoulderBehindRatio, shoulderDropRatio, swayAt, yawOf } from '../simulated-body';
 
 /** The body and the station of a player. */
 export interface PlayerBody {

@@ -1,5 +1,6 @@
 import type { BallEvent, BallPlace, BallState, Basket, TimedLaunch } from './ball-state';
-import { firstBasketContact, floorBounceOf, floorContactTime } from './flight';
+import { firstBasketContact } from './basket-collision';
+import { floorBounceOf, floorContactTime } from './flight';
 import { round, roundedLaunch, type Step, withBall } from './state-changes';
 
 type InAir = Extract<BallPlace, { on: 'air' }>;

@@ -16,7 +16,8 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { fallTime, velocityAt } from '../ballistics';
-import type { PlayerInput } from '../simulated-body';
+import type { PlayerInput } from '../player-input';
+import type { BallBot, BotView } from './ball-bot';
 import type { BallState, TimedLaunch } from './ball-state';
 import { gripRadius } from './basket';
 import { ballInAir } from './flight';
@@ -27,7 +28,6 @@ import {
   type PlayerBody,
   type PlayerPostures,
 } from './player-postures';
-import type { BallBot, BotView } from './simulated-thrower';
 import { ballMatchTime } from './state-selectors';
 
 /** Half-life of each of two filters in series for the basket's motion [s], which make it start softly. */

@@ -5,19 +5,18 @@ import {
   add,
   addScaled,
   copyVec3,
-  distance,
   lerp,
   normalise,
   scale,
-  setVec3,
   subtract,
   up,
   type Vec3,
   vec3,
 } from 'threepoint/core/math/vec3';
 import { gravity } from '../ballistics';
-import { minimumJerk, type PlayerInput } from '../simulated-body';
-import type { BallState } from './ball-state';
+import type { PlayerInput } from '../player-input';
+import { minimumJerk } from '../simulated-body';
+import { type BallBot, type BotView, nearestBall } from './ball-bot';
 import {
   copyPosture,
   createPlayerPostures,
@@ -28,22 +27,9 @@ import {
   type PlayerPostures,
 } from './player-postures';
 import { ballMatchTime } from './state-selectors';
-import { rackPosition, stations } from './stations';
-import { ThrowPostures, type UnderarmThrow } from './throw-postures';
-
-/** A bot's view of the match: the state, and its own player index. */
-export interface BotView {
-  readonly state: BallState;
-  readonly player: number;
-  /** The centre of the basket's opening as drawn, arena frame. Default: that of the state. */
-  readonly basket?: Vec3;
-}
-
-/** A built-in player, which produces hands and buttons for a whole match. */
-export interface BallBot {
-  /** Returns head, hands (own floor frame) and buttons at `time` [s, not decreasing]. */
-  follow(time: number, sight: BotView): PlayerInput;
-}
+import { rackPosition } from './stations';
+import { ThrowPostures } from './throw-postures';
+import { UnderarmThrow } from './underarm-throw';
 
 interface Movement {
   readonly to: PlayerPosture;
@@ -65,28 +51,7 @@ const betweenThrows = 0.75;
 /** Scatter of the throws' targets [m]. */
 const scatter = 0.14;
 
-// Scratch of one call.
-const rack = vec3(0, 0, 0);
-const mark = vec3(0, 0, 0);
 const rise = vec3(0, 0, 0);
-
-/** Returns the nearest ball in a rack; null: none is within reach, or no round runs. */
-export function nearestBall({ state, player }: BotView): number | null {
-  if (state.phase !== 'running') return null;
-  const station = stations[state.players[player]?.station ?? 0];
-  if (!station) return null;
-  setVec3(mark, station.position.x, 1, station.position.z);
-  let nearest: number | null = null;
-  let least = 1;
-  for (let ball = 0; ball < state.balls.length; ball++) {
-    if (state.balls[ball]?.on !== 'rack') continue;
-    const far = distance(rackPosition(ball, state.options.balls, rack), mark);
-    if (far >= least) continue;
-    nearest = ball;
-    least = far;
-  }
-  return nearest;
-}
 
 /** Returns whether it is this thrower's turn, and nobody has just thrown. */
 function mayThrow({ state, player }: BotView): boolean {
@@ -195,7 +160,7 @@ class Thrower implements BallBot {
     // The ball's position in the hand depends slightly on the throw: one iteration suffices.
     const nearly = velocityFrom(moves.release(side));
     const velocity = velocityFrom(moves.leaving(side, normalise(nearly)));
-    const swung = moves.makeThrow();
+    const swung = new UnderarmThrow(this.#postures, moves);
     swung.aim(side, velocity, basket);
     const { wound, thrown, seconds } = swung;
     return [

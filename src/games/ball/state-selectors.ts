@@ -1,7 +1,8 @@
 import type { Side } from 'threepoint/core/math/side';
 import { addScaled, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
 import type { BallPlace, BallState } from './ball-state';
-import { ballInAir, ballOnFloor, ballRadius, basketRadius } from './flight';
+import { basketRadius } from './basket';
+import { ballInAir, ballOnFloor, ballRadius } from './flight';
 import { rackPosition } from './stations';
 
 /** Length of a tick [s]. */

@@ -16,7 +16,10 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Launch } from '../ballistics';
-import { minimumJerk, type PlayerInput } from '../simulated-body';
+import type { PlayerInput } from '../player-input';
+import { minimumJerk } from '../simulated-body';
+import type { BallBot, BotView } from './ball-bot';
+import { nearestBall } from './ball-bot';
 import {
   copyPosture,
   createPlayerPostures,
@@ -27,10 +30,10 @@ import {
   type PlayerPostures,
 } from './player-postures';
 import { createSimulatedHolder } from './simulated-holder';
-import { type BallBot, type BotView, nearestBall } from './simulated-thrower';
 import { ballInHand } from './state-selectors';
 import { rackPosition } from './stations';
-import { ThrowPostures, type UnderarmThrow } from './throw-postures';
+import { ThrowPostures } from './throw-postures';
+import { UnderarmThrow } from './underarm-throw';
 
 /** The mouse input that steers a player; own floor frame. */
 export interface BallSteering {
@@ -124,7 +127,7 @@ class SteeredThrower implements SteeredPlayer {
     this.#arenaFromFloor = body.arenaFromFloor;
     this.#postures = createPlayerPostures(body);
     this.#moves = new ThrowPostures(this.#postures);
-    this.#swung = this.#moves.makeThrow();
+    this.#swung = new UnderarmThrow(this.#postures, this.#moves);
   }
 
   get aim(): Launch | null {

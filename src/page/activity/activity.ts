@@ -11,7 +11,7 @@ import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
 import type { CameraScene } from '../scene/desktop-view';
 import type { ActivityContext, ActivitySettings, ActivitySettingsWriter } from './activity-context';

@@ -9,7 +9,7 @@ import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, up, vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
@@ -23,7 +23,7 @@ import { eventHaptics } from './sound/archery-haptics';
 /** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
 
-/** Past the archer to the targets. */
+/** The view past the archer to the targets. */
 export const rangeScene: CameraScene = {
   'third-person': { offset: { x: -1.35, y: 0.95, z: 3.3 }, aim: { x: 0.15, y: -0.2, z: -2 }, fovDegrees: 46 },
   front: { offset: { x: 1.6, y: 0.35, z: -2.7 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 46 },

@@ -13,7 +13,7 @@ import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/ar
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import { createMatch, type Match } from 'threepoint-games/match';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */
@@ -33,7 +33,7 @@ export interface ArcheryFrame {
   readonly haptics: readonly HapticPulse[];
 }
 
-/** Returns what tools may know of a round. */
+/** Returns the state of a round as plain data, for tests and tools. */
 export const probeOf = ({ state, bow }: ArcheryFrame) => ({
   name: 'archery' as const,
   phase: state.phase,
@@ -52,7 +52,7 @@ export const probeOf = ({ state, bow }: ArcheryFrame) => ({
 
 export type ArcheryProbe = ReturnType<typeof probeOf>;
 
-/** The round in the numbers of a scoreboard. */
+/** Returns the figures of the scoreboard. */
 export function roundOf({ state }: ArcheryFrame) {
   return {
     score: state.score,
@@ -114,7 +114,7 @@ export class ArcheryPlay {
     return this.#newest;
   }
 
-  /** The tracked frame and its buttons become play. */
+  /** Advances the round by a tracked frame and its buttons. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame {
     const followed = this.#handsReplaced ? { ...frame, suspended: true as const } : frame;
     const { bow, actions, cues, haptics } = this.#gestures.follow(followed, buttons);
@@ -179,17 +179,17 @@ export class ArcheryPlay {
     this.#signalled = false;
   }
 
-  /** The user's floor frame changes with the next frame. */
+  /** Announces that the floor frame jumps before the next frame. */
   discontinuity(): void {
     this.#gestures.discontinuity();
   }
 
-  /** Other hands hold the bow from the next frame on. They do not release the arrow that the previous hands drew. */
+  /** Announces that other hands hold the bow from the next frame on. They do not release a drawn arrow. */
   replaceHands(): void {
     this.#handsReplaced = true;
   }
 
-  /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
+  /** Starts the clock of a waiting round with the next frame, instead of with the first arrow. */
   signal(): void {
     this.#signalled = true;
   }

@@ -27,7 +27,7 @@ export interface ArcheryViewOptions {
   readonly onCaption: (text: string) => void;
 }
 
-/** Everything that is seen of archery. */
+/** Creates the view of archery: range, targets, arrows, bow, boards and sounds. */
 export function createArcheryView({ quality, floorFromArena, distances, onCaption }: ArcheryViewOptions) {
   const arenaFromFloor = invertTransform(floorFromArena);
   const range = createRange(quality, floorFromArena, distances);
@@ -44,15 +44,14 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
   const bow = createBow(quality, braceHeight);
   range.object.add(stands.object, arrows.object, trails.object, scoreboard.object, pops.object, result.object);
   return {
-    /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
+    /** The surroundings of the arena: the whole view except the bow. */
     range,
-    /** The bow in its hand, floor frame; to be added to the scene next to the avatar. */
+    /** The bow in its hand, floor frame. Add it to the scene next to the avatar. */
     bow: bow.object,
     result,
     sound: sounds.stage,
     /**
-     * Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. No bow is seen where it
-     * is null.
+     * Draws a state at a match time [s], with the tracked bow and head, floor frame. `bowView`: null hides the bow.
      */
     show(state: ArcheryState, bowView: BowView | null, matchTime: number, head: Pose<'floor'>): void {
       shown = state;
@@ -80,7 +79,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
     showScoreboard(visible: boolean): void {
       scoreboard.object.visible = visible;
     },
-    /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
+    /** Plays and captions the events since the last frame. Cues of the bow are in the floor frame. */
     playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
       if (shown) sounds.playEvents(shown, events, cues);
     },

@@ -13,10 +13,11 @@ import type { BallFrame, PlayerFrame } from './match/ball-frame';
 import { BallSounds } from './sound/ball-sounds';
 import { createAimArc } from './view/aim-arc';
 import { Balls } from './view/balls';
-import { type DisplayedMatch, type DisplayedPlayer, eventLine, waitingLine } from './view/board-drawing';
 import { type Boards, createBoards } from './view/boards';
 import { CatchPopups } from './view/catch-popups';
+import type { DisplayedMatch, DisplayedPlayer } from './view/displayed-match';
 import { createLobbySheet, type LobbySheet } from './view/lobby-sheet';
+import { eventLine, waitingLine } from './view/match-texts';
 import { createNameLabels, type NameLabels } from './view/name-labels';
 import { createWickerBasket } from './view/wicker-basket';
 import type { SeatVoices } from './voices/seat-voices';
@@ -65,7 +66,7 @@ const writtenOf = (attendant: DrawnPlayer | null): DisplayedPlayer | null =>
 const stationOf = ({ players }: BallState, me: number | null): number | null =>
   me === null ? null : (players[me]?.station ?? null);
 
-/** Everything that is seen of the ball game but the people. */
+/** The view of the ball game without the players' bodies. */
 export class BallView {
   /** The parts in the user's floor frame, to be added to the scene. */
   readonly own: Group;
@@ -82,7 +83,7 @@ export class BallView {
   readonly #arc = createAimArc();
   #floorFromArena = origin;
   #shown: BallScene | null = null;
-  /** What happened last, in a sentence, and until when by the page's time it is on the board. */
+  /** The line of the last event, and the page time until which the board shows it [s]. */
   #line = { text: '', until: Number.NEGATIVE_INFINITY };
 
   constructor({ quality, balls, onCaption }: BallViewOptions) {
@@ -126,7 +127,7 @@ export class BallView {
     this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
   }
 
-  /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
+  /** Plays and captions the events since the last frame, and writes them on the board. Call it after `show`. */
   playEvents(events: readonly BallEvent[], cues: readonly BallCue[]): void {
     if (!this.#shown) return;
     const { state, pageTime, attendants: people, me, opening } = this.#shown;

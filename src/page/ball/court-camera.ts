@@ -8,7 +8,7 @@ import type { BallPlay } from './match/ball-play';
 /** The middle of the court, which a spectator's camera looks at first, floor frame [m]. */
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
 
-/** Past a player to the others, whose names are above their heads. */
+/** The view past a player to the others, whose names are above their heads. */
 const courtScene: CameraScene = {
   'third-person': {
     offset: { x: -0.8, y: 1.05, z: 3.5 },

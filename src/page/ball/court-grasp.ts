@@ -4,7 +4,8 @@ import { type Pose, transformPoint } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { vec3 } from 'threepoint/core/math/vec3';
-import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball/flight';
+import { basketRadius, rimTube } from 'threepoint-games/ball/basket';
+import { ballRadius } from 'threepoint-games/ball/flight';
 import { ballInPalm } from 'threepoint-games/fist';
 import type { BallPlay } from './match/ball-play';
 

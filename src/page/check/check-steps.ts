@@ -1,7 +1,7 @@
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { type WorldName, worldNames } from './headset-report';
 
-/** What a step measures. */
+/** The quantity that a step measures. */
 export type Measured =
   | { readonly kind: 'nothing' }
   | { readonly kind: 'noise' }

@@ -8,7 +8,7 @@ export interface CheckSwitches {
   readonly quality?: Quality;
   /** The factor of all durations. */
   readonly pace: number;
-  /** What is wrong with the address, in sentences. */
+  /** The problems of the address, one sentence each. */
   readonly complaints: readonly string[];
 }
 

@@ -110,7 +110,7 @@ export class CheckWorlds {
     return this.#studio.scene;
   }
 
-  /** Puts the user into a world. */
+  /** Shows a world. */
   show(world: WorldName): void {
     this.#world = world;
     const place = { mirror: null, archery: this.#archery.range, ball: this.#court }[world];
@@ -122,7 +122,7 @@ export class CheckWorlds {
     this.#otherBodies.visible = world === 'ball';
   }
 
-  /** Moves what lives in the world, at a time [s], around this user. */
+  /** Updates the world to a time [s] around this user. */
   update(time: number, frame: TrackingFrame): void {
     const { x, z } = frame.head.position;
     this.#studio.follow(x, z);

@@ -5,7 +5,8 @@ import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { headingOf } from 'threepoint/core/tracking/heading';
-import { createVrPanel, fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr-panel';
+import { fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/canvas-drawing';
+import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { disposeTree } from '../scene/dispose-tree';
 
 const [width, height] = [900, 300];

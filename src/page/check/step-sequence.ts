@@ -1,6 +1,6 @@
 import type { CheckStep, Measured } from './check-steps';
 
-/** What a sequence calls, in the frame in which it happens. */
+/** The callbacks of a sequence, called within the frame of their event. */
 export interface StepListener {
   /** A step begins; nothing of it counts yet. */
   begin(step: CheckStep): void;
@@ -52,7 +52,7 @@ export class StepSequence {
     return this.#index >= this.#steps.length;
   }
 
-  /** What frames count for now; null: they do not count. */
+  /** The quantity that frames measure now; null: they do not count. */
   get measured(): Measured | null {
     return this.#counting ? (this.current?.measured ?? null) : null;
   }

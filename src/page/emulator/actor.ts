@@ -2,7 +2,7 @@ import { type Calibration, defaultCalibration } from 'threepoint/core/body/calib
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
-/** Moves in place of a person while no one wears a headset. Performs from its first frame on. */
+/** Creates the actor, which moves the body while no headset is worn. Its performance starts with its first frame. */
 export function createActor() {
   let began: number | null = null;
   let body = defaultCalibration;

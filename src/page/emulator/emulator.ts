@@ -56,7 +56,7 @@ export class Emulator {
    * Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons.
    */
   drive(frame: TrackingFrame, buttons?: Buttons): void {
-    // Else the panel puts everything back where its mouse left it, in every frame.
+    // In the manual mode the panel would reset every pose in each frame.
     this.device.controlMode = 'programmatic';
     place(this.device, frame.head);
     for (const side of sides) {
@@ -121,7 +121,7 @@ interface OffsetSpaces {
   getOffsetReferenceSpace(origin: unknown): unknown;
 }
 
-/** Gives iwer the matrix of an offset, which it takes the transform itself for: every pose in such a space is NaN. */
+/** Passes the matrix of an offset to iwer, which uses the transform itself as a matrix: every pose would be NaN. */
 function fixOffsetSpaces(spaces: OffsetSpaces): void {
   const { getOffsetReferenceSpace } = spaces;
   spaces.getOffsetReferenceSpace = function (this: OffsetSpaces, origin) {
@@ -152,7 +152,7 @@ function markAsTracked(device: XRDevice): void {
 /** The controllers of a headset in iwer's configuration; undefined: it has none. */
 type ControllerConfig = XRDeviceConfig['controllerConfig'];
 
-/** What iwer places in the room. */
+/** An object that iwer places in the room. */
 interface Placed {
   readonly position: { readonly x: number; readonly y: number; readonly z: number };
   readonly quaternion: { readonly x: number; readonly y: number; readonly z: number; readonly w: number };

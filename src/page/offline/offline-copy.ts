@@ -6,7 +6,7 @@ import { pageFolder } from 'threepoint-ui/page-folder';
  */
 export type OfflineCopyState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
 
-/** Resolves when the worker has its files, or never will. */
+/** Resolves when the worker has installed its files, or has failed. */
 function settled(worker: ServiceWorker): Promise<void> {
   return new Promise((resolve) => {
     const look = () => {

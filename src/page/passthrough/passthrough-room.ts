@@ -28,7 +28,7 @@ export interface PassthroughOptions {
 
 /** The objects of a place that stand for the world around it, and give way to the user's own room. */
 export const scenery = ['sky', 'ground', 'landscape', 'backstop', 'tufts'];
-/** A haze that begins nowhere in a room [m]. */
+/** The start of the fog in passthrough, beyond any room [m]. */
 const hazeBeyond = 1e5;
 const shadowSize = 12;
 const shadowDarkness = 0.4;

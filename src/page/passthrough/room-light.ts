@@ -17,7 +17,7 @@ interface EstimatingFrame {
   getLightEstimate?(probe: LightProbe): LightEstimate | null;
 }
 
-/** A light brighter than this would leave the colours of people white. */
+/** The largest light intensity; a brighter light would overexpose the avatar. */
 const brightest = 1.5;
 /** The irradiance of the constant term of spherical harmonics: the square root of π, halved. */
 const constantTerm = Math.sqrt(Math.PI) / 2;

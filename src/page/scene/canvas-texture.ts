@@ -11,7 +11,7 @@ export function createCanvasTexture(width: number, height: number, quality: Qual
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;
-  // Writing is seen on few pixels and has to stay readable from the side.
+  // Anisotropic filtering keeps text legible at a glancing angle.
   texture.anisotropy = Math.max(4, anisotropyOf(quality));
   return {
     texture,

@@ -25,9 +25,9 @@ export interface WindowBox {
   readonly bottom: number;
 }
 
-/** Seconds in which the camera makes half the way to a body that walks. */
+/** Half-life of the camera's motion towards the body [s]. */
 const followHalfLife = 0.35;
-/** What is no taller [m] is seen whole from where the view begins. */
+/** A body up to this height [m] fits into the initial view. */
 const tallest = 1.95;
 /** The height of the pelvis of a standing person [m]. */
 const pelvisHeight = 1;
@@ -116,7 +116,7 @@ export class DesktopView {
     this.#project();
   }
 
-  /** From where and whereto the camera looks. */
+  /** The pose of the camera. */
   get pose(): Pose<'floor'> {
     const { position, quaternion } = this.camera;
     return {
@@ -162,7 +162,7 @@ export class DesktopView {
     this.#project();
   }
 
-  /** Back to where the view began. */
+  /** Moves the camera back to the start of the view. */
   recentre(): void {
     this.#place();
     this.#project();
@@ -175,7 +175,7 @@ export class DesktopView {
     return { origin: { ...origin }, direction: { ...direction } };
   }
 
-  /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
+  /** Sets the height of the body [m]: the view also fits bodies taller than people. */
   setHeight(height: number): void {
     const rise = Math.max(0, height - tallest) / 2;
     if (rise === this.#rise) return;
@@ -217,7 +217,7 @@ export class DesktopView {
     return box;
   }
 
-  /** Puts the camera where the view begins. */
+  /** Moves the camera to the start of the view. */
   #place(): void {
     if (this.#view === 'first-person') return;
     const { camera } = this;

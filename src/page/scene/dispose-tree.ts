@@ -2,8 +2,7 @@ import { InstancedMesh, Mesh, type Object3D, Sprite } from 'three';
 import { texturesOf } from './material-textures';
 
 /**
- * Removes an object, and gives back what the graphics card holds for it and all below it: geometries, materials and
- * their pictures.
+ * Removes an object, and disposes the geometries, materials and textures of it and its descendants.
  */
 export function disposeTree(root: Object3D): void {
   root.removeFromParent();

@@ -3,14 +3,14 @@ import { merged } from './painted-geometry';
 
 type PaintedMesh = Mesh<BufferGeometry, MeshLambertMaterial>;
 
-/** Whether all of a mesh's look is in its painted geometry. */
+/** Returns whether vertex colours alone define the look of a mesh. */
 function isPainted(node: Object3D): node is PaintedMesh {
   if (!(node instanceof Mesh) || 'isInstancedMesh' in node) return false;
   const { material } = node;
   return material instanceof MeshLambertMaterial && material.vertexColors && !material.map && !material.transparent;
 }
 
-/** What painted meshes must share to be one. */
+/** Returns the properties that meshes must share to be merged. */
 const kindOf = ({ castShadow, receiveShadow, material, renderOrder }: PaintedMesh): string =>
   [castShadow, receiveShadow, material.side, renderOrder].join();
 

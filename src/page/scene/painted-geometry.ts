@@ -30,7 +30,7 @@ export const paintedBox = (
   color: string,
 ): BufferGeometry => painted(new BoxGeometry(width, height, depth).translate(x, y, z), color);
 
-/** One geometry, one draw call. */
+/** Merges geometries into one, and disposes them. */
 export function merged(geometries: readonly BufferGeometry[]): BufferGeometry {
   const whole = mergeGeometries([...geometries]);
   for (const geometry of geometries) geometry.dispose();

@@ -41,11 +41,11 @@ export function createVignette() {
   let closedAt = Number.NEGATIVE_INFINITY;
   return {
     object,
-    /** Dark at this time [s]. */
+    /** Darkens the edges from this time on [s]. */
     close(time: number): void {
       closedAt = time;
     },
-    /** Round these eyes, floor frame; null: not seen. */
+    /** Places the vignette around these eyes, floor frame; null: hidden. */
     show(time: number, eyes: Pose<'floor'> | null): void {
       const darkness = 1 - smoothstep(0, openingSeconds, time - closedAt);
       material.uniforms.darkness!.value = darkness;

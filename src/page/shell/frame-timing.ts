@@ -4,7 +4,7 @@ import { recordOf } from 'threepoint/core/records';
 export const stageNames = ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render'] as const;
 export type StageName = (typeof stageNames)[number];
 
-/** Frames looked back on: four seconds at 60 Hz. */
+/** The number of frames in a summary: four seconds at 60 Hz. */
 const length = 240;
 /** A frame that took more than this many intervals of the device came late. */
 const lateAfterIntervals = 1.5;
@@ -132,7 +132,7 @@ export class FrameTiming {
     this.#rateHz = rateHz;
   }
 
-  /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
+  /** Discards all frames, which are not comparable after a pause, a hidden page or another frame rate. */
   reset(): void {
     for (const each of [this.#total, this.#intervals, ...Object.values(this.#rings)]) each.count = 0;
     this.#lastTimestamp = Number.NaN;

@@ -24,12 +24,12 @@ import type { Switches } from './switches';
 
 /** The rate [Hz] at which a window, and the emulator in it, draws. */
 const windowRateHz = 60;
-/** What a headset draws at that does not say [Hz]. */
+/** The assumed rate of a headset that reports none [Hz]. */
 const usualRateHz = 72;
-/** How far one push of a stick turns [rad]. */
+/** The angle of a snap turn [rad]. */
 const snapAngle = Math.PI / 6;
 
-/** What entering would start, and why that is not a real headset; null: it is, or was not asked for. */
+/** The kind of session that entering would start, and the reason if it is not a real headset; null: none. */
 export interface Readiness {
   readonly real: boolean;
   readonly sentence: string | null;
@@ -145,7 +145,7 @@ export class Headset {
     return this.#session?.rates.rates ?? [];
   }
 
-  /** What pictures give up so that their frames are in time. */
+  /** The reductions of picture quality that keep frames in time. */
   get savings(): Savings {
     return this.#session?.rates.savings ?? unjudgedSavings;
   }
@@ -155,7 +155,7 @@ export class Headset {
     this.#session?.rates.observe(time, workSeconds);
   }
 
-  /** What frame times are measured against [Hz]. */
+  /** The rate against which frame times are measured [Hz]. */
   get pictureRateHz(): number {
     return this.#session && !this.#emulator ? (this.#session.xr.frameRate ?? usualRateHz) : windowRateHz;
   }

@@ -4,7 +4,7 @@ import { browserStorage, createPreferenceStore, type PreferenceStore } from './p
 import { createSettings, type Settings, SettingsWriter } from './settings';
 import { readSwitches, type Switches } from './switches';
 
-/** What a visit begins with: what the address asks for, and what this browser remembers. */
+/** The switches of the address, and the settings that this browser has stored. */
 export interface PageContext {
   readonly switches: Switches;
   readonly store: PreferenceStore;

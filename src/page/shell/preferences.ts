@@ -55,14 +55,14 @@ const schema = v.object({
   mirrorAnchor: v.optional(v.pipe(v.string(), v.maxLength(200))),
 });
 
-/** What the page remembers from one visit to the next, on this device only. */
+/** The preferences that the browser stores on this device. */
 export type Preferences = v.InferOutput<typeof schema>;
 
 const key = 'threepoint.preferences.1';
 
 type Part = { readonly [Key in keyof Preferences]: Preferences[Key] | undefined };
 
-/** undefined in a part takes what was there away. */
+/** Merges a part into preferences; undefined removes an entry. */
 const joined = (preferences: Preferences, part: Part): Preferences =>
   Object.fromEntries(Object.entries({ ...preferences, ...part }).filter(([, value]) => value !== undefined));
 
@@ -102,10 +102,10 @@ export function createPreferenceStore(
   const read = parsePreferences(storage?.getItem(key) ?? null);
   let preferences = read.preferences;
   let reported = false;
-  /** Whether the storage has taken what this window last wrote. */
+  /** Whether the last write of this window succeeded. */
   let kept = true;
 
-  /** What the storage has now: another window of this page may have written since. null: nothing that can be used. */
+  /** Reads the storage again, because another window may have written to it; null: nothing usable is stored. */
   function stored(): Preferences | null {
     const text = storage?.getItem(key) ?? null;
     const { preferences, complaint } = parsePreferences(text);
@@ -133,7 +133,7 @@ export function createPreferenceStore(
         storage?.setItem(key, JSON.stringify(preferences));
         kept = true;
       } catch (error) {
-        // A full or forbidden storage costs the memory of the next visit, nothing of this one.
+        // A full or forbidden storage affects only later visits.
         if (!(error instanceof DOMException)) throw error;
         reportDenial();
       }

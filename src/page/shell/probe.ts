@@ -68,7 +68,7 @@ function avatarOf({ current, name }: ProbeParts['avatar'], { view }: ProbeParts[
   };
 }
 
-/** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
+/** Returns the memory and draw calls of the graphics device, and the darkness of the vignette (0 to 1). */
 const drawingOf = ({ renderer, vignette, drawn, savings }: ProbeParts['stage']) => ({
   ...renderer.info.memory,
   programs: renderer.info.programs?.length ?? 0,

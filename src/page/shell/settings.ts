@@ -3,7 +3,7 @@ import type { ActivitySettings } from '../activity/activity-context';
 import type { PreferenceStore, Preferences } from './preferences';
 import type { Switches } from './switches';
 
-/** What the user set, for this visit. The object is live; a SettingsWriter alone changes it. */
+/** The user's settings for this visit. The object is live; only a SettingsWriter changes it. */
 export interface Settings extends ActivitySettings {
   readonly mirror: boolean;
   readonly upperBodyOnly: boolean;
@@ -37,7 +37,7 @@ export interface Settings extends ActivitySettings {
   readonly calibrationSource: string;
 }
 
-/** What the address asks for, else what was remembered, else what suits most. */
+/** Creates the settings from the address, else from stored preferences, else from defaults. */
 export function createSettings(switches: Switches, { preferences }: Pick<PreferenceStore, 'preferences'>): Settings {
   return {
     mirror: preferences.mirror ?? true,
@@ -89,13 +89,13 @@ export class SettingsWriter {
     this.#onChange = onChange;
   }
 
-  /** For this visit. */
+  /** Changes settings for this visit. */
   change(part: Partial<Settings>): void {
     Object.assign(this.#settings, part);
     this.#onChange();
   }
 
-  /** For this visit and, on this device, for later ones. */
+  /** Changes settings for this visit, and stores them on this device. */
   keep(part: StoredSettings): void {
     this.#store.remember(part);
     this.change(part);

@@ -23,7 +23,7 @@ const longestStep = 0.1;
 /** The height of the pelvis as a share of the eye height, without a body. */
 const pelvisShare = 0.58;
 
-/** One picture: its people and its viewer. */
+/** The content of one picture: avatar, viewer and mirror. */
 export interface Picture {
   readonly time: number;
   /** null: the head is not seen. */
@@ -45,7 +45,7 @@ export interface Picture {
   readonly savings: Savings;
 }
 
-/** What is always there to be drawn, and the cameras it is drawn with. */
+/** The renderer with its studio, mirror and cameras. */
 export class Stage {
   readonly renderer: ReturnType<typeof createRenderer>;
   readonly studio: Studio;
@@ -79,7 +79,7 @@ export class Stage {
     this.renderer.info.autoReset = false;
   }
 
-  /** What the newest picture gave up. */
+  /** The reductions of the newest picture. */
   get savings(): Savings {
     return this.#savings;
   }

@@ -33,7 +33,7 @@ const schema = v.object({
   participant: v.optional(v.pipe(v.string(), v.regex(/^P\d{2,3}$/))),
 });
 
-/** What each switch takes, in words. */
+/** The valid values of each switch, in words. */
 const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
   actor: 'on or off',
   panel: 'on or off',

@@ -55,7 +55,7 @@ export class UserCalibration {
     this.forget();
   }
 
-  /** The body found out other measures by itself. */
+  /** Describes a calibration that the body has estimated by itself. */
   measured(source: CalibrationSource): void {
     const text = sourceTexts[source];
     if (text) this.#options.writer.change({ calibrationSource: text });
@@ -70,7 +70,7 @@ export class UserCalibration {
     );
   }
 
-  /** The user goes back to where a visit begins. */
+  /** Moves the user, or the desktop camera, back to the start. */
   recentre(): void {
     const { headset, view, body } = this.#options;
     if (headset.worn) headset.recentre();

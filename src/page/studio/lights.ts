@@ -13,9 +13,9 @@ import { createBlobShadow } from 'threepoint/avatar/blob-shadow';
 import type { Quality } from '../scene/renderer';
 import type { DistantLight, EstimatedLight, Lighting } from '../scene/surroundings';
 
-/** How high above the floor the light that throws shadows aims [m]. */
+/** The height of the key light's target above the floor [m]. */
 const aimHeight = 0.9;
-/** How blurred what surfaces reflect is to begin with [rad]. */
+/** The blur of reflections [rad]. */
 const reflectionBlur = 0.03;
 
 function setLight(light: DirectionalLight, { color, intensity, from }: DistantLight): void {

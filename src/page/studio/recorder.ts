@@ -126,7 +126,7 @@ export class Recorder {
     this.#sampledAt = null;
   }
 
-  /** Another moves the body: a replay is over. */
+  /** Ends a replay, because another source moves the body. */
   endReplay(): void {
     if (this.#mode === 'replaying') this.#end();
   }
@@ -184,8 +184,8 @@ export class Recorder {
   }
 
   /**
-   * The place of a wish for a recording among all of them: what it brings may take a while, and comes too late for a
-   * newer one.
+   * Returns the number of a new request for a recording. A recording that loads slowly is discarded if a newer request
+   * has been met.
    */
   nextRequest(): number {
     this.#requests += 1;

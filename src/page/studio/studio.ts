@@ -28,7 +28,7 @@ const floorRadius = 24;
  */
 const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
 
-/** A sphere of smooth colour, darker overhead; drawn behind everything, deaf to fog. */
+/** A sphere of smooth colour, darker overhead; drawn behind everything and without fog. */
 function createSky(): Mesh {
   const material = new ShaderMaterial({
     side: BackSide,
@@ -184,7 +184,7 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
       place = next;
       lights.set(next.lighting);
     },
-    /** Builds again what a lost context took with it. */
+    /** Rebuilds the graphics resources after a lost context. */
     restore: (): void => lights.set(place.lighting),
   };
 }

@@ -3,11 +3,12 @@ import { createIk } from 'threepoint/core/estimation/estimators';
 import { rotate } from 'threepoint/core/math/quat';
 import { distance, length, subtract, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BallBot } from 'threepoint-games/ball/ball-bot';
 import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
 import { BallGestures } from 'threepoint-games/ball/gestures';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { type BallBot, createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
+import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { stations, zoneRadius } from 'threepoint-games/ball/stations';
 import { describe, expect, it } from 'vitest';
 

@@ -14,16 +14,9 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Basket, TimedLaunch } from 'threepoint-games/ball/ball-state';
-import {
-  ballInAir,
-  ballOnFloor,
-  ballRadius,
-  basketDepth,
-  basketRadius,
-  firstBasketContact,
-  floorBounceOf,
-  floorContactTime,
-} from 'threepoint-games/ball/flight';
+import { basketDepth, basketRadius } from 'threepoint-games/ball/basket';
+import { firstBasketContact } from 'threepoint-games/ball/basket-collision';
+import { ballInAir, ballOnFloor, ballRadius, floorBounceOf, floorContactTime } from 'threepoint-games/ball/flight';
 import { gravity, positionAt, velocityAt } from 'threepoint-games/ballistics';
 import { describe, expect, test } from 'vitest';
 import { direction, evenly, seed, vector } from '../../threepoint/core/arbitraries';

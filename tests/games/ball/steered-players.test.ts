@@ -1,11 +1,12 @@
 import { transformPoint } from 'threepoint/core/math/pose';
 import { distance, normalise, subtract, vec3 } from 'threepoint/core/math/vec3';
+import type { BallBot } from 'threepoint-games/ball/ball-bot';
 import type { BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
 import { BallGestures } from 'threepoint-games/ball/gestures';
 import type { PlayerBody } from 'threepoint-games/ball/player-postures';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { type BallBot, createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
+import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { stations } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,

@@ -5,17 +5,10 @@ import { ballRules } from 'threepoint-games/ball/rules';
 import { createDisplayedClock } from 'threepoint-page/ball/match/displayed-clock';
 import { cueCaption, eventCaption } from 'threepoint-page/ball/sound/ball-captions';
 import { eventHaptics } from 'threepoint-page/ball/sound/ball-haptics';
-import {
-  catchesOf,
-  type DisplayedMatch,
-  type DisplayedPlayer,
-  displayName,
-  eventLine,
-  lobbyButtons,
-  seatOfButton,
-  waitingLine,
-  waitingSentence,
-} from 'threepoint-page/ball/view/board-drawing';
+import type { DisplayedMatch, DisplayedPlayer } from 'threepoint-page/ball/view/displayed-match';
+import { displayName } from 'threepoint-page/ball/view/displayed-match';
+import { catchesOf, lobbyButtons, seatOfButton } from 'threepoint-page/ball/view/lobby-drawing';
+import { eventLine, waitingLine, waitingSentence } from 'threepoint-page/ball/view/match-texts';
 import { labelScale } from 'threepoint-page/ball/view/name-labels';
 import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
 import { describe, expect, it } from 'vitest';

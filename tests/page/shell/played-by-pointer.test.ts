@@ -8,7 +8,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import { type ArcheryFrame, ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { CourtInput } from 'threepoint-page/ball/court-input';
 import { BallPlay } from 'threepoint-page/ball/match/ball-play';

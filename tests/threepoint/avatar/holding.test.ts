@@ -5,8 +5,7 @@ import { type Pose, transformPoint } from 'threepoint/core/math/pose';
 import { identity } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { distance, dot, forward, length, reject, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
-import { basketRadius, rimTube } from 'threepoint-games/ball/flight';
+import { basketInHands, basketRadius, gripRadius, rimTube } from 'threepoint-games/ball/basket';
 import { wristAround } from 'threepoint-games/fist';
 import { expect, test } from 'vitest';
 

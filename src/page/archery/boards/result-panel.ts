@@ -3,7 +3,7 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryState } from 'threepoint-games/archery/archery-state';
 import { buttonUnder, createSheet, type SheetContent, type SheetSize } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
-import { paintResult, restartButton, resultSize } from './scoreboard-drawing';
+import { paintResult, restartButton, resultSize } from './result-drawing';
 
 const size: SheetSize = { ...resultSize, metres: 1.36 };
 

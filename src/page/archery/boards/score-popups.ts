@@ -19,7 +19,7 @@ export class ScorePopups {
     this.object.add(...this.#words.map(({ object }) => object));
   }
 
-  /** At a time of the match [s], seen by eyes at `head`: the newest hits of this moment. */
+  /** Shows the newest hits at a match time [s] to eyes at `head`. */
   show({ arrows }: ArcheryState, time: number, head: Vec3): void {
     let next = 0;
     for (let i = arrows.length - 1; i >= 0 && next < this.#words.length; i--) {

@@ -21,7 +21,7 @@ export function createScoreboard(quality: Quality) {
   let shown = '';
   return {
     object,
-    /** At a time of the match [s]; draws only what changed. */
+    /** Updates the board to a match time [s]. Redraws only after a change. */
     show(state: ArcheryState, time: number): void {
       const text = boardText(state, time);
       const key = JSON.stringify(text);

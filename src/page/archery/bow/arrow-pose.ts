@@ -18,7 +18,7 @@ export interface ArrowPose {
   readonly direction: Vec3;
 }
 
-/** One that its owner overwrites. */
+/** An arrow pose that its owner overwrites. */
 export interface MutableArrowPose extends ArrowPose {
   readonly tip: MutableVec3;
   readonly direction: MutableVec3;
@@ -29,15 +29,15 @@ export const makeArrowPose = (): MutableArrowPose => ({ tip: vec3(0, 0, 0), dire
 /** How deep a tip goes into what it hits [m]. */
 const depth = { target: 0.085, ground: 0.07, wall: 0.2 } as const;
 
-/** Seconds in which half of the wobble dies away, its swings per second, and its first swing [rad]. */
+/** The half-life [s], frequency [Hz] and amplitude [rad] of the wobble of an arrow that has landed. */
 const wobble = { halfLife: 0.09, frequency: 15, angle: 0.055 };
 
 const side = vec3(0, 0, 0);
 const rise = vec3(0, 0, 0);
 
 /**
- * The arrow's pose at a time of the match, written into `target`: on its parabola until it lands, then stuck where it
- * landed, trembling for a moment.
+ * Writes the arrow's pose at a match time into `target`: on its parabola until it lands, then at its landing, where it
+ * wobbles for a moment.
  */
 export function arrowPose(
   { id, release, landing }: Arrow,

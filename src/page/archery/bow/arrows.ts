@@ -14,7 +14,7 @@ import type { Arrow } from 'threepoint-games/archery/archery-state';
 import { merged, painted } from '../../scene/painted-geometry';
 import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
 
-/** More arrows than are shot in a round; older ones make room. */
+/** The largest number of drawn arrows; the oldest ones are left out. */
 const capacity = 64;
 const shaftRadius = 0.0042;
 
@@ -69,7 +69,7 @@ export function arrowGeometry(length: number): BufferGeometry {
 
 const minusZ = new Vector3(0, 0, -1);
 
-/** All arrows that can be seen, drawn in one call; arena frame. length [m]: from tip to nock. */
+/** Creates the mesh of all visible arrows, one draw call; arena frame. `length` [m]: from tip to nock. */
 export function createArrows(length: number) {
   const object = new InstancedMesh(arrowGeometry(length), new MeshLambertMaterial({ vertexColors: true }), capacity);
   object.name = 'arrows';
@@ -91,7 +91,7 @@ export function createArrows(length: number) {
 
   return {
     object,
-    /** Arrows shot by a time of the match [s], in order, and one on the string; null: none there. */
+    /** Shows the arrows shot by a match time [s], and the one on the string; null: none. */
     show(arrows: readonly Arrow[], time: number, nocked: ArrowPose | null): void {
       let count = 0;
       for (let i = Math.max(0, arrows.length - capacity + 1); i < arrows.length; i++) {

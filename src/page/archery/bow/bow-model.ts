@@ -62,7 +62,7 @@ function sweep(
       positions[at + 2] = z + cosine * depth;
       const nx = corner.nx / halfWidth;
       const nz = corner.nz / halfDepth;
-      // Math.hypot is handed its numbers in boxes.
+      // Math.hypot allocates: the engine boxes its arguments.
       const long = Math.sqrt(nx * nx + nz * nz);
       normals[at] = nx / long;
       normals[at + 1] = (sign * -sine * nz) / long;
@@ -101,7 +101,7 @@ const horn = new Color('#efe6d2');
 const leather = new Color('#2c2320');
 const stitching = new Color('#c98f4a');
 
-/** A limb tapers towards its tip; its tip is of horn. */
+/** Returns a section of a limb, which tapers towards its tip of horn. */
 const limbSection = (point: MutableLimbPoint, index: number): LimbSection => {
   const along = index / (limbPoints - 1);
   const tip = along > 0.93;
@@ -165,7 +165,7 @@ type LimbSection = Section & MutableLimbPoint;
 /** A straight limb, to be bent. */
 const makeLimbSections = (): readonly LimbSection[] => makeLimb().map(limbSection);
 
-/** A cord along +Y that is never thinner than a pixel or so, near or far, yet no bar before the eyes. */
+/** Creates the material of a cord along +Y. Its width on the screen is limited from about a pixel up. */
 function createStringMaterial(color: string, thickness: number): ShaderMaterial {
   return new ShaderMaterial({
     uniforms: { color: { value: new Color(color) } },
@@ -199,7 +199,7 @@ function stretch(mesh: Mesh, from: Vec3, to: Vec3): void {
   mesh.scale.set(1, length, 1);
 }
 
-/** What the bow is made of; the serving is wound round the string where the arrow sits. */
+/** Creates the meshes of the bow. The serving is the winding of the string at the nocking point. */
 function createBowParts(quality: Quality, limbSections: readonly LimbSection[]) {
   const material =
     quality === 'high'

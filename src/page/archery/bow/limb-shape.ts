@@ -25,8 +25,8 @@ export const limbLength = 0.53;
 export const limbPoints = 17;
 
 /**
- * The centre line of the upper limb, written into `limbPoints` points; `bend` [rad] is how much its tip has turned
- * towards the archer. The lower limb is its mirror image.
+ * Writes the centre line of the upper limb into `limbPoints` points. `bend` [rad]: the rotation of its tip towards the
+ * archer. The lower limb is its mirror image.
  */
 export function bendLimb(bend: number, points: readonly MutableLimbPoint[]): void {
   let y = limbRoot;
@@ -50,7 +50,7 @@ export function bendLimb(bend: number, points: readonly MutableLimbPoint[]): voi
 export const makeLimb = (): readonly MutableLimbPoint[] =>
   Array.from({ length: limbPoints }, () => ({ y: 0, z: 0, angle: 0 }));
 
-/** The limb whose tip is looked for. */
+/** Scratch: the limb of the bend that is tried. */
 const tried = makeLimb();
 
 /** Computes the tip of the upper limb, where the string is tied. */
@@ -60,7 +60,7 @@ function tipOf(bend: number, target: MutableVec3): MutableVec3 {
   return setVec3(target, 0, y, z);
 }
 
-/** The bend [rad], to a thousandth of a degree, beyond which a limb is bent too far. */
+/** Returns the largest bend [rad] that is not too far, to a thousandth of a degree. */
 const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(minBend, maxBend, tooFar, 21);
 
 const minBend = -0.5;

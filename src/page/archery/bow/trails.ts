@@ -23,7 +23,7 @@ const points = 20;
 const most = 4;
 const width = 0.034;
 
-/** White, and fainter the weaker it is at a place. */
+/** Creates the material of a trail: white, with the opacity of each vertex's strength. */
 const trailMaterial = (): ShaderMaterial =>
   new ShaderMaterial({
     transparent: true,
@@ -83,7 +83,7 @@ export function createTrails(arrowLength: number) {
       positions.setXYZ(at, edge.x, edge.y, edge.z);
       subtract(middle, aside, edge);
       positions.setXYZ(at + 1, edge.x, edge.y, edge.z);
-      // Right before the eyes a ribbon would be a veil.
+      // A ribbon close to the eyes would cover the view.
       const strength = (1 - share) * smoothstep(0.9, 3, distance(middle, head));
       strengths.setX(at, strength);
       strengths.setX(at + 1, strength);
@@ -92,7 +92,7 @@ export function createTrails(arrowLength: number) {
 
   return {
     object,
-    /** At a time of the match [s], turned to eyes at `head`. */
+    /** Shows the trails at a match time [s], turned to eyes at `head`. */
     show(arrows: readonly Arrow[], time: number, head: Vec3): void {
       let trails = 0;
       for (let i = arrows.length - 1; i >= 0 && trails < most; i--) {

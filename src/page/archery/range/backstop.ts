@@ -51,7 +51,7 @@ function createNets(quality: Quality): Group {
   const texture = netTexture(quality);
   const nets = new Group();
   for (const wall of walls) {
-    // What is behind the archer's back hardly ever catches anything: there only its posts show.
+    // The net behind the archer is hardly ever hit: only its posts are drawn.
     if (wall.axis === 'z' && wall.at > 0) continue;
     const [from, to] = wall.axis === 'z' ? span('x') : span('z');
     const length = to - from;
@@ -79,7 +79,7 @@ function createNets(quality: Quality): Group {
 
 const netLift = 0.06;
 
-/** From where to where the walls across an axis enclose the range. */
+/** Returns the limits of the range along an axis. */
 function span(axis: 'x' | 'z'): readonly [number, number] {
   const ends = walls.filter((wall) => wall.axis === axis).map(({ at }) => at);
   return [Math.min(...ends), Math.max(...ends)];
@@ -157,7 +157,7 @@ function ropesAndPosts(quality: Quality): BufferGeometry {
   return merged(parts);
 }
 
-/** What keeps arrows and people where they belong: bank, net, posts and ropes. Arena frame. */
+/** Creates the bank, nets, posts and ropes around the range; arena frame. */
 export function createBackstop(quality: Quality): Group {
   const backstop = new Group();
   backstop.name = 'backstop';

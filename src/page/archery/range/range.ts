@@ -32,7 +32,7 @@ export function createRange(
   object.quaternion.copy(floorFromArena.orientation);
   const noise = createNoiseTexture(quality);
   const zone = createZone();
-  // All of it gives way to the user's own room in passthrough.
+  // Passthrough hides this group: the user's own room takes its place.
   const around = new Group();
   around.name = 'landscape';
   around.add(createLandscape(quality), createBackstop(quality));
@@ -59,7 +59,7 @@ export function createRange(
       floorFromArena,
     ),
     setZoneWarning: zone.setWarning,
-    /** Moves what moves by itself; time [s]. */
+    /** Updates animations to a time [s]. */
     animate: zone.animate,
   };
 }

@@ -17,7 +17,7 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
-import { drawText } from 'threepoint-ui/vr-panel';
+import { drawText } from 'threepoint-ui/canvas-drawing';
 import { ink } from '../../scene/boards/board-style';
 import { createLabelQuad } from '../../scene/boards/label-quad';
 import { createCanvasTexture, type DrawableTexture } from '../../scene/canvas-texture';
@@ -31,16 +31,16 @@ import { createRingTexture } from './target-rings';
 const discThickness = 0.1;
 const gap = 0.05;
 
-/** Size of a target's plate [m]: larger further away, so that all are read as easily. */
+/** Returns the size of a target's plate [m], which grows with the distance so that all are equally legible. */
 const plateOf = ({ distance }: Target): { readonly width: number; readonly height: number } => {
   const width = 0.34 * clamp(distance / 6.5, 0.85, 1.5);
   return { width, height: (width * cell.height) / cell.width };
 };
 const cell = { width: 256, height: 150 };
-/** Seconds in which the rim of a disc that was hit swells and calms. */
+/** Duration of the pulse of a rim after a hit [s]. */
 const pulseSeconds = 0.7;
 
-/** Takes a geometry that faces +Z to a target: origin at the centre of its painted side, +Z out of it, +Y up. */
+/** Returns the transform of a target: origin at the centre of its painted side, +Z out of it, +Y up. */
 function placeOf({ centre, normal }: Target): Matrix4 {
   const z = new Vector3(normal.x, normal.y, normal.z);
   const x = new Vector3(0, 1, 0).cross(z).normalize();
@@ -124,7 +124,7 @@ interface Score {
 
 const makeScore = (): Score => ({ points: 0, at: Number.NEGATIVE_INFINITY });
 
-/** What a target scored by a time of the match [s], and when last, written into `score`. */
+/** Writes the points of a target at a match time [s], and the time of the last hit, into `score`. */
 export function scoredBy(state: ArcheryState, target: number, time: number, score: Score = makeScore()): Score {
   score.points = 0;
   score.at = Number.NEGATIVE_INFINITY;
@@ -191,7 +191,7 @@ const createShadows = (targets: readonly Target[]): Mesh =>
     })),
   );
 
-/** How much larger the rim of a disc is, by the seconds since it was hit. */
+/** Returns the scale of a rim at a time after the hit [s]. */
 const swellAt = (since: number): number => {
   const share = since / pulseSeconds;
   return share < 1 ? 1 + 0.09 * Math.sin(share * Math.PI) * (1 - share) : 1;
@@ -214,13 +214,13 @@ export class TargetStands {
   readonly #plateMaterial: MeshBasicMaterial;
   readonly #size = new Matrix4();
   #built: readonly Target[] = [];
-  /** The targets that stand, in writing. */
+  /** The built targets as JSON. */
   #builtAs = '';
   /** The place of each target, its score, and the points on its plate; no points: nothing is painted yet. */
   #places: readonly Matrix4[] = [];
   #scores: readonly Score[] = [];
   #onPlates: number[] = [];
-  /** Null as long as there are no targets, as rims and shadows are. */
+  /** null: there are no targets; likewise for rims and shadows. */
   #faces: InstancedMesh | null = null;
   #rims: InstancedMesh | null = null;
   #shadows: Mesh | null = null;
@@ -259,7 +259,7 @@ export class TargetStands {
     this.#showPlates(targets);
   }
 
-  /** A state that travelled or was replayed has other objects for the same targets: those stay as they stand. */
+  /** Rebuilds the stands if the targets differ. A received or replayed state has new objects for the same targets. */
   #setTargets(targets: readonly Target[]): void {
     if (targets === this.#built) return;
     this.#built = targets;

@@ -36,7 +36,7 @@ function landingCaption(landing: Landing, targets: readonly Target[], head: Pose
 
 const endings = { targets: 'every target has scored', arrows: 'all arrows are shot', time: 'time is up' } as const;
 
-/** What an event sounds like, in words and with its direction; the head in the arena frame. */
+/** Returns the caption of an event with its direction; the head in the arena frame. */
 export function eventCaption(
   event: ArcheryEvent,
   { targets, seconds, head }: { targets: readonly Target[]; seconds: number; head: Pose<'arena'> },
@@ -57,7 +57,7 @@ export function eventCaption(
   }
 }
 
-/** What the bow sounds like, in words; null: nothing that an event does not say too. */
+/** Returns the caption of a cue; null: the caption of an event covers it. */
 export function cueCaption({ type, side }: BowCue): string | null {
   switch (type) {
     case 'taken':

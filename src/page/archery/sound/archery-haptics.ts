@@ -2,8 +2,8 @@ import type { ArcheryEvent } from 'threepoint-games/archery/archery-state';
 import { type HapticPulse, inBothHands } from 'threepoint-games/haptic-pulse';
 
 /**
- * Pulses of what happens away from the hands: a hit is felt in the bow, stronger for more points, a warning and the
- * bell in both hands. Draw and release are the gestures' own.
+ * Returns the haptic pulses of events: a hit in the bow hand, stronger for more points, a warning and the bell in both
+ * hands. The gestures return the pulses of draw and release.
  */
 export function eventHaptics(events: readonly ArcheryEvent[], bowSide: HapticPulse['side']): readonly HapticPulse[] {
   return events.flatMap((event) => {

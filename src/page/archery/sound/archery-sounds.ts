@@ -31,7 +31,7 @@ const twangName = (share: number): string => `twang ${share}`;
 /** There is a chime for each target of the game; other scores have that of the nearest. */
 const chimeName = (points: number): string => `chime ${clamp(5 * Math.round(points / 5), 5, 20)}`;
 
-/** All that is played, by name. */
+/** The sounds by name. */
 const recipes: Recipes = new Map<string, Recipe>([
   ...Object.entries({ bell, click, earth, rattle, thud, warning, whoosh }),
   ...Array.from({ length: drawSteps + 1 }, (_, step): [string, Recipe][] => {
@@ -120,7 +120,7 @@ export class ArcherySounds {
     else if (event.type === 'left-zone') playing.play('warning', this.#inFloor(vec3(0, 0.3, 0)));
   }
 
-  /** A whoosh that goes along with the arrow. */
+  /** Plays a whoosh that moves with the arrow. */
   #playFlight({ id, release }: Arrow, { playAlong }: SoundPlayer): void {
     const seconds = Math.min(0.7, 14 / length(release.velocity));
     const source = playAlong('whoosh', seconds, (after) => this.#inFloor(positionAt(release, after)));
@@ -134,7 +134,7 @@ export class ArcherySounds {
     if (landing.on === 'target') play('thud', at);
     else if (landing.on === 'ground') play('earth', at);
     else play('rattle', at);
-    // The chime is for the archer: it rings half way.
+    // The chime is feedback for the archer: it sounds halfway to the head.
     if (landing.points > 0) play(chimeName(landing.points), lerp(at, this.#head.position, 0.5), 0.12);
   }
 }

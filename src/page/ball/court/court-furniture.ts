@@ -15,7 +15,8 @@ import { createContactShadows } from '../../scene/outdoors/contact-shadows';
 import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted, paintedBox } from '../../scene/painted-geometry';
 import { createRandomRange } from '../../scene/random-range';
-import { court, seatLooks, trayOf } from './court-plan';
+import { seatLooks } from '../seat-looks';
+import { court, trayOf } from './court-plan';
 
 /** A tray on four legs with a rim in its thrower's colour. */
 function rack(side: 0 | 1, balls: number): BufferGeometry[] {

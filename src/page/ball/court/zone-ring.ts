@@ -4,7 +4,7 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import { zoneRadius } from 'threepoint-games/ball/stations';
 import { doubleSided } from '../../scene/double-sided';
 
-/** It begins to show this far before the edge [m]. */
+/** The ring becomes visible at this distance from the edge [m]. */
 const notice = 0.4;
 
 /** The edge of the zone in which throws and catches count, visible only to a player close to it; arena frame. */

@@ -11,12 +11,17 @@ import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
-import { BallBots, type CourtView, createGestures, playFrame, readyAfter } from './ball-bots';
-import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
+import { BallBots, readyAfter } from './ball-bots';
+import type { BallFrame } from './ball-frame';
+import type { BallProbe } from './ball-probe';
+import { probeOf } from './ball-probe';
+import { CourtPeople } from './court-people';
 import { joined, SimulatedPlayer } from './simulated-player';
+import type { CourtView } from './simulated-seat';
+import { createGestures, playFrame } from './simulated-seat';
 
 export interface BallPlayOptions {
   connect(visitor: Visitor, time: number): BallConnection;
@@ -34,7 +39,7 @@ const emptyHands: Readonly<Record<Side, number | null>> = { left: null, right: n
 /** The time for which a person can read a result before a simulated player asks for another round [s]. */
 const rematchAfter = 7;
 
-/** The start of a list that has nothing in it mostly. */
+/** The empty list, shared. */
 const none: readonly never[] = [];
 
 /** A match and its players, without the view. */
@@ -66,7 +71,7 @@ export class BallPlay {
     return this.client.room;
   }
 
-  /** How this page sets up voices with the others; null: not connected yet. */
+  /** The channel for setting up voice connections; null: not connected yet. */
   get voices(): VoiceChannel | null {
     return this.connection?.voices ?? null;
   }
@@ -107,7 +112,7 @@ export class BallPlay {
     return this.simulated.act(this.connection, this.gestures, time, catchUp);
   }
 
-  /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
+  /** Advances the match by a tracked frame and its buttons. `frame`: null if nothing is tracked, or for a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null {
     const line = this.connection;
     const before = line?.room;

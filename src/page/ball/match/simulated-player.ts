@@ -1,9 +1,9 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { zero } from 'threepoint/core/math/vec3';
+import type { BallBot } from 'threepoint-games/ball/ball-bot';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallCue, BallGestures } from 'threepoint-games/ball/gestures';
-import type { BallBot } from 'threepoint-games/ball/simulated-thrower';
 import { holderStation } from 'threepoint-games/ball/stations';
 import {
   type BallSteering,
@@ -13,17 +13,17 @@ import {
 } from 'threepoint-games/ball/steered-players';
 import type { Launch } from 'threepoint-games/ballistics';
 import type { HapticPulse } from 'threepoint-games/haptic-pulse';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
+import type { CourtView } from './simulated-seat';
 import {
   bodyAt,
-  type CourtView,
   createSimulatedPlayer,
   playFrame,
   simulatedInput,
   stationOf,
   stepSimulated,
   stepTimes,
-} from './ball-bots';
+} from './simulated-seat';
 
 const idle: BallSteering = {
   ray: { origin: zero, direction: { x: 0, y: 0, z: -1 } },

@@ -1,6 +1,6 @@
+import { drawText, drawTextLines, vrColors } from 'threepoint-ui/canvas-drawing';
 import type { RoomLink } from 'threepoint-ui/invitation';
 import { drawQrCode, type QrCode } from 'threepoint-ui/qr-code';
-import { drawText, drawTextLines, vrColors } from 'threepoint-ui/vr-panel';
 import { bottomButton, fullWidth, type MenuSheet, menuMargin } from '../../activity/activity-menu';
 
 /** The link to a room with its QR code. */

@@ -34,11 +34,11 @@ export interface BallBarActions {
   sit(seat: number | null): void;
   setBots(on: boolean): void;
   setName(name: string): void;
-  /** Opens a room where others can come too. */
+  /** Opens a room that other people can join. */
   openRoom(): void;
-  /** Looks for the server once more. */
+  /** Asks for the server again. */
   askServer(): void;
-  /** Shows what to send to others so that they come. */
+  /** Shows the invitation to this room. */
   invite(): void;
   /** Rejoins the room that this page is no longer in. */
   rejoin(): void;
@@ -227,7 +227,7 @@ function createSeats(actions: BallBarActions) {
   };
 }
 
-/** Why there are no rooms for others; null: there are, or nothing is known yet. */
+/** The reason why there are no shared rooms; null: there are, or the state is unknown. */
 const serverTexts: Readonly<Record<ServerState, string | null>> = {
   unknown: null,
   asked: null,
@@ -236,7 +236,7 @@ const serverTexts: Readonly<Record<ServerState, string | null>> = {
   silent: 'The server with the shared rooms does not answer. Try again later.',
 };
 
-/** The way to others: a room for them, or why there is none. */
+/** Creates the controls for playing with other people, or the reason why there is no shared room. */
 function createCompany(actions: BallBarActions) {
   const openRoom = button('Play with others', actions.openRoom);
   const invite = button('Invite others', actions.invite);

@@ -1,10 +1,11 @@
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ballsLeft } from 'threepoint-games/ball/state-selectors';
 import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
-import { roleTexts } from '../court/court-plan';
 import type { BallFrame } from '../match/ball-frame';
 import type { BallPlay } from '../match/ball-play';
-import { displayName, waitingSentence } from '../view/board-drawing';
+import { roleTexts } from '../seat-looks';
+import { displayName } from '../view/displayed-match';
+import { waitingSentence } from '../view/match-texts';
 import type { PersonVoice, VoicesState } from '../voices/voices-state';
 import type { SeatRow } from './other-players';
 

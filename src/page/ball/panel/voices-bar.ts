@@ -5,13 +5,13 @@ import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type SeatRow } fr
 
 /** The people in the room, for this part of the bar. */
 export interface ListedPeople {
-  /** The own one; null: a spectator. */
+  /** The user's seat; null: a spectator. */
   readonly seat: number | null;
   readonly people: readonly SeatRow[];
 }
 
 export interface VoicesBarActions {
-  /** Shows what voices mean, or puts it away. */
+  /** Shows or hides the consent text of voices. */
   ask(on: boolean): void;
   join(): void;
   leave(): void;
@@ -23,7 +23,7 @@ export interface VoicesBarActions {
   hide(seat: number, on: boolean): void;
 }
 
-/** The other players, each with what this page is to show of them. */
+/** Creates the list of the other players with the buttons that mute and hide them. */
 function createPeople(actions: VoicesBarActions) {
   const node = element('ul', { class: 'people', 'aria-label': 'Other players' });
   let shown = '';
@@ -53,7 +53,7 @@ function createPeople(actions: VoicesBarActions) {
   };
 }
 
-/** What is read before the first time, with the way to take part and the way not to. */
+/** Creates the consent text with the buttons that join or decline. */
 function createConsent(actions: VoicesBarActions) {
   const relay = toggle('Hide my address (relay only)', actions.relayOnly);
   const without = element(

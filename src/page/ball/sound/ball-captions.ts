@@ -3,7 +3,8 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, Refusal } from 'threepoint-games/ball/ball-state';
 import type { BallCue } from 'threepoint-games/ball/gestures';
 import { directionText } from '../../scene/direction-text';
-import { type DisplayedPlayer, displayName } from '../view/board-drawing';
+import type { DisplayedPlayer } from '../view/displayed-match';
+import { displayName } from '../view/displayed-match';
 
 /** The listener, and the positions of the other players. */
 export interface Listener {

@@ -15,7 +15,7 @@ import {
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import type { PlayerFrame } from '../match/ball-frame';
-import type { DisplayedPlayer } from '../view/board-drawing';
+import type { DisplayedPlayer } from '../view/displayed-match';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 
@@ -152,7 +152,7 @@ export class BallSounds {
         return;
       case 'caught':
         if (at) play('wicker', this.#inFloor(at));
-        // The chime is for all players: it rings half way.
+        // The chime is feedback for all players: it sounds halfway to the head.
         if (at) play(chimeName(event.score), lerp(this.#inFloor(at), this.#head.position, 0.5), 0.1);
         return;
       case 'bounced': {
@@ -168,7 +168,7 @@ export class BallSounds {
     }
   }
 
-  /** A whoosh that goes along with the ball. */
+  /** Plays a whoosh that moves with the ball. */
   #playFlight(launch: TimedLaunch, { playAlong }: SoundPlayer): void {
     playAlong('whoosh', 0.6, (after) => this.#inFloor(ballInAir(launch, launch.time + after)));
   }

@@ -9,25 +9,24 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import { landsIn, type Opening } from 'threepoint-games/ball/basket';
-import { basketRadius } from 'threepoint-games/ball/flight';
+import { basketRadius, landsIn, type Opening } from 'threepoint-games/ball/basket';
 import { fallTime, type Launch, positionAt } from 'threepoint-games/ballistics';
 import { doubleSided } from '../../scene/double-sided';
 
 const dots = 36;
 /** The radius of the first dot [m]; the last is half as large. */
 const dotRadius = 0.035;
-/** Between two dots [s]. */
+/** The flight time between two dots [s]. */
 const apart = 0.045;
 const beside = '#ffb02e';
 const inside = '#3ddc84';
 
-/** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
+/** Creates the predicted path of an aimed ball, and the ring at its landing; arena frame. */
 export function createAimArc() {
   const object = new Group();
   object.name = 'aim';
   object.visible = false;
-  // Over everything: from behind a thrower the way is hidden by the thrower.
+  // Drawn over everything: the thrower would hide the path from a camera behind.
   const seen = { transparent: true, opacity: 0.9, depthWrite: false, depthTest: false, fog: false, toneMapped: false };
   const material = new MeshBasicMaterial({ color: beside, ...seen });
   const path = new InstancedMesh(new SphereGeometry(1, 10, 8), material, dots);

@@ -24,7 +24,8 @@ import {
 } from 'threepoint/core/math/vec3';
 import type { BallPlace, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
-import { ballRadius, basketDepth, basketRadius } from 'threepoint-games/ball/flight';
+import { basketDepth, basketRadius } from 'threepoint-games/ball/basket';
+import { ballRadius } from 'threepoint-games/ball/flight';
 import { ballPosition } from 'threepoint-games/ball/state-selectors';
 import { ballsPerRack } from 'threepoint-games/ball/stations';
 import { painted } from '../../scene/painted-geometry';
@@ -59,7 +60,7 @@ function placeInBasket(index: number): readonly [number, number, number] {
   return [Math.cos(angle) * out, -basketDepth + ballRadius + 0.01 + layer * 0.085, Math.sin(angle) * out];
 }
 
-/** How a ball in the air has come to the basket, as it was drawn. */
+/** The drawn approach of a flying ball to the basket. */
 interface Approach {
   /** The start of its flight [s of the match]. */
   launchedAt: number;
@@ -75,7 +76,7 @@ interface Approach {
 
 const makeApproach = (): Approach => ({ launchedAt: Number.NaN, from: vec3(0, 0, 0), height: Number.NaN, isIn: false });
 
-/** What has gone down through the opening goes no further than the basket's bottom. */
+/** Stops a ball that has passed the opening at the basket's bottom. */
 function stopInBasket({ position: middle, normal }: Opening, position: Vec3, launchedAt: number, way: Approach): Vec3 {
   if (way.launchedAt !== launchedAt) way.height = Number.NaN;
   way.launchedAt = launchedAt;
@@ -98,7 +99,7 @@ const createMaterial = (quality: Quality) =>
     ? new MeshStandardMaterial({ vertexColors: true, roughness: 0.55 })
     : new MeshLambertMaterial({ vertexColors: true });
 
-/** None of them is seen until it is put somewhere. */
+/** Creates the mesh of a rack's balls, all hidden at first. */
 function createMesh(geometry: BufferGeometry, material: Material, count: number): InstancedMesh {
   const mesh = new InstancedMesh(geometry, material, count);
   for (let i = 0; i < count; i++) mesh.setMatrixAt(i, gone);
@@ -168,7 +169,7 @@ export class Balls {
         position = caught < maxInBasket ? this.#inBasket(caught, opening ?? state.basket) : null;
         caught += 1;
       } else position = ballPosition(state, ball, time);
-      // The catch arrives a moment later: until then the ball stays where it fell.
+      // The event of the catch arrives later: until then the ball stays in the basket.
       if (place.on === 'air' && !place.missed && position && opening)
         position = stopInBasket(opening, position, place.launch.time, this.#approaches[ball]!);
       if (position) this.#put(ball, place, position, time);

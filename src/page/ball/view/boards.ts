@@ -3,7 +3,8 @@ import { createWoodenBoard } from '../../scene/boards/wooden-board';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import { court } from '../court/court-plan';
-import { boardSize, type DisplayedMatch, paintBoard } from './board-drawing';
+import { boardSize, paintBoard } from './board-drawing';
+import type { DisplayedMatch } from './displayed-match';
 
 /**
  * Two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.

@@ -36,7 +36,7 @@ export class CatchPopups {
     caught.from = time;
   }
 
-  /** At a time of the page [s]. */
+  /** Updates the texts to a time on the page's clock [s]. */
   show(time: number, eyes: Vec3): void {
     for (const { word, at, from } of this.#catches) word.show(at, time - from, eyes);
   }

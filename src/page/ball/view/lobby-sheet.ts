@@ -1,7 +1,9 @@
 import { Group } from 'three';
 import { createSheet, type SheetSize } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
-import { type DisplayedMatch, type LobbyButton, lobbyButtons, lobbySize, paintLobby } from './board-drawing';
+import type { DisplayedMatch } from './displayed-match';
+import type { LobbyButton } from './lobby-drawing';
+import { lobbyButtons, lobbySize, paintLobby } from './lobby-drawing';
 
 const size: SheetSize = { ...lobbySize, metres: 1.3 };
 

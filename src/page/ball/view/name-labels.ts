@@ -1,12 +1,13 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
 import { clamp } from 'threepoint/core/math/damper';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { drawText, textWidth } from 'threepoint-ui/vr-panel';
+import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
 import { ink } from '../../scene/boards/board-style';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
-import { roleTexts, seatLooks } from '../court/court-plan';
-import { type DisplayedPlayer, displayName } from './board-drawing';
+import { roleTexts, seatLooks } from '../seat-looks';
+import type { DisplayedPlayer } from './displayed-match';
+import { displayName } from './displayed-match';
 
 export interface Label {
   readonly person: DisplayedPlayer;
@@ -27,7 +28,7 @@ const metres = 0.86;
 const above = 0.25;
 /** Seen from further away than this it grows with the distance, so that a name stays as large to the eye [m]. */
 const readableFrom = 2.8;
-/** Larger than this it would hide a neighbour's. */
+/** A larger label would hide its neighbour. */
 const maxScale = 3;
 
 /** How many times its own size a label is drawn for a camera this far away [m]. */
@@ -147,7 +148,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
   };
   sprite.onBeforeRender = (_renderer, _scene, { matrixWorld }) => place(sprite, matrixWorld, metres, height);
   ring.onBeforeRender = (_renderer, _scene, { matrixWorld }) => place(ring, matrixWorld, wide, wide);
-  // It is where it is drawn only once it is drawn.
+  // The position is set when the sprite is drawn, so frustum culling has no valid position.
   for (const one of [sprite, ring]) {
     one.frustumCulled = false;
     one.visible = false;

@@ -4,8 +4,8 @@ import { ballRadius } from 'threepoint-games/ball/flight';
 import { createSoftShadowMaterial } from '../../scene/soft-shadow-material';
 
 /**
- * Soft dark discs on the floor under what flies, smaller and fainter the higher it is: where it will come down can be
- * seen.
+ * Creates soft shadow discs on the floor below flying balls, which shrink with the height and show where a ball will
+ * land.
  */
 export function createShadowDiscs(count: number) {
   const mesh = new InstancedMesh(
@@ -27,7 +27,7 @@ export function createShadowDiscs(count: number) {
     hide(index: number): void {
       mesh.setMatrixAt(index, gone);
     },
-    /** After the last of a frame. */
+    /** Call it after the last `put` or `hide` of a frame. */
     update(): void {
       mesh.instanceMatrix.needsUpdate = true;
     },

@@ -10,7 +10,7 @@ import {
   Vector3,
 } from 'three';
 import type { Opening } from 'threepoint-games/ball/basket';
-import { basketDepth, basketRadius, rimTube } from 'threepoint-games/ball/flight';
+import { basketDepth, basketRadius, rimTube } from 'threepoint-games/ball/basket';
 import { merged, painted } from '../../scene/painted-geometry';
 
 const stakes = 20;

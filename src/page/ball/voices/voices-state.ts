@@ -6,7 +6,7 @@ export interface VoicesState {
   /** The server has a relay. */
   readonly relay: boolean;
   readonly relayOnly: boolean;
-  /** What a person should know of their voice; null: nothing. */
+  /** A message about the user's voice; null: none. */
   readonly message: string | null;
   /** There is no microphone. The user can request it again. */
   readonly microphoneMissing: boolean;
@@ -22,6 +22,6 @@ export interface PersonVoice {
   readonly hidden: boolean;
 }
 
-/** What everyone reads before they first take part. */
+/** The consent text before the user joins the voices for the first time. */
 export const consentText =
   'Voices are sent directly between browsers, so people in the room could learn your network address (IP). Nothing is recorded, and you join muted.';

@@ -12,7 +12,7 @@ export const ink = {
   warning: '#ffab5c',
 } as const;
 
-/** The dark ground that everything is written on. */
+/** Paints the dark background of a board. */
 export function paintGround(context: CanvasRenderingContext2D, width: number, height: number): void {
   const gradient = context.createLinearGradient(0, 0, 0, height);
   gradient.addColorStop(0, ink.boardLift);

@@ -1,11 +1,11 @@
-import { drawText, textWidth } from 'threepoint-ui/vr-panel';
+import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
 import { ink } from './board-style';
 
 export interface ScoreHeading {
   readonly score: number;
-  /** The most that can be had. */
+  /** The highest possible score. */
   readonly of: number;
-  /** Left on the clock. */
+  /** The time that is left [s]. */
   readonly seconds: number;
   readonly running: boolean;
 }

@@ -1,6 +1,6 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
 import type { Vec3 } from 'threepoint/core/math/vec3';
-import { drawText } from 'threepoint-ui/vr-panel';
+import { drawText } from 'threepoint-ui/canvas-drawing';
 import { createCanvasTexture } from '../canvas-texture';
 import type { Quality } from '../renderer';
 import { ink } from './board-style';
@@ -45,7 +45,7 @@ export function buttonUnder<Id extends string>(
   return found?.id ?? null;
 }
 
-/** A new sheet takes no press for this time [s]: the press was meant for what was there before. */
+/** A new sheet ignores presses for this time [s], because they were meant for what it covers. */
 export const settlingSeconds = 0.5;
 
 /** Decides whether something has been shown for long enough to be pressed. Times [s] on any monotonic clock. */
@@ -124,7 +124,7 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
   };
 }
 
-/** How a button looks; `primary`: what a reader came for. */
+/** The look of a button; `primary`: the main action of the sheet. */
 export interface ButtonLook {
   readonly primary?: boolean;
   readonly hovered: boolean;
@@ -132,7 +132,7 @@ export interface ButtonLook {
   readonly font: string;
 }
 
-/** Paints a pill with a word in it, lit while something points at it. */
+/** Paints a rounded button with its label, lit while something points at it. */
 export function paintButton(
   context: CanvasRenderingContext2D,
   { x, y, width, height }: SheetButton<string>,

@@ -2,7 +2,7 @@ import { Mesh, PlaneGeometry } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { createSoftShadowMaterial } from '../soft-shadow-material';
 
-/** Soft dark spots on the grass that say that things stand on it, with and without a shadow map. Arena frame. */
+/** Creates soft shadows under standing objects, with and without a shadow map; arena frame. */
 export function createContactShadows(
   spots: readonly { readonly x: number; readonly z: number; readonly width: number; readonly depth: number }[],
 ): Mesh {

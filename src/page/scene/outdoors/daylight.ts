@@ -5,19 +5,19 @@ import type { Lighting } from '../surroundings';
 import { createEnvironmentScene } from './environment-scene';
 import { hazeColor } from './sky';
 
-/** What differs from place to place under the same sky; arena frame. */
+/** The daylight of one place; arena frame. */
 export interface Daylight {
   readonly quality: Quality;
   readonly towardsSun: Vector3;
   readonly sunIntensity: number;
   readonly skyIntensity: number;
-  /** What the ground throws back. */
+  /** The colour of the light that the ground reflects. */
   readonly groundColor: string;
   /** Shadows fall within this square [m]. */
   readonly shadows: { readonly middle: Vector3; readonly halfSize: number };
 }
 
-/** A warm sun over a hazy horizon, in the floor frame of the viewer. */
+/** Returns the lighting by a warm sun over a hazy horizon, in the floor frame of the viewer. */
 export function daylight(place: Daylight, { position, orientation }: Transform<'floor', 'arena'>): Lighting {
   const { quality, towardsSun, sunIntensity, skyIntensity, groundColor, shadows } = place;
   const high = quality === 'high';

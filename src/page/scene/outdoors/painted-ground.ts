@@ -1,6 +1,6 @@
 import { type Color, Mesh, MeshLambertMaterial, PlaneGeometry, type Texture } from 'three';
 
-/** Half the side of the ground [m]; the haze has taken it before. */
+/** Half the side of the ground [m]; the fog hides its edge. */
 const half = 85;
 
 /** What paints a ground, in GLSL. */

@@ -1,7 +1,7 @@
 import { BackSide, Color, Mesh, ShaderMaterial, SphereGeometry, type Texture, type Vector3 } from 'three';
 import type { Quality } from '../renderer';
 
-/** What the horizon fades into; the fog has the same colour. */
+/** The colour of the horizon and of the fog. */
 export const hazeColor = '#dfe9ec';
 export const zenithColor = '#3f7fc4';
 

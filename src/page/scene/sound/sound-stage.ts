@@ -5,13 +5,13 @@ import { forward, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 /** Makes a sound's samples at a rate [1/s]. */
 export type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
 
-/** All that can be played, by name. */
+/** The recipes of sounds by name. */
 export type Recipes = ReadonlyMap<string, Recipe>;
 
-/** What the page itself does with a stage. */
+/** The part of a stage that the page controls. */
 export type AudibleStage = Pick<SoundStage, 'unlock' | 'open' | 'setMuted'>;
 
-/** How loud everything is, from 0 to 1. */
+/** The master gain, from 0 to 1. */
 const volume = 0.8;
 /** Seconds in which the sound fades to mute and back. */
 const fadeSeconds = 0.03;

@@ -7,14 +7,14 @@ export type Samples = Float32Array<ArrayBuffer>;
 /** A whole turn [rad]. */
 export const tau = 2 * Math.PI;
 
-/** Samples one by one. */
+/** Renders samples one by one. */
 export function render(rate: number, seconds: number, sample: (t: number, index: number) => number): Samples {
   const samples = new Float32Array(Math.ceil(rate * seconds));
   for (let i = 0; i < samples.length; i++) samples[i] = sample(i / rate, i);
   return samples;
 }
 
-/** Scales to a peak, and lets the last hundredth of a second fade, so that nothing clicks at its end. */
+/** Normalises to a peak, and fades out the last 10 ms, so that the sound ends without a click. */
 export function normalised(samples: Samples, rate: number, peak: number): Samples {
   let highest = 0;
   for (const value of samples) highest = Math.max(highest, Math.abs(value));
@@ -32,7 +32,7 @@ export const noiseFrom = (seed: number) => {
   return () => random(-1, 1);
 };
 
-/** Lets through what is slower than `frequency` [Hz]. */
+/** Creates a low-pass filter with this cutoff `frequency` [Hz]. */
 export function lowPass(rate: number, frequency: number): (value: number) => number {
   const share = 1 - Math.exp((-tau * frequency) / rate);
   let held = 0;
@@ -42,7 +42,7 @@ export function lowPass(rate: number, frequency: number): (value: number) => num
   };
 }
 
-/** Rings at `frequency` [Hz], the more the smaller its bandwidth [Hz]. */
+/** Creates a resonator at `frequency` [Hz]; a smaller bandwidth [Hz] rings longer. */
 export function resonator(rate: number, frequency: number, bandwidth: number): (value: number) => number {
   const radius = Math.exp((-Math.PI * bandwidth) / rate);
   const a = 2 * radius * Math.cos((tau * frequency) / rate);

@@ -4,7 +4,7 @@ import type { Vec3 } from 'threepoint/core/math/vec3';
 /** At this distance [m] a voice is as loud as it was spoken; with each doubling beyond, it loses 6 dB at most. */
 const near = 1;
 const rolloff = 0.8;
-/** What is drawn as silence, and as the loudest voice [dB of full scale]. */
+/** The loudness of level 0 and of level 1 [dB of full scale]. */
 const quiet = -55;
 const loud = -15;
 /** Samples that a level is read from: 21 ms at 48 kHz. */
@@ -128,7 +128,7 @@ export class VoiceSound {
     if (heard) heard.gain.gain.value = silent ? 0 : 1;
   }
 
-  /** How loud a person speaks, however far away: 0 silent to 1. */
+  /** Returns the level of a voice before distance attenuates it, from 0 to 1. */
   level(id: string): number {
     const heard = this.#voices.get(id);
     return heard ? this.#read(heard.level) : 0;
@@ -153,7 +153,7 @@ export class VoiceSound {
     return this.#own && this.#ownOn ? this.#read(this.#own.level) : 0;
   }
 
-  /** How loud all voices together are at the ears [dB of full scale], for tools; −120: silent. */
+  /** Returns the loudness of all voices at the ears [dB of full scale], for tools; −120: silence. */
   loudness(): number {
     return loudnessAt(this.#meter);
   }

@@ -8,7 +8,7 @@ import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { Pulse } from 'threepoint/xr/haptics';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';

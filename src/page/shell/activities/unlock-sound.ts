@@ -2,7 +2,7 @@ import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Notices } from 'threepoint-ui/notices';
 import type { ActivitySound } from '../../activity/activity';
 
-/** By which a user may touch the page. */
+/** The events that count as a user gesture. */
 const touches = ['pointerdown', 'pointerup', 'keydown'];
 
 /**

@@ -15,7 +15,7 @@ import { MotionExport } from './motion-export';
 import { createPanelActions } from './panel-actions';
 import { isNarrow, WindowLayout } from './window-layout';
 
-/** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
+/** The interval between two reports of the frame times [ms]. */
 const reportEveryMs = 250;
 
 /**
@@ -57,7 +57,7 @@ export class Controls {
     setInterval(() => this.#report(), reportEveryMs);
   }
 
-  /** Brings on the screen what the page is doing. */
+  /** Updates everything on the screen to the state of the page. */
   show(): void {
     const { settings, headset, activities, stage, avatar } = this.#parts;
     document.body.classList.toggle('larger-text', settings.largerText);
@@ -100,7 +100,7 @@ export class Controls {
     this.#layout.layOut();
   }
 
-  /** Every tracked frame: its person may be measured. */
+  /** Passes a tracked frame to the calibration. */
   observe(frame: TrackingFrame): void {
     this.#measuring.observe(frame);
   }

@@ -8,7 +8,7 @@ import type { Recorder } from '../../studio/recorder';
 import type { PageMocap } from '../page-mocap';
 import type { UserAvatar } from '../user-avatar';
 
-/** Twice what the recorder keeps at most. */
+/** Twice the size of the longest recording that the recorder stores. */
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface FileOpenerOptions {

@@ -29,12 +29,12 @@ export class MotionExport {
     this.#options = options;
   }
 
-  /** How far it is; null: nothing is being made. */
+  /** The progress of the export; null: none is in progress. */
   get state(): ExportState | null {
     return this.#state;
   }
 
-  /** Lets go what is being made. */
+  /** Cancels the export in progress. */
   cancel(): void {
     this.#cancellation.abort();
   }

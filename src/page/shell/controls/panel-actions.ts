@@ -117,7 +117,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
   };
 }
 
-/** What the wishes of the panel do to the page. */
+/** Creates the actions of the panel. */
 export function createPanelActions(options: PanelActionsOptions): PanelActions {
   const { writer, stage, userCalibration, headset, onChange } = options;
   return {

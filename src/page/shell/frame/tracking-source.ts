@@ -3,7 +3,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { TrackedSession } from 'threepoint/xr/tracked-session';
-import type { PlayerInput } from 'threepoint-games/simulated-body';
+import type { PlayerInput } from 'threepoint-games/player-input';
 import type { Actor } from '../../emulator/actor';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';
@@ -12,7 +12,7 @@ import type { Settings } from '../settings';
 import type { PageStudy } from '../study/page-study';
 import type { Pointers } from './pointers';
 
-/** What is read of a session. */
+/** The part of a session's tracking that is read. */
 type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<TrackedSession['inputs'], 'buttons'> };
 
 export interface TrackingSourceOptions {
@@ -27,8 +27,8 @@ export interface TrackingSourceOptions {
 }
 
 /**
- * Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session; or no
- * one.
+ * The source of the tracked frames: a session, a replay, a simulated player, the actor, or the emulator outside of a
+ * session.
  */
 export class TrackingSource {
   readonly #options: TrackingSourceOptions;
@@ -41,14 +41,14 @@ export class TrackingSource {
     this.#options = options;
   }
 
-  /** What the hands of the newest frame press. */
+  /** The buttons of the newest frame. */
   get buttons(): Buttons {
     return this.#buttons;
   }
 
   /**
-   * The measures of who moves the body where that is no wearer of a headset: of the person in a recording, else the
-   * user's. null: a wearer does.
+   * The calibration of the person who moves the body without a headset: the person in a recording, else the user.
+   * null: a headset is worn.
    */
   get standIn(): Calibration | null {
     const { headset, recorder, body } = this.#options;
@@ -112,7 +112,7 @@ export class TrackingSource {
     return performed.frame;
   }
 
-  /** Needs no person: the players built into the games, else the actor. */
+  /** Returns the input of the activity's simulated player, else of the actor. */
   #perform(time: number): PlayerInput {
     const { activities, actor } = this.#options;
     return activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };

@@ -48,7 +48,7 @@ export class SessionChanges implements HeadsetListener {
   }
 
   refused(): void {
-    // A session that ends half begun leaves the picture at no size.
+    // A session that fails while it starts leaves the canvas without a size.
     this.#options.controls.layOut();
     this.#changed();
   }

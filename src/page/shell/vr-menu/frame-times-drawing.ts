@@ -1,5 +1,6 @@
+import type { TextStyle } from 'threepoint-ui/canvas-drawing';
+import { drawText, fillRoundedRect, vrColors } from 'threepoint-ui/canvas-drawing';
 import { differenceLines, type FrameReport, milliseconds, missedFrames } from 'threepoint-ui/frame-times-overlay';
-import { drawText, fillRoundedRect, type TextStyle, vrColors } from 'threepoint-ui/vr-panel';
 
 /** The sheet of the frame times [pixels]. */
 export const frameTimesWidth = 520;

@@ -1,7 +1,8 @@
 import { Vector3 } from 'three';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
-import { createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
+import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 
 const [width, height] = [720, 200];

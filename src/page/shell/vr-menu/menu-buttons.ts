@@ -92,7 +92,7 @@ function estimatorButtons(
   }));
 }
 
-/** What a button brings that goes round: after the last the first. */
+/** Returns the next value of a button that cycles through all values. */
 const after = <T>(all: readonly [T, ...T[]], chosen: T | undefined): T =>
   all[chosen === undefined ? 0 : all.indexOf(chosen) + 1] ?? all[0];
 

@@ -1,5 +1,5 @@
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from 'threepoint-ui/calibration-dialog';
-import { drawText, drawTextLines, fillRoundedRect, vrColors } from 'threepoint-ui/vr-panel';
+import { drawText, drawTextLines, fillRoundedRect, vrColors } from 'threepoint-ui/canvas-drawing';
 import { type MenuButton, menuHeight, menuMargin, menuWidth } from '../../activity/activity-menu';
 import { noticesTop, type VrMenuState } from './menu-buttons';
 

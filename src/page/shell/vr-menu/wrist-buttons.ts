@@ -3,7 +3,8 @@ import { sideSign } from 'threepoint/core/body/skeleton';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import { type Side, sides } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
+import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 
 const [width, height] = [240, 120];

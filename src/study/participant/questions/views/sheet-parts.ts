@@ -1,4 +1,4 @@
-import { vrColors, vrFont } from 'threepoint-ui/vr-panel';
+import { vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
 import { inner, margin, width } from '../sheet-target';
 import type { ScreenEnds } from './card-parts';
 

@@ -1,5 +1,5 @@
+import { fillRoundedRect, vrColors } from 'threepoint-ui/canvas-drawing';
 import { element } from 'threepoint-ui/element';
-import { fillRoundedRect, vrColors } from 'threepoint-ui/vr-panel';
 import { inLanguage } from '../../../model/phrases/words';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
 import type { QuestionView } from '../question-view';

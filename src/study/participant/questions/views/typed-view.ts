@@ -1,5 +1,5 @@
+import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
 import { element } from 'threepoint-ui/element';
-import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr-panel';
 import type { Phrases } from '../../../model/phrases/phrases';
 import { inLanguage } from '../../../model/phrases/words';
 import type { NumberForm } from '../../../model/questionnaires/kinds/number';

@@ -1,0 +1,50 @@
+import { length } from 'threepoint/core/math/vec3';
+import type { BallConnection } from 'threepoint-games/ball/ball-client';
+import type { BallPlace } from 'threepoint-games/ball/ball-state';
+import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-selectors';
+import type { BallFrame } from './ball-frame';
+
+/** Returns the state of a match as plain data, for tests and tools. */
+export function probeOf(
+  { state, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
+  connection: BallConnection,
+) {
+  const count = (on: BallPlace['on']) => state.balls.filter((place) => place.on === on).length;
+  const { x, y, z } = opening?.position ?? state.basket.position;
+  return {
+    name: 'ball' as const,
+    phase: state.phase,
+    end: state.end,
+    score: state.score,
+    ballsLeft: ballsLeft(state),
+    secondsLeft: ballSecondsLeft(state),
+    /** Own seat; null: a spectator. */
+    seat: me,
+    role,
+    ready: me !== null && (state.players[me]?.ready ?? false),
+    rotate,
+    spectators,
+    paused,
+    held,
+    /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
+    aim: aim && length(aim.velocity),
+    connection: connection.status.phase,
+    /** Rounds cut short because the room had forgotten them. */
+    voided: connection.room?.voidedRounds ?? 0,
+    /** How often the room has taken this page in: once, and again after each connection that was lost. */
+    welcomes: connection.room?.welcomeCount ?? 0,
+    /** How many balls are in each kind of place. */
+    balls: {
+      rack: count('rack'),
+      hand: count('hand'),
+      air: count('air'),
+      floor: count('floor'),
+      basket: count('basket'),
+    },
+    /** The middle of the opening, arena frame [m]. */
+    basket: [x, y, z] as const,
+    people: players.map((player) => player && { name: player.name, bot: player.bot, presence: player.presence }),
+  };
+}
+
+export type BallProbe = ReturnType<typeof probeOf>;

@@ -1,0 +1,26 @@
+import type { BallState } from 'threepoint-games/ball/ball-state';
+import type { PlayerFrame } from '../match/ball-frame';
+
+/** A player on a seat, as boards and labels write of them. */
+export type DisplayedPlayer = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me'>;
+
+/** A match as boards show it: the state of this frame and the person on each seat. */
+export interface DisplayedMatch {
+  readonly state: BallState;
+  /** Whole seconds until the bell, rounded up. */
+  readonly seconds: number;
+  readonly players: readonly (DisplayedPlayer | null)[];
+  /** The user's player; null: a spectator. */
+  readonly me: number | null;
+  /** Roles move on with every match. */
+  readonly rotate: boolean;
+  /** A simulated player has the user's seat, and is ready without being asked. */
+  readonly acting: boolean;
+}
+
+/** The displayed name of the user if none was given. */
+export const ownName = 'You';
+
+/** Returns a name that marks bots as such. */
+export const displayName = ({ name, bot }: Pick<DisplayedPlayer, 'name' | 'bot'>): string =>
+  bot && !/\bbot\b/i.test(name) ? `${name} (bot)` : name;
