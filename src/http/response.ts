@@ -1,5 +1,6 @@
 import { type IncomingMessage, type ServerResponse, STATUS_CODES } from 'node:http';
 import type { Duplex } from 'node:stream';
+import type { HttpError } from './http-error';
 import { securityHeaders } from './security-headers';
 
 /** The answer to a request, before it is sent. */
@@ -8,25 +9,6 @@ export interface HttpResponse {
   /** Headers by their names in lower case; they replace the default ones. */
   readonly headers?: Readonly<Record<string, string | number>>;
   readonly body?: string | Uint8Array;
-}
-
-/** A refusal that the client receives: a status and a sentence. */
-export class HttpError extends Error {
-  readonly status: number;
-  /** The invalid field of the body, as `records[1].body.age`; null: no single field is at fault. */
-  readonly field: string | null;
-  readonly headers: Readonly<Record<string, string>>;
-
-  constructor(
-    status: number,
-    message: string,
-    { field = null, headers = {} }: { field?: string | null; headers?: Readonly<Record<string, string>> } = {},
-  ) {
-    super(message);
-    this.status = status;
-    this.field = field;
-    this.headers = headers;
-  }
 }
 
 export const jsonResponse = (value: unknown, status = 200): HttpResponse => ({

@@ -1,5 +1,5 @@
 import { Scene } from 'three';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { MovedPointer } from 'threepoint/core/input/pointer';
 import { vec3 } from 'threepoint/core/math/vec3';

@@ -1,6 +1,6 @@
 import type { Holding } from 'threepoint/avatar/hands/hold-object';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';

@@ -3,7 +3,7 @@ import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { loadSeenAvatar } from 'threepoint/avatar/load-untrusted-avatar';
-import { type BuiltInBody, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityContext } from '../activity/activity-context';

@@ -1,7 +1,8 @@
 import type { WebGLRenderer } from 'three';
 import { bodyFeature, DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import { drawSession } from 'threepoint/xr/draw-session';
-import { isSessionOffered, requestSession, usualFeatures } from 'threepoint/xr/session';
+import { requestSession, usualFeatures } from 'threepoint/xr/request-session';
+import { isSessionOffered } from 'threepoint/xr/session-support';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { HeadsetReport } from './headset-report';
 

@@ -1,6 +1,6 @@
 import { Fog, Mesh, type Object3D, PlaneGeometry, ShadowMaterial } from 'three';
 import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
-import type { PlayRoom } from 'threepoint/xr/session';
+import type { PlayRoom } from 'threepoint/xr/boundary';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Activity, FloorNeeds } from '../activity/activity';
 import type { Quality } from '../scene/renderer';

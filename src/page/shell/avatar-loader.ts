@@ -1,14 +1,14 @@
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
+import { avatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import type { ReadBones } from 'threepoint/avatar/humanoid/read-file-bones';
 import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
-import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/built-in-bodies';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { type FileKind, nameOf, readLimited } from 'threepoint-ui/limited-files';

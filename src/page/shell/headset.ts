@@ -1,19 +1,13 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { type PlayRoom, roomOf } from 'threepoint/xr/boundary';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import type { DeviceCommands } from 'threepoint/xr/device-commands';
 import { drawSession, endSession } from 'threepoint/xr/draw-session';
 import { FrameRateControl, type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
 import { buzz, type Pulse } from 'threepoint/xr/haptics';
 import { Pointing } from 'threepoint/xr/pointing';
-import {
-  describeXrSupport,
-  isSessionOffered,
-  type PlayRoom,
-  requestPassthroughSession,
-  requestVrSession,
-  roomOf,
-  type XrFault,
-} from 'threepoint/xr/session';
+import { requestPassthroughSession, requestVrSession } from 'threepoint/xr/request-session';
+import { describeXrSupport, isSessionOffered, type XrFault } from 'threepoint/xr/session-support';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { Notices } from 'threepoint-ui/notices';
 import { type Emulator, installEmulator } from '../emulator/emulator';

@@ -1,4 +1,5 @@
-import { avatarHash, builtInBodies, skinTones } from 'threepoint/core/body/avatar-ref';
+import { avatarHash } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies, skinTones } from 'threepoint/core/body/built-in-bodies';
 import { calibrationProblem } from 'threepoint/core/body/calibration';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';

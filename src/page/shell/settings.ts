@@ -1,4 +1,4 @@
-import { type BuiltInBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, plainAvatar, type SkinTone } from 'threepoint/core/body/built-in-bodies';
 import type { ActivitySettings } from '../activity/activity-context';
 import type { PreferenceStore, Preferences } from './preferences';
 import type { Switches } from './switches';

@@ -4,7 +4,7 @@ import { labelOf } from 'threepoint/avatar/built-in-body-labels';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
 import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
-import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/built-in-bodies';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';

@@ -1,4 +1,5 @@
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import type { Transform } from 'threepoint/core/math/pose';

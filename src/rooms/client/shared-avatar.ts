@@ -1,10 +1,5 @@
-import {
-  type AvatarHash,
-  type AvatarRef,
-  type BuiltInAvatar,
-  mostAvatarBytes,
-  plainAvatar,
-} from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, type AvatarRef, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInAvatar, plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { HostedGame } from '../room/match-policy';
 import type { AvatarExchange } from './avatar-exchange';

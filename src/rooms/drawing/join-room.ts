@@ -1,6 +1,7 @@
 import type { Object3D } from 'three';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { reasonOf } from 'threepoint/core/errors/reasons';

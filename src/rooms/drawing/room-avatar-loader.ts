@@ -1,13 +1,8 @@
+import { seenAvatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import { downloadLimited, type FileKind } from 'threepoint/avatar/file/limited-download';
-import {
-  type AvatarHash,
-  type AvatarRef,
-  type BuiltInBody,
-  bodyOf,
-  isBuiltInAvatar,
-} from 'threepoint/core/body/avatar-ref';
+import type { AvatarHash, AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, bodyOf, isBuiltInAvatar } from 'threepoint/core/body/built-in-bodies';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { Avatar } from 'threepoint/three';

@@ -1,4 +1,5 @@
-import { type AvatarRef, avatarHash, type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/avatar-ref';
+import { type AvatarRef, avatarHash } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
 import { cleanName } from './player-name';

@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { ClientMessage, JoinRequest } from '../protocol/messages';
 import type { HostedGame } from './match-policy';
 import type { RefusalReason, RoomHost } from './room-host';

@@ -8,10 +8,11 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
-import { assertOptions, optionNames, warnAfterDispose } from './assert-options';
+import { assertOptions, optionNames } from './assert-options';
 import { EstimatorSelector } from './estimator-selector';
 import { HeightEstimator } from './height-estimator';
 import { type InferenceProfiler, withProfiler } from './inference-profiler';
+import { warnAfterDispose } from './warnings';
 
 export type { TrackedPoint } from '../core/tracking/tracking-validator';
 

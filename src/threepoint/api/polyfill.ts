@@ -6,8 +6,9 @@ import { copyPose, invertTransform, makePose, type Pose, type Transform, transfo
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
-import { Body, type BodyOptions, warnOfFallback } from './body';
+import { Body, type BodyOptions } from './body';
 import { bodyOptions as solverOptions } from './body-solver';
+import { warnOfFallback } from './warnings';
 
 export interface InstallBodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
   /**

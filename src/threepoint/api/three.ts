@@ -14,13 +14,14 @@ import type { BoneMap } from '../core/humanoid/bones';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
-import { assertOptions, warnAfterDispose } from './assert-options';
-import { Body, type BodyOptions, warnOfFallback } from './body';
+import { assertOptions } from './assert-options';
+import { Body, type BodyOptions } from './body';
 import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
 import { readBundledMannequin } from './bundled-mannequin';
 import { startValidator } from './bundled-validator';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-file';
+import { warnAfterDispose, warnOfFallback } from './warnings';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../core/humanoid/bones';

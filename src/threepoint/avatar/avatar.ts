@@ -2,7 +2,7 @@ import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
-import type { SkinTone } from '../core/body/avatar-ref';
+import type { SkinTone } from '../core/body/built-in-bodies';
 import type { Calibration } from '../core/body/calibration';
 import { createJointPoses, forwardKinematics } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';

@@ -1,4 +1,4 @@
-import type { BuiltInBody } from '../core/body/avatar-ref';
+import type { BuiltInBody } from '../core/body/built-in-bodies';
 
 /** The display names of the built-in bodies, in the order in which they are offered. */
 export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: string }[] = [

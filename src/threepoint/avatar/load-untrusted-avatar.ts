@@ -1,6 +1,6 @@
 import { type Avatar, createAvatarBetweenFrames } from './avatar';
+import { seenAvatarLimits } from './file/avatar-limits';
 import type { AvatarCheck } from './file/check-avatar';
-import { seenAvatarLimits } from './file/inspect-avatar';
 import { type ParseOptions, parseChecked } from './load-avatar';
 
 export interface LoadSeenAvatarOptions extends ParseOptions {

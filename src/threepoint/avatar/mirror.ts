@@ -14,7 +14,8 @@ import {
 import { Reflector } from 'three/addons/objects/Reflector.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
-import { Pace, reflectionSize } from './reflection-size';
+import { Pace } from './frame-pacer';
+import { reflectionSize } from './reflection-size';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
 import { seesRectangle } from './sees-rectangle';
 

@@ -1,13 +1,7 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
-import {
-  type AvatarRef,
-  bodyOf,
-  isAvatarHash,
-  isBuiltInAvatar,
-  plainAvatar,
-  skinToneOf,
-} from '../core/body/avatar-ref';
+import { type AvatarRef, isAvatarHash } from '../core/body/avatar-ref';
+import { bodyOf, isBuiltInAvatar, plainAvatar, skinToneOf } from '../core/body/built-in-bodies';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
 import { TransientError } from '../core/errors/transient-error';

@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
-import { builtInAvatarOf, builtInBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { builtInAvatarOf, builtInBodies, plainAvatar, skinTones } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import {

@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';

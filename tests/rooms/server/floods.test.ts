@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { lobbyNamespace } from 'threepoint-rooms/server/lobby/lobby-publisher';

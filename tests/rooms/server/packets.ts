@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { poseBytes } from './running-relay';
 
 // What a client may send over the relay's WebSocket, by a grammar of what is right and what is not: each part is right

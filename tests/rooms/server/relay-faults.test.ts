@@ -1,6 +1,6 @@
 // @module-tag full
 
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { nextRandom } from 'threepoint/core/math/random';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';

@@ -1,5 +1,5 @@
 import { io, type Socket } from 'socket.io-client';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';

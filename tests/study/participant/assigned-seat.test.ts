@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { assignedSeat } from 'threepoint-page/ball/match/ball-connections';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';

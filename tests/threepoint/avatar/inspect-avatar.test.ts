@@ -1,6 +1,7 @@
+import { avatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
 import { imageSize } from 'threepoint/avatar/file/image-size';
-import { avatarLimits, inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
+import { inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { afterAll, describe, expect, test } from 'vitest';

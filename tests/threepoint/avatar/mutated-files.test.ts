@@ -1,6 +1,6 @@
 import type { Object3D } from 'three';
+import { seenAvatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { randomNumbers } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';

@@ -1,4 +1,5 @@
-import { Pace, reflectionSize } from 'threepoint/avatar/reflection-size';
+import { Pace } from 'threepoint/avatar/frame-pacer';
+import { reflectionSize } from 'threepoint/avatar/reflection-size';
 import { describe, expect, test } from 'vitest';
 
 /** Height to width of the page's mirror. */

@@ -3,15 +3,14 @@ import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
+import type { AvatarHash, AvatarRef } from 'threepoint/core/body/avatar-ref';
 import {
-  type AvatarHash,
-  type AvatarRef,
   type BuiltInBody,
   bodyOf,
   builtInAvatarOf,
   isBuiltInAvatar,
   plainAvatar,
-} from 'threepoint/core/body/avatar-ref';
+} from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';

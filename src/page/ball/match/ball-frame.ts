@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import {
   makePose,

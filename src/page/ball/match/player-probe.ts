@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { PlayerProbe } from '../../activity/activity';

@@ -1,6 +1,6 @@
 import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
 import { skinColors } from 'threepoint/avatar/palettes';
-import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { plainAvatar, skinTones } from 'threepoint/core/body/built-in-bodies';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';

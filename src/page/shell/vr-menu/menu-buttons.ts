@@ -5,7 +5,7 @@ import {
   plainAvatar,
   type SkinTone,
   skinTones,
-} from 'threepoint/core/body/avatar-ref';
+} from 'threepoint/core/body/built-in-bodies';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import {

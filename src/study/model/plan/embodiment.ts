@@ -1,4 +1,4 @@
-import { builtInBodies } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
 import { type ThreePointName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import { numberBetween } from 'threepoint/core/validation/validation';

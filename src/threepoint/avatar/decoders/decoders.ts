@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { avatarLimits } from '../file/inspect-avatar';
+import { avatarLimits } from '../file/avatar-limits';
 import type { Decoders } from '../load-avatar';
 import type { DracoAnswer, DracoQuestion } from './draco-worker';
 import { WorkerClient } from './worker-client';

@@ -1,7 +1,8 @@
 import { reasonOf } from '../../core/errors/reasons';
+import { type AvatarLimits, avatarLimits } from './avatar-limits';
 import { glbOfFile } from './convert-to-glb';
 import { hashOf } from './file-hash';
-import { type AvatarLimits, avatarLimits, inspectAvatar } from './inspect-avatar';
+import { inspectAvatar } from './inspect-avatar';
 import { gltfFaults } from './validate-gltf';
 
 /** What a file is looked at for. */

@@ -9,7 +9,7 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
-import type { SkinTone } from '../../core/body/avatar-ref';
+import type { SkinTone } from '../../core/body/built-in-bodies';
 import { recordOf } from '../../core/records';
 import type { Steps } from '../between-frames';
 import { palettes, skinColors } from '../palettes';

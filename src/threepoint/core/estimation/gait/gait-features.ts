@@ -3,7 +3,7 @@ import type { Pose } from '../../math/pose';
 import { type Quat, rotate } from '../../math/quat';
 import { addScaled, forward, scale, up, type Vec3, vec3, writeVec3 } from '../../math/vec3';
 import { yawOf } from '../../tracking/heading';
-import { FeatureWindow } from '../networks/frame-features';
+import { FeatureWindow } from '../networks/feature-window';
 
 /** The points of a drawn body that a gait is estimated from, floor frame [m]. */
 export interface GaitPoints {

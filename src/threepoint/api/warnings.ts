@@ -1,0 +1,22 @@
+import type { EstimatorName } from '../core/estimation/pose-estimator';
+
+const warned = new WeakSet<object>();
+
+/**
+ * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: the name of its class,
+ * which bundlers change.
+ */
+export function warnAfterDispose(object: object, what: string): void {
+  if (warned.has(object)) return;
+  warned.add(object);
+  console.warn(`threepoint: “update” has no effect after “dispose”. Stop calling it, or create another ${what}.`);
+}
+
+/**
+ * Warns that another estimator draws than the one selected, for a page without a handler. `handler`: its name there.
+ */
+export function warnOfFallback(estimator: EstimatorName, reason: string, handler = 'fallback'): void {
+  console.warn(
+    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “${handler}” to report it yourself.`,
+  );
+}
