@@ -1,4 +1,7 @@
-/** Returns what a thread or process ran out of, and what to do; null: the error has another cause. */
+/**
+ * Returns a sentence about the resource that a thread or process ran out of, and what to do; null: the error has
+ * another cause.
+ */
 export function shortageOf(error: Error): string | null {
   const text = `${(error as NodeJS.ErrnoException).code} ${error.message}`;
   if (/\b(EMFILE|ENFILE)\b/.test(text)) {

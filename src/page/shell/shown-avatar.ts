@@ -1,10 +1,10 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-body-labels';
+import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
-import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
-import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/built-in-bodies';
+import { MotionOnlyError } from 'threepoint/avatar/file/motion-only-error';
+import { UnknownBonesError } from 'threepoint/avatar/humanoid/unknown-bones-error';
+import { type BuiltInBody, bodyOf, defaultAvatar, skinToneOf } from 'threepoint/core/body/built-in-bodies';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
@@ -35,11 +35,11 @@ export interface ShownAvatarOptions extends AvatarLoaderOptions {
 export interface WaitingForBones {
   readonly name: string;
   /** The file's bones at rest. */
-  readonly joints: UnknownBones['joints'];
+  readonly joints: UnknownBonesError['joints'];
   /** The bones that are known, or that the user gave last. */
   readonly bones: BoneMap;
   /** How sure each match of the file's bones is, from 0 to 1. */
-  readonly confidence: UnknownBones['confidence'];
+  readonly confidence: UnknownBonesError['confidence'];
   /** A sentence about what is wrong with them; null: the user gave none yet. */
   readonly complaint: string | null;
   /** Whether the file is the shown avatar. */
@@ -67,8 +67,8 @@ export class ShownAvatar {
   readonly #options: ShownAvatarOptions;
   readonly #loader: AvatarLoader;
   #avatar: Avatar | null = null;
-  #name = labelOf(plainAvatar);
-  #worn: OwnAvatar = plainAvatar;
+  #name = bodyLabelOf(defaultAvatar);
+  #worn: OwnAvatar = defaultAvatar;
   #source: LoadedUserAvatar['source'] = null;
   #seatPalette: string | null = null;
   #pending: string | null = null;
@@ -159,7 +159,7 @@ export class ShownAvatar {
    */
   openBuiltIn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
     const { builtInBody, skinTone } = this.#options.settings;
-    const request = this.#request(labelOf(builtInBody), true);
+    const request = this.#request(bodyLabelOf(builtInBody), true);
     return this.#arrive(request, () => this.#loader.loadBuiltIn(builtInBody, skinTone, bytes));
   }
 
@@ -174,7 +174,7 @@ export class ShownAvatar {
       request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });
       return this.#loader.build(request.checked, request.name);
     }).catch((error: unknown) => {
-      if (!(error instanceof MotionWithoutBody)) throw error;
+      if (!(error instanceof MotionOnlyError)) throw error;
       return 'motion' as const;
     });
   }
@@ -281,7 +281,7 @@ export class ShownAvatar {
       return true;
     } catch (error) {
       if (cancellation.signal.aborted) return false;
-      if (error instanceof MotionWithoutBody) {
+      if (error instanceof MotionOnlyError) {
         if (turn === this.#requested) this.#pending = null;
         throw error;
       }
@@ -296,7 +296,7 @@ export class ShownAvatar {
   #refuse({ turn, name, isBuiltIn, checked }: Request, error: unknown): void {
     const { notices } = this.#options;
     const isNewest = turn === this.#requested;
-    if (error instanceof UnknownBones && checked && isNewest) {
+    if (error instanceof UnknownBonesError && checked && isNewest) {
       const { joints, matched: bones, confidence } = error;
       const asked = { complaint: null, isShown: false, canForgetMap: false };
       this.#waiting = { name, joints, bones, confidence, ...asked, checked };

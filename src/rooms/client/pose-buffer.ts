@@ -8,9 +8,9 @@ import {
 import {
   copyHandShape,
   type HandShape,
+  lerpHandShape,
   type MutableHandShape,
   makeHandShape,
-  mixHandShape,
 } from 'threepoint/core/body/hand-shape';
 import { jointNames } from 'threepoint/core/body/joints';
 import {
@@ -278,7 +278,7 @@ function mixFingers(
   t: number,
   target: MutableHandShape,
 ): MutableHandShape | null {
-  if (a && b) return mixHandShape(a, b, Math.min(t, 1), target);
+  if (a && b) return lerpHandShape(a, b, Math.min(t, 1), target);
   const held = t < 1 ? a : b;
   return held && copyHandShape(held, target);
 }

@@ -1,6 +1,6 @@
 /**
- * Throws a TypeError where options are missing or have a name that is not known: a misspelt one would have no effect.
- * `of`: the function or class with these options.
+ * Throws a TypeError if options are missing or one has an unknown name: a misspelt option would have no effect. `of`:
+ * the name of the function or class.
  */
 export function assertOptions(of: string, options: object | null | undefined, known: readonly string[]): void {
   if (typeof options !== 'object' || options === null) {

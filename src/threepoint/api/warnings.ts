@@ -3,8 +3,8 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 const warned = new WeakSet<object>();
 
 /**
- * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: the name of its class,
- * which bundlers change.
+ * Warns once for each object that is used after its `dispose`; it does not throw, because frames call it. `what`: the
+ * name of the class, which minifiers change.
  */
 export function warnAfterDispose(object: object, what: string): void {
   if (warned.has(object)) return;
@@ -13,7 +13,8 @@ export function warnAfterDispose(object: object, what: string): void {
 }
 
 /**
- * Warns that another estimator draws than the one selected, for a page without a handler. `handler`: its name there.
+ * Warns that inverse kinematics replaces the selected estimator, for a page without a handler. `handler`: the handler's
+ * name.
  */
 export function warnOfFallback(estimator: EstimatorName, reason: string, handler = 'fallback'): void {
   console.warn(

@@ -25,12 +25,12 @@ import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { tieLooseParts } from './rig/loose-parts';
 import { type AvatarJoint, Rig } from './rig/rig';
-import { OwnTrunk } from './rig/rig-trunk';
+import { RigTrunk } from './rig/rig-trunk';
 import { Springs } from './rig/springs';
 import { meshesOf } from './scene-meshes';
 
 /**
- * A drawn body. Poses are in the floor frame; `object` stays at the floor's origin.
+ * An avatar in three.js. Poses are in the floor frame, and the origin of `object` is the floor's.
  *
  * @example
  * const avatar = await loadAvatar('/avatars/me.vrm');
@@ -39,38 +39,37 @@ import { meshesOf } from './scene-meshes';
  */
 export interface Avatar {
   readonly object: Object3D;
-  /** The height of the head's top when the body stands upright [m]. */
+  /** The height of the top of the head when the body stands upright [m]. */
   readonly height: number;
-  /** Scales the rig limb by limb to these measures, not by its own proportions. May be called at any time. */
+  /** Scales the rig, limb by limb, to these measures. May be called at any time. */
   setCalibration(calibration: Calibration): void;
-  /**
-   * Bends the body to a pose, and the fingers where the pose has them. time: [s], on the clock of the tracking frames.
-   */
+  /** Draws a pose, with its fingers if it has any. `time`: [s], on the clock of the tracking frames. */
   setPose(pose: AvatarPose, time: number): void;
-  /** Hides the own head from the wearer's eyes; mirrors and other people still see it. */
+  /** Hides the head from the session's eyes (true); mirrors and other cameras still draw it. */
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
   /** Recolours the materials of the mannequin; other avatars keep theirs. Unknown names change nothing. */
   setPalette(name: string): void;
   /** Recolours the skin of the project's own people; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void;
-  /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
+  /** Sets the opacity, 0 to 1. Below 1 the body is transparent. */
   setOpacity(opacity: number): void;
   /**
-   * Sets the opening of the mouth from the next `setPose` on: 0 shut to 1. A body without a shape for it keeps it shut.
+   * Sets the opening of the mouth from the next `setPose` on, 0 (shut) to 1. Has no effect on a body without a mouth
+   * shape.
    */
   setMouth(open: number): void;
   /**
-   * Sets the bend of a hand's fingers for poses that have none, from the next `setPose` on; the shape is copied. null:
-   * not seen, they keep their bend for a while and relax.
+   * Sets the fingers of a hand for poses without fingers, from the next `setPose` on; the shape is copied. null: not
+   * tracked; they keep their bend for a while and relax.
    */
   setFingers(side: Side, shape: HandShape | null): void;
   /**
-   * Returns the geometry of the drawn hand [m]; null: the rig lacks a finger bone. The object is the same until the
+   * Returns the geometry of the drawn hand [m]; null: the rig lacks a finger bone. The same object until the
    * calibration changes.
    */
   handGeometry(side: Side): HandGeometry | null;
-  /** Returns the drawn fingertips of the rig, floor frame [m], in new objects for tools. */
+  /** Returns the drawn fingertips, floor frame [m], in new objects. */
   fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>>;
   /**
    * Returns the drawn joint positions of the rig's bones, floor frame [m]. The next frame overwrites the object: copy
@@ -80,14 +79,14 @@ export interface Avatar {
   dispose(): void;
 }
 
-/** The calibration of a body that was not fitted yet. */
+/** The calibration until `setCalibration` is called. */
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
-/** A pause of the page moves feet no further than this [s]. */
+/** The longest time step of the legs [s], after a pause of the page. */
 const longestStep = 0.25;
 const upright = recordOf(jointNames, () => identity);
 
-/** What of a body takes long to make. */
-interface MadeParts {
+/** The parts of a body that take long to create. */
+interface AvatarParts {
   readonly vrm: VRM;
   readonly object: Group;
   readonly rig: Rig;
@@ -95,7 +94,7 @@ interface MadeParts {
   readonly meshes: readonly AvatarMesh[];
 }
 
-/** Makes a body from a file, which serves for one. */
+/** Creates a body from a loaded file, which can be used for one body only. */
 function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   const object = new Group();
   object.name = 'avatar';
@@ -105,18 +104,15 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   const rig = new Rig(vrm);
   yield* tieLooseParts(vrm, rig);
   const arms = new ArmHelperJoints(rig);
-  yield* arms.shareSkin(vrm.scene);
-  // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
+  yield* arms.spreadSkinWeights(vrm.scene);
+  // First-person meshes are copies of meshes with a head, made after the skin weights were redistributed.
   yield* setUpFirstPerson(vrm);
   const meshes = yield* readMeshes(vrm, rig);
   yield;
   return new VrmAvatar({ vrm, object, rig, arms, meshes });
 }
 
-/**
- * Prepares the meshes for first person, mesh by mesh. A file without annotations, as VRM 0.x may be, has its head
- * hidden.
- */
+/** Prepares the meshes for the first-person view, one per step. In a file without annotations the head is hidden. */
 function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
   const unnamed = () => [{ meshes: meshesOf(scene), type: 'auto' as const }];
   for (const { meshes, type } of firstPerson?.meshAnnotations ?? unnamed()) {
@@ -131,7 +127,7 @@ class VrmAvatar implements Avatar {
   readonly object: Group;
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
-  private readonly trunk: OwnTrunk;
+  private readonly trunk: RigTrunk;
   private readonly arms: ArmHelperJoints;
   private readonly legs: Legs;
   private readonly fingers: Readonly<Record<Side, HandFingers>>;
@@ -154,17 +150,17 @@ class VrmAvatar implements Avatar {
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
 
-  constructor({ vrm, object, rig, arms, meshes }: MadeParts) {
+  constructor({ vrm, object, rig, arms, meshes }: AvatarParts) {
     this.vrm = vrm;
     this.object = object;
     this.rig = rig;
     this.arms = arms;
-    this.trunk = new OwnTrunk(this.rig);
+    this.trunk = new RigTrunk(this.rig);
     this.legs = new Legs(this.rig);
     this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
-    // The object's number differs from that of every other avatar, and so do the times at which it blinks.
+    // The id of the object is a unique seed: avatars blink at different times.
     this.face = new Face(vrm, object.id);
     this.setCalibration(averageBody);
   }
@@ -177,7 +173,7 @@ class VrmAvatar implements Avatar {
     this.skeleton = skeletonFromCalibration(calibration);
     const hipsPosition = this.skeleton.restOffsets.hips;
     const tPose = forwardKinematics(this.skeleton, { hipsPosition, localRotations: upright });
-    // Rig to body, the same in all directions; limbs add their own stretch.
+    // The uniform scale from rig to body; limbs are stretched in addition.
     this.scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
     this.trunk.fit(tPose, this.scale);
     const legs = this.legs.fit(calibration.eyeHeight, tPose.hips.position.y, this.scale);
@@ -192,22 +188,22 @@ class VrmAvatar implements Avatar {
 
   setPose(pose: AvatarPose, time: number): void {
     const elapsed = this.lastTime === null ? 0 : time - this.lastTime;
-    // Written so that a time that is no number is no step.
+    // A NaN time is no step.
     const deltaSeconds = elapsed > 0 ? Math.min(longestStep, elapsed) : 0;
     this.lastTime = time;
     const shown = pose.body ? 'body' : 'hands';
-    if (this.meshes.show(shown)) this.rig.forgetJoints();
+    if (this.meshes.setVisibleParts(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose, pose.body, deltaSeconds);
     else this.applyHands(pose);
     for (const side of sides) {
       if (pose.fingers) this.setFingers(side, pose.fingers[side]);
       this.fingers[side].update(deltaSeconds);
     }
-    this.live(pose.head, deltaSeconds);
+    this.animateSecondary(pose.head, deltaSeconds);
   }
 
-  /** What moves by itself under a head that is here: eyes, lids, hair, and what the file ties to bones. */
-  private live({ position, orientation }: AvatarPose['head'], deltaSeconds: number): void {
+  /** Animates eyes, lids and hair, and applies the file's constraints. */
+  private animateSecondary({ position, orientation }: AvatarPose['head'], deltaSeconds: number): void {
     const { vrm } = this;
     this.face.update(orientation, deltaSeconds);
     vrm.nodeConstraintManager?.update();
@@ -234,7 +230,7 @@ class VrmAvatar implements Avatar {
     this.rig.settle();
   }
 
-  /** Head and hands alone, each where it was tracked; the rest is not drawn. */
+  /** Draws head and hands alone, where they were tracked. */
   private applyHands({ head, leftHand, rightHand }: AvatarPose): void {
     const headJoint = headJointOf(head, this.skeleton.eyesInHead, this.headJoint);
     const restHead = this.rig.rest('head');
@@ -242,8 +238,8 @@ class VrmAvatar implements Avatar {
       const name = jointNames[i]!;
       const rest = this.rig.rest(name);
       if (!rest || !restHead) continue;
-      // The skin of the head reaches down to the neck or, without one, the trunk: they go along as they rest. A rig
-      // faces the other way.
+      // The skin of the head also depends on the neck or the trunk: they keep their rest pose relative to the head. The
+      // rig faces +Z.
       const from = setVec3(this.joint, restHead.x - rest.x, rest.y - restHead.y, restHead.z - rest.z);
       addScaled(headJoint, rotate(head.orientation, from, from), this.scale, from);
       this.rig.place(name, from, head.orientation, name === 'head');
@@ -263,7 +259,7 @@ class VrmAvatar implements Avatar {
       return;
     }
     const orientation = handBoneRotation(side, hand.orientation, this.handBone);
-    // The cuff of a sleeve has a share of the forearm, which goes straight on behind the hand.
+    // The skin at the wrist also depends on the forearm, which continues straight behind the hand.
     const elbow = rotate(orientation, this.skeleton.restOffsets[name], this.joint);
     subtract(hand.position, elbow, elbow);
     this.rig.place(lowerArm, elbow, orientation, false);

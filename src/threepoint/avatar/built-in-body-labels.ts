@@ -9,4 +9,4 @@ export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: 
   { name: 'child', label: 'Child' },
 ];
 
-export const labelOf = (name: BuiltInBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;
+export const bodyLabelOf = (name: BuiltInBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;

@@ -1,9 +1,9 @@
-/** Frames that come a little early are due all the same [s]. */
-const early = 0.001;
+/** The tolerance for frames that come a little early [s]. */
+const toleranceSeconds = 0.001;
 
-/** Chooses the frames in which something is due that happens less often than frames do. */
-export class Pace {
-  /** The most often that something is due [Hz]; null: in each frame. */
+/** Selects the frames for work that runs at a lower rate than frames. */
+export class FramePacer {
+  /** The maximum rate [Hz]; null: every frame. */
   rateHz: number | null = null;
   #next = Number.NEGATIVE_INFINITY;
 
@@ -12,14 +12,14 @@ export class Pace {
     this.#next = Number.NEGATIVE_INFINITY;
   }
 
-  /** Returns whether something is due in the frame at this time [s]; each frame is asked about once. */
+  /** Returns whether the work is due in the frame at this time [s]. Call it once per frame. */
   isDue(time: number): boolean {
     if (this.rateHz === null) return true;
     const interval = 1 / this.rateHz;
     const wait = this.#next - time;
-    // A wait longer than an interval is that of a clock that was set back.
-    if (wait > early && wait <= interval) return false;
-    this.#next = wait > -interval && wait <= early ? this.#next + interval : time + interval;
+    // A wait longer than an interval shows that the clock was set back.
+    if (wait > toleranceSeconds && wait <= interval) return false;
+    this.#next = wait > -interval && wait <= toleranceSeconds ? this.#next + interval : time + interval;
     return true;
   }
 }

@@ -1,6 +1,6 @@
 /**
- * A reflection has at most this share of the pixels of the picture that it is part of. A mirror of 1.5 × 2.15 m seen
- * from 1.5 m fills less than a third of an eye of 96°.
+ * The largest size of a reflection relative to the image that shows it [fraction of pixels]. A mirror of 1.5 × 2.15 m
+ * seen from 1.5 m fills less than a third of an eye's 96°.
  */
 const pixelShare = 0.4;
 
@@ -10,12 +10,12 @@ export interface TextureSize {
   readonly height: number;
 }
 
-/** The sizes of the newest calls, so that a frame makes no garbage. */
+/** The result of the newest call, reused to avoid garbage. */
 const size = { width: 0, height: 0 };
 
 /**
- * Returns the size of the reflection in a picture of this many pixels, for a glass of this height to width, at most so
- * wide [pixels]. The next call overwrites it.
+ * Returns the size of the reflection in an image of this many pixels. `heightToWidth`: the aspect of the mirror;
+ * `mostWidth`: the limit [pixels]. The next call overwrites the result.
  */
 export function reflectionSize(pixels: number, heightToWidth: number, mostWidth: number): TextureSize {
   const width = Math.floor(Math.min(mostWidth, Math.sqrt((pixelShare * pixels) / heightToWidth)));

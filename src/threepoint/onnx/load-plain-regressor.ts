@@ -1,6 +1,6 @@
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import { fetchContract, fetchStated, named } from './model-files';
+import { fetchContract, fetchEntry, withFileName } from './model-files';
 
 export interface PlainLoadOptions {
   /** Called with the share [0, 1] of the weights that has arrived. */
@@ -17,10 +17,10 @@ export async function loadPlainRegressor(
 ): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
   const weights = weightsOf(contract);
-  const bytes = await fetchStated(contractUrl, weights, onProgress);
+  const bytes = await fetchEntry(contractUrl, weights, onProgress);
   try {
     return createPlainRegressor(contract, bytes);
   } catch (error) {
-    throw named(weights.file, error);
+    throw withFileName(weights.file, error);
   }
 }

@@ -1,7 +1,7 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { outputNumbers, tensorsOf } from './model-contract';
-import { fetchContract, fetchStated, named } from './model-files';
+import { fetchContract, fetchEntry, withFileName } from './model-files';
 import {
   createSession,
   type ExecutionProvider,
@@ -34,7 +34,7 @@ export interface LoadOptions {
  */
 export async function loadRegressor(contractUrl: string, options: LoadOptions = {}): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
-  return startRegressor(contract, await fetchStated(contractUrl, contract, options.onProgress), options);
+  return startRegressor(contract, await fetchEntry(contractUrl, contract, options.onProgress), options);
 }
 
 /** Starts a regressor from bytes in memory, for programs that read files themselves. */
@@ -51,7 +51,7 @@ export async function startRegressor(
       ? createWorkerSession(model, tensors, inWorker, wasmPaths)
       : createSession(model, tensors, where, { bundle, wasmPaths }));
     try {
-      await tryOut(opened, contract.file, tensors);
+      await runOnce(opened, contract.file, tensors);
       return opened;
     } catch (error) {
       await opened.release();
@@ -63,10 +63,10 @@ export async function startRegressor(
     try {
       return await open(provider);
     } catch (error) {
-      if (provider === 'wasm') throw named(contract.file, error);
+      if (provider === 'wasm') throw withFileName(contract.file, error);
       onProviderFallback?.(`WebGPU does not run ${contract.file} (${reasonOf(error)}): WebAssembly takes over.`);
       return open('wasm').catch((second) => {
-        throw named(contract.file, second);
+        throw withFileName(contract.file, second);
       });
     }
   }
@@ -79,7 +79,7 @@ export async function startRegressor(
 }
 
 /** Throws a sentence where an open session does not match the contract of its file. */
-async function tryOut(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
+async function runOnce(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
   if (!session.inputNames.includes(input) || !session.outputNames.includes(output)) {
     const has = `${session.inputNames.join(', ')} → ${session.outputNames.join(', ')}`;
     throw new Error(`${file}: has the tensors ${has}, its contract says ${input} → ${output}`);

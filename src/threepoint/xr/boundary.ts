@@ -1,11 +1,11 @@
 /** The sides [m] of the room within a boundary, along the axes of the floor. */
-export interface PlayRoom {
+export interface BoundarySize {
   readonly width: number;
   readonly depth: number;
 }
 
 /** Returns the room within the session's boundary; null: the device has none, or does not report it. */
-export async function roomOf(session: XRSession): Promise<PlayRoom | null> {
+export async function readBoundary(session: XRSession): Promise<BoundarySize | null> {
   let space: XRReferenceSpace;
   try {
     space = await session.requestReferenceSpace('bounded-floor');

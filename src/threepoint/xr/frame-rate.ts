@@ -38,7 +38,7 @@ const levels: readonly Savings[] = [
 const allSavings = levels.length - 1;
 
 /** The savings where no load is known: all that one does not see in a mirror. */
-export const unjudgedSavings: Savings = { foveation: 1, mirrorRateHz: null };
+export const defaultSavings: Savings = { foveation: 1, mirrorRateHz: null };
 
 /** How often a rate was not held with some savings, and when it may be tried again [s]. */
 interface Failures {
@@ -80,7 +80,7 @@ export class FrameRateControl {
 
   /** What the picture has to give up now. */
   get savings(): Savings {
-    return this.rate === null ? unjudgedSavings : levels[this.#level]!;
+    return this.rate === null ? defaultSavings : levels[this.#level]!;
   }
 
   /** Starts a new window: what was counted does not compare with what follows. */

@@ -15,7 +15,7 @@ export const requestPassthroughSession = (deviceBody = false): Promise<XRSession
   requestSession('immersive-ar', [...roomFeatures, ...(deviceBody ? [bodyFeature] : [])]);
 
 /** The session features that every session asks for beside the floor. */
-export const usualFeatures = ['hand-tracking', 'bounded-floor', 'layers'] as const;
+export const defaultFeatures = ['hand-tracking', 'bounded-floor', 'layers'] as const;
 
 /** Requests a session with a floor, the usual features and these. Rejects with a sentence. Needs a click. */
 export async function requestSession(mode: XRSessionMode, features: readonly string[]): Promise<XRSession> {
@@ -23,7 +23,7 @@ export async function requestSession(mode: XRSessionMode, features: readonly str
   try {
     return await navigator.xr.requestSession(mode, {
       requiredFeatures: ['local-floor'],
-      optionalFeatures: [...usualFeatures, ...features],
+      optionalFeatures: [...defaultFeatures, ...features],
     });
   } catch (error) {
     const name = error instanceof DOMException ? error.name : '';

@@ -145,7 +145,7 @@ export class TrackedSession {
   }
 
   /** How much higher the user stands than the device reports [m]. */
-  get raised(): number {
+  get heightOffset(): number {
     return this.#raised;
   }
 
@@ -153,7 +153,7 @@ export class TrackedSession {
    * Overrides the height of the user: the floor lies this far [m] below the device's own. 0: the device's height. It
    * stays through recentring.
    */
-  raise(height: number): void {
+  setHeightOffset(height: number): void {
     const by = height - this.#raised;
     if (!Number.isFinite(by) || by === 0) return;
     this.#raised = height;

@@ -1,7 +1,7 @@
 import { deflateSync } from 'node:zlib';
-import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
+import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';
@@ -78,13 +78,13 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   vi.spyOn(console, 'error').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
-  const spoil = spoilers(randomNumbers(20261127));
+  const spoil = spoilers(createRandom(20261127));
   const counts = { 'FBX refused': 0, 'FBX read': 0 };
   const costs = new ReadingCosts();
   for (let i = 0; i < files; i++) {
     const file = spoil();
     const parts: SceneParts = i % 2 === 0 ? 'body' : 'motion';
-    const read = await costs.measure(file.byteLength, () => glbOfFile(file, name, parts));
+    const read = await costs.measure(file.byteLength, () => convertToGlb(file, name, parts));
     if (read instanceof Error) {
       expect(read.message, `file ${i}`).toMatch(/^person\.fbx: cannot be read as FBX \(.+\)$/s);
       counts['FBX refused'] += 1;

@@ -1,7 +1,7 @@
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
 import { boneNode } from 'threepoint/avatar/humanoid/needed-bones';
-import { UnknownBones } from 'threepoint/avatar/humanoid/unknown-bones-error';
+import { UnknownBonesError } from 'threepoint/avatar/humanoid/unknown-bones-error';
 import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
@@ -48,12 +48,12 @@ const expectSame = (a: Vec3 | undefined, b: Vec3 | undefined) =>
   expect(a && b ? distance(a, b) : 'one of them is not drawn').toBeLessThan(1e-9);
 
 /** How a file's names are refused. */
-async function refusalOf(file: ArrayBuffer): Promise<UnknownBones> {
+async function refusalOf(file: ArrayBuffer): Promise<UnknownBonesError> {
   const error = await parseAvatar(file, 'person.glb').then(
     () => null,
     (reason: unknown) => reason,
   );
-  if (!(error instanceof UnknownBones)) throw new Error(`expected names that tell nothing, not ${error}`);
+  if (!(error instanceof UnknownBonesError)) throw new Error(`expected names that tell nothing, not ${error}`);
   return error;
 }
 

@@ -8,8 +8,8 @@ import {
   type BuiltInBody,
   bodyOf,
   builtInAvatarOf,
+  defaultAvatar,
   isBuiltInAvatar,
-  plainAvatar,
 } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
@@ -34,7 +34,7 @@ const estimator = createIk(defaultCalibration);
 const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
   id,
   calibration: defaultCalibration,
-  avatar: plainAvatar,
+  avatar: defaultAvatar,
   palette: 'ember',
   pose: poseOf(estimator, actorFrame(9.5, defaultCalibration)),
   placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
@@ -161,9 +161,9 @@ describe('an avatar that could not be had', () => {
 
   test('for a fault that passes is shown once it has loaded, and no mannequin is reported', async () => {
     const { others, told, show, asked } = wearing([new TransientError('the server answers 404'), null]);
-    await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
+    await show(0, () => asked() === 1 && others.drawnAs(1) === defaultAvatar);
     await show(4, () => asked() > 1, 100);
-    expect([asked(), others.drawnAs(1)]).toEqual([1, plainAvatar]);
+    expect([asked(), others.drawnAs(1)]).toEqual([1, defaultAvatar]);
     await show(6, () => others.drawnAs(1) === file);
     expect([asked(), others.drawnAs(1)]).toEqual([2, file]);
     expect(told).toEqual([]);
@@ -178,7 +178,7 @@ describe('an avatar that could not be had', () => {
 
   test('for its own faults is reported at once and not requested again', async () => {
     const { others, told, show, asked } = wearing([new Error('no humanoid')]);
-    await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
+    await show(0, () => asked() === 1 && others.drawnAs(1) === defaultAvatar);
     await show(60, () => asked() > 1, 100);
     expect([asked(), told]).toEqual([1, ['no humanoid']]);
   });

@@ -1,4 +1,4 @@
-import { fingersOfButtons } from 'threepoint/avatar/hands/button-fingers';
+import { fingersFromButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
@@ -118,7 +118,7 @@ export function moveOnce(
   if (!seen?.match || seen.mySeat === null) return null;
   const { frame, buttons } = performedAt(actor, moment, seen.match, seen.mySeat, sight);
   const { pose } = estimator.update(frame);
-  line.sendPose(moment, { jump: false, pose, fingers: fingersOfButtons(buttons) });
+  line.sendPose(moment, { jump: false, pose, fingers: fingersFromButtons(buttons) });
   return play(line, gestures, frame, buttons);
 }
 

@@ -1,8 +1,11 @@
-/** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
+/**
+ * The limits of an avatar's file: several times the size of avatars made for headsets, and far below a size that stalls
+ * one.
+ */
 export const avatarLimits = {
   megabytes: 60,
   triangles: 250_000,
-  /** Pictures, the length of their longer side, and all their pixels together. */
+  /** Images, the length of their longer side, and all their pixels together. */
   textures: 64,
   texturePixels: 4096,
   millionPixels: 96,
@@ -15,8 +18,8 @@ export const avatarLimits = {
 } as const;
 export type AvatarLimits = Readonly<Record<keyof typeof avatarLimits, number>>;
 
-/** What a body may cost that another person has on: there are several of them, and no one here has chosen them. */
-export const seenAvatarLimits: AvatarLimits = {
+/** The limits of another person's avatar: several are drawn at a time, and this page's user has not chosen them. */
+export const untrustedAvatarLimits: AvatarLimits = {
   megabytes: 20,
   triangles: 100_000,
   textures: 48,

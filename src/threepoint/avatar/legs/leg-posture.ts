@@ -42,7 +42,7 @@ import { type Foot, Stepping } from './stepping';
 
 /** The proportions of the legs of a body that stands facing −Z [m]. */
 export interface LegProportions {
-  /** The right hip joint from the hips' own, level with the floor. */
+  /** The offset of the right hip joint from the hips, horizontal. */
   readonly hipOffset: Vec3;
   readonly upper: number;
   readonly lower: number;
@@ -70,7 +70,7 @@ interface MutableLegPose extends LegPose {
 
 /** The smallest bend of a leg [share of its length]: a knee that snaps straight is visible. */
 const longestReach = 0.999;
-/** The largest way of the hips in one frame [leg lengths]. */
+/** The largest motion of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
 /**
  * The fastest turn about the vertical of both head and hips [rad/s], and the largest between two frames that lie far
@@ -92,7 +92,7 @@ const makeLeg = (): MutableLegPose => ({
   foot: quat(0, 0, 0, 1),
 });
 
-// Scratch of one call; nothing of it is kept.
+// Scratch variables of one call.
 const level = quat(0, 0, 0, 1);
 const levelForward = vec3(0, 0, 0);
 const footTurn = quat(0, 0, 0, 1);
@@ -109,7 +109,10 @@ const axisZ = vec3(0, 0, 0);
 const kneeCircle = makeElbowCircle();
 const fallbacks: readonly [Vec3, Vec3] = [levelForward, up];
 
-/** The rotation that takes a leg hanging down, toes to −Z, along `direction` with its knee towards `towards`. */
+/**
+ * Returns the rotation of a leg (at rest down, toes to −Z) that points along `direction` with its knee towards
+ * `towards`.
+ */
 function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
   normalise(scale(direction, -1, axisY), up, axisY);
   scale(towards, -1, axisZ);
@@ -126,7 +129,7 @@ export class LegPosture {
   readonly legs: Readonly<Record<Side, LegPose>>;
   private readonly own = { left: makeLeg(), right: makeLeg() };
   private readonly pins: Readonly<Record<Side, Pin>> = { left: makePin(), right: makePin() };
-  /** False before the first frame, in which a tracked foot is where its tracker is. */
+  /** Whether there was a frame before; in the first one a tracked foot is placed at its tracker. */
   private known = false;
   private readonly stepping = new Stepping();
   private readonly stance = { ankleHeight: 0, legLength: 0 };
@@ -135,7 +138,7 @@ export class LegPosture {
   private lastHeadYaw = 0;
   private seconds = 0;
 
-  /** eyeHeight [m]: the person's, whose proportions are the unit of the gait. */
+  /** `eyeHeight`: the person's [m], the unit of the gait network. */
   constructor(
     private proportions: LegProportions,
     private eyeHeight: number,
@@ -151,7 +154,7 @@ export class LegPosture {
     this.standUp();
   }
 
-  /** Advances by one frame under the hips of a body, floor frame. feet: the ankles that trackers pin. */
+  /** Advances by one frame under the hips of a body, floor frame. `feet`: the ankles that trackers pin. */
   update(points: GaitPoints, deltaSeconds: number, feet?: TrackedFeet): void {
     const { stance, proportions, gait } = this;
     const { hips } = points;
@@ -173,7 +176,7 @@ export class LegPosture {
   }
 
   /**
-   * Returns whether the body jumped since the frame before, because the device or the wearer moved or turned it: the
+   * Returns whether the body jumped since the frame before, because the device or the user moved or turned it: the
    * feet follow at once.
    */
   private wasCarried({ hips, head }: GaitPoints, hipsYaw: number, deltaSeconds: number): boolean {
@@ -204,7 +207,7 @@ export class LegPosture {
     const { hipOffset, upper, lower } = this.proportions;
     const { hip, ankle, foot } = this.own[side];
     const pin = this.pins[side];
-    // Legs hang from a pelvis that tilts less than the lower back above it.
+    // The pelvis tilts less than the lower back above it.
     setVec3(hip, sideSign(side) * hipOffset.x, hipOffset.y, hipOffset.z);
     add(hips, rotate(level, hip, hip), hip);
     copyVec3(step.position, ankle);
@@ -225,7 +228,7 @@ export class LegPosture {
     const { hip, knee, ankle, foot } = leg;
     const reach = (upper + lower) * longestReach;
     const far = length(subtract(ankle, hip, line));
-    // A pelvis higher than its legs are long takes the feet off the floor.
+    // A pelvis that is higher than the legs are long lifts the feet.
     if (far > reach) addScaled(hip, line, reach / far, ankle);
     rotate(fromAxisAngle(up, step.yaw, footTurn), forward, toes);
     if (trackedWeight > 0) lerp(toes, rotate(foot, forward, trackedToes), trackedWeight, toes);

@@ -15,22 +15,25 @@ import {
 import { type Side, sides } from '../../core/math/side';
 import type { Steps } from '../between-frames';
 import type { HelperJoint, Rig } from './rig';
-import { type SpreadArm, spreadArms } from './spread-arm-weights';
+import { type SpreadArm, spreadArmWeights } from './spread-arm-weights';
 
-/** One arm's joints that its file lacks. */
+/** The joints that are added to an arm. */
 interface ArmHelpers {
   readonly side: Side;
-  /** At the shoulder, elbow and wrist: half of the way from the bone before to the bone after. */
+  /** Joints at shoulder, elbow and wrist whose rotation is halfway between the adjacent bones. */
   readonly shoulder: HelperJoint;
   readonly elbow: HelperJoint;
   readonly wrist: HelperJoint;
-  /** From the shoulder on, in equal steps of the upper arm's twist: the first has none of it, the bone itself all. */
+  /** Joints along the upper arm, from the shoulder: the first has none of the twist, and the bone itself all of it. */
   readonly upper: readonly HelperJoint[];
-  /** From the elbow on, in equal steps of the hand's twist: the bone itself has none of it, the last all. */
+  /**
+   * Joints along the forearm, from the elbow: the bone itself has none of the hand's twist, and the last joint all of
+   * it.
+   */
   readonly lower: readonly HelperJoint[];
-  /** Unwrapped angle [rad] by which the upper arm is turned about itself against the clavicle. */
+  /** The unwrapped twist [rad] of the upper arm relative to the clavicle. */
   upperTwist: number;
-  /** By which the hand is turned about the forearm. */
+  /** The unwrapped twist [rad] of the hand relative to the forearm. */
   lowerTwist: number;
 }
 
@@ -44,16 +47,16 @@ const turned = quat(0, 0, 0, 1);
 const step = quat(0, 0, 0, 1);
 const begin = quat(0, 0, 0, 1);
 
-/** The angle [rad] by which `to` is turned against `from` about an axis of both. */
+/** Returns the twist [rad] from `from` to `to` about an axis that both share. */
 function angleAbout(from: Quat, to: Quat, along: (typeof alongArm)[Side]): number {
   multiply(conjugate(from, inverse), to, against);
   return twistAngle(twistOf(against, along, twist), along);
 }
 
 /**
- * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads
- * over the forearm and that of the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of
- * any rig is shared among them (spread-arm-weights); twist bones of its own are taken for the bone they lie on.
+ * Adds joints to an arm so that its skin neither collapses nor folds: the twist of the hand is distributed over the
+ * forearm, that of the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin weights of any
+ * rig are redistributed to them (spread-arm-weights), including those of its twist bones.
  */
 export class ArmHelperJoints {
   readonly #rig: Rig;
@@ -64,15 +67,18 @@ export class ArmHelperJoints {
     this.#arms = sides.map((side) => makeHelpers(rig, side));
   }
 
-  /** Shares the skin under `scene` among the joints, once. The rig must be at rest, its world matrices up to date. */
-  shareSkin(scene: Object3D): Steps<void> {
-    return spreadArms(
+  /**
+   * Redistributes the skin weights under `scene` to the joints; called once. The rig must be at rest, with its world
+   * matrices up to date.
+   */
+  spreadSkinWeights(scene: Object3D): Steps<void> {
+    return spreadArmWeights(
       scene,
-      this.#arms.map((arm) => spreadOf(this.#rig, arm)),
+      this.#arms.map((arm) => spreadArmOf(this.#rig, arm)),
     );
   }
 
-  /** Takes the twist out of the forearms of a pose, floor frame; `place` gives it back to what lies along them. */
+  /** Removes the twist from the forearms of a pose, floor frame; `place` applies it to the joints along them. */
   untwist(joints: MutableJointPoses): void {
     for (let i = 0; i < this.#arms.length; i++) {
       const arm = this.#arms[i]!;
@@ -90,7 +96,7 @@ export class ArmHelperJoints {
     }
   }
 
-  /** Puts the joints between where the bones of the pose are, which were placed before. */
+  /** Places the joints by the bones of the pose, which must have been placed before. */
   place(joints: MutableJointPoses): void {
     for (let i = 0; i < this.#arms.length; i++) {
       const arm = this.#arms[i]!;
@@ -117,7 +123,7 @@ export class ArmHelperJoints {
     }
   }
 
-  /** Straight on with the bones they lie on: of arms that are not seen. */
+  /** Aligns the joints with their bones, for arms that are not drawn. */
   straighten(): void {
     for (const { shoulder, elbow, wrist, upper, lower } of this.#arms) {
       for (const joint of [shoulder, elbow, wrist]) this.#rig.straighten(joint);
@@ -141,7 +147,7 @@ function makeHelpers(rig: Rig, side: Side): ArmHelpers {
   };
 }
 
-function spreadOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmHelpers): SpreadArm {
+function spreadArmOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmHelpers): SpreadArm {
   const bone = (name: 'UpperArm' | 'LowerArm' | 'Hand') => {
     const found = rig.bones.get(`${side}${name}`);
     if (!found) throw new Error(`avatar/arm-helpers: a rig without ${side}${name}`);

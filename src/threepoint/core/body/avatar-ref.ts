@@ -9,10 +9,10 @@ export type AvatarHash = string;
 export type AvatarRef = BuiltInAvatar | AvatarHash;
 
 /** The form of a file's SHA-256. */
-export const avatarHash = /^[\w-]{43}$/;
+export const avatarHashPattern = /^[\w-]{43}$/;
 
 /** The largest file of an avatar that others see [bytes]. */
-export const mostAvatarBytes = 20 * 2 ** 20;
+export const maxAvatarBytes = 20 * 2 ** 20;
 
 /** Returns whether this is the hash of a file, and not a name. */
-export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHash.test(avatar);
+export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHashPattern.test(avatar);

@@ -44,7 +44,7 @@ import {
 } from '../math/vec3';
 import { type Heading, readHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
-import { alongArc, type DirectionArc, directionArc, makeDirectionArc, outsideOfBody } from './arms/direction-arc';
+import { alongArc, type DirectionArc, directionArc, makeDirectionArc, viaDirection } from './arms/direction-arc';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
 import lostHand from './lost-hand.json';
 
@@ -106,7 +106,7 @@ interface HandState {
   readonly arc: DirectionArc;
 }
 
-/** What `completeHands` remembers of one wearer, and the frame it returns. */
+/** What `completeHands` remembers of one user, and the frame it returns. */
 export interface CompleteHandsState {
   readonly bodyHeading: BodyHeading;
   /** Origin on the floor under the head joint, yaw of the body. */
@@ -245,7 +245,7 @@ function followLost(
   hand.source = held ? 'held' : 'sinking';
 
   const share = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
-  directionArc(last.direction, resting.direction, outsideOfBody[side], arc);
+  directionArc(last.direction, resting.direction, viaDirection[side], arc);
   rotate(alongArc(arc, share, turn), last.direction, inBody.position);
   scale(inBody.position, last.distance + (resting.distance - last.distance) * share, inBody.position);
   addScaled(inBody.position, shoulder, 1, inBody.position);

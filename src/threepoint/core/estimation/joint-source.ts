@@ -23,7 +23,7 @@ export interface SolvedFrame {
   readonly deviceBody: DeviceBody | null;
 }
 
-/** Stage 3: the source of a method's six joints; all other stages are the same for every method. One per wearer. */
+/** Stage 3: the source of a method's six joints; all other stages are the same for every method. One per user. */
 export interface JointSource {
   calibrate(body: ChestSpaceBody): void;
   reset(): void;

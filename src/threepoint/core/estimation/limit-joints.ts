@@ -11,14 +11,14 @@ export interface LimitJointsState {
   /** The joints from the headset [m], floor axes. */
   readonly relative: MutableJointPositions;
   /** Whether a joint is still on its way to where it is estimated. */
-  readonly behind: Record<EstimatedJoint, boolean>;
+  readonly catchingUp: Record<EstimatedJoint, boolean>;
   readonly joints: MutableJointPositions;
 }
 
 export const makeLimitJointsState = (): LimitJointsState => ({
   known: false,
   relative: makeJoints(),
-  behind: mapJoints(() => false),
+  catchingUp: mapJoints(() => false),
   joints: makeJoints(),
 });
 
@@ -40,7 +40,7 @@ export function limitJoints(
   { head, heading, bodyTurn, leftHand, rightHand }: CompletedFrame,
   deltaSeconds: number,
 ): MutableJointPositions {
-  const { relative, behind } = state;
+  const { relative, catchingUp } = state;
   const confidence = Math.min(heading.confidence, steadiness(leftHand), steadiness(rightHand));
   const most = (doubtfulSpeed + (catchUpSpeed - doubtfulSpeed) * confidence) * Math.max(deltaSeconds, 0);
   for (let index = 0; index < estimatedJoints.length; index++) {
@@ -49,8 +49,8 @@ export function limitJoints(
     subtract(joints[joint], head.position, wanted);
     rotate(bodyTurn, relative[joint], carried);
     const far = distance(wanted, carried);
-    behind[joint] = state.known && !hand?.jumped && (confidence < 1 || behind[joint]) && far > most;
-    if (behind[joint]) lerp(carried, wanted, most / far, relative[joint]);
+    catchingUp[joint] = state.known && !hand?.jumped && (confidence < 1 || catchingUp[joint]) && far > most;
+    if (catchingUp[joint]) lerp(carried, wanted, most / far, relative[joint]);
     else copyVec3(wanted, relative[joint]);
     add(head.position, relative[joint], state.joints[joint]);
   }

@@ -2,21 +2,21 @@ import { clamp } from '../math/damper';
 import type { Pose } from '../math/pose';
 import { rotate } from '../math/quat';
 import { copyVec3, forward } from '../math/vec3';
-import { MovedPointer, type PointedAt, usualDwell } from './pointer';
+import { defaultDwellSeconds, MutablePointer, type PointerTarget } from './pointer';
 
 /** A gaze that passes over something for less than this time [s] holds nothing. */
 const settleSeconds = 0.25;
 /** A gaze may leave what it rests on for this time [s]: a head is never still. */
 const leaveSeconds = 0.15;
 
-const keyOf = (target: PointedAt | null): string | null =>
+const keyOf = (target: PointerTarget | null): string | null =>
   target === null || target.id === null ? null : `${target.owner} ${target.id}`;
 
 /**
  * A pointer along the head's gaze that acts on what it rests on. It acts once: the gaze must move to something else
  * before it acts again.
  */
-export class GazePointer extends MovedPointer {
+export class GazePointer extends MutablePointer {
   override readonly releases = false;
   #key: string | null = null;
   #since = 0;
@@ -36,7 +36,7 @@ export class GazePointer extends MovedPointer {
     if (key === this.#key) this.#seenAt = time;
     else if (key !== null || time - this.#seenAt > leaveSeconds) this.#restOn(key, time);
     if (!target || key === null || this.#acted) return;
-    const seconds = target.dwellSeconds ?? usualDwell;
+    const seconds = target.dwellSeconds ?? defaultDwellSeconds;
     this.progress = clamp((time - this.#since - settleSeconds) / (seconds - settleSeconds), this.progress, 1);
     this.held = this.progress > 0;
     if (this.progress < 1) return;

@@ -9,7 +9,7 @@ import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 export type PointerSource = 'mouse' | 'controller' | 'hand' | 'transient' | 'gaze';
 
 /** Something that a pointer points at. */
-export interface PointedAt {
+export interface PointerTarget {
   /** The distance along the ray [m]. */
   readonly distance: number;
   /** The part of the page that it belongs to, such as a menu or a game. */
@@ -21,7 +21,7 @@ export interface PointedAt {
 }
 
 /** The time after which a gaze that rests on a button presses it [s]. */
-export const usualDwell = 1.2;
+export const defaultDwellSeconds = 1.2;
 
 /**
  * A ray, and where there is one a finger tip, with one action. Menus and games know pointers, never devices. Floor
@@ -44,15 +44,15 @@ export interface Pointer extends Ray {
   /** How much of its dwell time a gaze has rested, 0 to 1; 0 for other pointers. */
   readonly progress: number;
   /** The nearest of what it points at in this frame; null: nothing yet. */
-  readonly pointedAt: PointedAt | null;
+  readonly pointedAt: PointerTarget | null;
   /** Reports that the ray meets something. The nearest report of a frame counts. */
-  pointAt(target: PointedAt): void;
+  pointAt(target: PointerTarget): void;
   /** Returns whether it is held, and not for another part of the page. */
   isHeldFor(owner: string): boolean;
 }
 
 /** A pointer that its reader moves. Call `begin` first in every frame. */
-export class MovedPointer implements Pointer {
+export class MutablePointer implements Pointer {
   readonly source: PointerSource;
   readonly side: Side | null;
   readonly origin: MutableVec3 = vec3(0, 0, 0);
@@ -63,7 +63,7 @@ export class MovedPointer implements Pointer {
   cancelled = false;
   progress = 0;
   readonly releases: boolean = true;
-  pointedAt: PointedAt | null = null;
+  pointedAt: PointerTarget | null = null;
   readonly #tip = vec3(0, 0, 0);
   /** The owner of what it pointed at when the hold began; null: it pointed at nothing. */
   #heldFor: string | null = null;
@@ -75,7 +75,7 @@ export class MovedPointer implements Pointer {
   }
 
   /** Starts a frame; returns what it pointed at in the last one. */
-  begin(): PointedAt | null {
+  begin(): PointerTarget | null {
     const last = this.pointedAt;
     if (!this.held) this.#heldFor = null;
     else if (!this.#wasHeld) this.#heldFor = last?.owner ?? null;
@@ -95,7 +95,7 @@ export class MovedPointer implements Pointer {
     this.tip = tip && copyVec3(tip, this.#tip);
   }
 
-  pointAt(target: PointedAt): void {
+  pointAt(target: PointerTarget): void {
     if (!this.pointedAt || target.distance < this.pointedAt.distance) this.pointedAt = target;
   }
 

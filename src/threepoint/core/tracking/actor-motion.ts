@@ -166,7 +166,7 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
 }
 
 /** Between two keys, a share of the way from one to the other. */
-interface Moment {
+interface KeyInterpolation {
   readonly from: Key;
   readonly to: Key;
   readonly share: number;
@@ -192,7 +192,7 @@ const side = vec3(0, 0, 0);
 const turnedFrom = quat(0, 0, 0, 1);
 const turnedTo = quat(0, 0, 0, 1);
 
-function handAt(which: Side, moment: Moment): TrackedPose {
+function handAt(which: Side, moment: KeyInterpolation): TrackedPose {
   const { from, to, share, timeSeconds, body } = moment;
   const sigma = sideSign(which);
   setVec3(shoulder, sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, moment.shoulderAhead);

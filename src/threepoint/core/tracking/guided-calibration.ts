@@ -1,4 +1,4 @@
-import { type Calibration, calibrationProblem, steepestGazePitch } from '../body/calibration';
+import { type Calibration, calibrationProblem, maxGazePitch } from '../body/calibration';
 import { type HandTilts, handTiltOf, isPlausibleTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
@@ -122,7 +122,7 @@ const STEEPEST_GAZE = 0.5;
 const SHORTEST_ARM = 0.28;
 const LONGEST_ARM = 0.46;
 /**
- * The mean arm in eye heights; an arm longer than the second limit shows that the wearer sits, or that the floor is too
+ * The mean arm in eye heights; an arm longer than the second limit shows that the user sits, or that the floor is too
  * high.
  */
 const ORDINARY_ARM = 0.355;
@@ -133,7 +133,7 @@ const UNEVEN_ARMS = 0.1;
 // inverse kinematics does there.
 const PROTRACTION = 0.018;
 
-// A wearer who reads a sheet beside them does not look along their arms: the gaze does not show the headset's tilt
+// A user who reads a sheet beside them does not look along their arms: the gaze does not show the headset's tilt
 // then.
 const LOOKING_AHEAD = Math.PI / 18;
 
@@ -197,7 +197,7 @@ function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): Meas
   let eyeHeight = headHeight;
   let arms = reaches(eyeHeight);
   if (arms && Math.min(...arms) > SEATED_ARM * headHeight) {
-    // For a seated wearer, or a floor at the wrong height, the height is estimated from the arms.
+    // For a seated user, or a floor at the wrong height, the height is estimated from the arms.
     for (let i = 0; i < 8 && arms; i++) {
       eyeHeight = mean(arms) / ORDINARY_ARM;
       arms = reaches(eyeHeight);
@@ -223,7 +223,7 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
   const measured: Calibration = {
     eyeHeight,
     armSpan: 2 * (arm + restShoulder('right', eyeHeight).x),
-    ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -steepestGazePitch, steepestGazePitch) }),
+    ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -maxGazePitch, maxGazePitch) }),
     ...tiltsOf(wrists, head.height, eyeHeight),
   };
   const trackers = samples.map((sample) => sample.trackers);
@@ -236,7 +236,7 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
 
 /**
  * Shoulder to wrist [m] of an arm stretched in one of the poses; null: it points elsewhere. Wrist in the heading frame,
- * the eyes this high now, which for a seated wearer is less than their eye height.
+ * the eyes this high now, which for a seated user is less than their eye height.
  */
 function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
   const arm = armTo(side, wrist, headHeight, eyeHeight);

@@ -12,7 +12,7 @@ import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
 /**
- * Detects a wearer who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
+ * Detects a user who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
  * sit.
  */
 interface GrowthDetector {
@@ -32,11 +32,11 @@ const calmRange = 0.04;
 /** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
 /**
- * The ignored excess once the calibration has grown: the measured one was wrong, and a wearer who straightens up is
+ * The ignored excess once the calibration has grown: the measured one was wrong, and a user who straightens up is
  * followed.
  */
 const grownDeadZone = 0.005;
-/** The largest growth as a share of the measured eye height: a wearer who rises further stands on something. */
+/** The largest growth as a share of the measured eye height: a user who rises further stands on something. */
 const mostGrowth = 0.08;
 /** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
@@ -51,10 +51,10 @@ interface CalmStand {
 
 export function createGrowthDetector(): GrowthDetector {
   let current: Calibration | null = null;
-  /** The eye height [m] before any growth, and the highest plausible one: above it a wearer stands on something. */
+  /** The eye height [m] before any growth, and the highest plausible one: above it a user stands on something. */
   let measured = 0;
   let highest = 0;
-  /** From the skull's pivot to the eyes, in the frame of a headset whose wearer looks straight ahead. */
+  /** From the skull's pivot to the eyes, in the frame of a headset whose user looks straight ahead. */
   let eyesInHeadset = zero;
   /** The height [m] of the eyes above that pivot then. */
   let levelRise = 0;
@@ -63,7 +63,7 @@ export function createGrowthDetector(): GrowthDetector {
   function take(calibration: Calibration): void {
     current = calibration;
     measured = calibration.eyeHeight;
-    // The height of a wearer with the default body is unknown if they have been sitting: any height is possible.
+    // The height of a user with the default body is unknown if they have been sitting: any height is possible.
     highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + mostGrowth);
     const { eyesInHead } = skeletonFromCalibration(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);

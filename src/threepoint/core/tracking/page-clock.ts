@@ -1,5 +1,5 @@
 /** The longest step of the clock [s]: a longer gap between frames is a pause, of which only this much counts. */
-export const longestStep = 0.5;
+export const maxStepSeconds = 0.5;
 /** The assumed length of the first frames [s], until one was measured. */
 const usualStep = 1 / 60;
 /** The shortest frame of any device [s]: a smaller step of the time stamp does not measure a frame. */
@@ -51,10 +51,10 @@ export function createPageClock(read: () => number): PageClock {
       if (stamp === null) time = timestampMs / 1000;
       else {
         const passed = (timestampMs - stamp) / 1000;
-        paused = passed > longestStep;
-        if (paused) leftOut += passed - longestStep;
+        paused = passed > maxStepSeconds;
+        if (paused) leftOut += passed - maxStepSeconds;
         else if (passed >= shortestStep) step = passed;
-        time += paused ? longestStep : step;
+        time += paused ? maxStepSeconds : step;
       }
       stamp = timestampMs;
       readAt = read();
@@ -69,7 +69,7 @@ export function createPageClock(read: () => number): PageClock {
       return leftOut;
     },
     now() {
-      const since = Math.min(longestStep, Math.max(0, (read() - readAt) / 1000));
+      const since = Math.min(maxStepSeconds, Math.max(0, (read() - readAt) / 1000));
       newest = Math.max(newest, (stamp === null ? readAt / 1000 : time) + since);
       return newest;
     },

@@ -56,7 +56,7 @@ export function copyArmDirections(from: ArmDirections, target: ArmDirections): v
 }
 
 /** The target of an arm in this frame, floor frame. */
-export interface WantedArm extends ArmDirections {
+export interface ArmGoal extends ArmDirections {
   readonly shoulder: Vec3;
   /** The position at which the hand is seen or will rest; the arm itself may end short of it. */
   readonly hand: Vec3;
@@ -108,20 +108,20 @@ const elbowBefore = vec3(0, 0, 0);
 const wristBefore = vec3(0, 0, 0);
 
 /** Places `elbow` and `wrist` of an arm whose bones point in these directions. */
-function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: WantedArm): void {
+function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: ArmGoal): void {
   addScaled(shoulder, upperArm, bones.upper, elbow);
   addScaled(elbow, forearm, bones.lower, wrist);
 }
 
 /** Places `elbow` and `wrist` at a share of the arcs. */
-function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): void {
+function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, share: number): void {
   rotate(alongArc(upperArm, share, turn), drawn.upperArm, bone);
   rotate(alongArc(forearm, share, turn), drawn.forearm, unbent);
   placeJoints(bone, unbent, wanted);
 }
 
 /** Returns the longer path [m] of elbow and wrist on the arcs. */
-function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): number {
+function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): number {
   let metres = 0;
   for (let step = 0; step <= pathSteps; step++) {
     placeAt(transition, drawn, wanted, step / pathSteps);
@@ -133,7 +133,7 @@ function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
 }
 
 /** Returns the larger distance [m] of elbow and wrist at a share of the arcs from where they were drawn. */
-function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): number {
+function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, share: number): number {
   placeAt(transition, drawn, wanted, share);
   return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
 }
@@ -143,7 +143,7 @@ function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
  * shoulder motion alone exceeds the limit at every share, returns the share with the smallest distance. Shares are
  * sampled in steps of 1/pathSteps.
  */
-function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, metres: number): number {
+function progressWithin(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, metres: number): number {
   let nearest = 0;
   let least = distanceAt(transition, drawn, wanted, 0);
   for (let step = 1; step <= pathSteps && (least > metres || nearest === step - 1); step++) {
@@ -166,17 +166,17 @@ function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: Wa
 }
 
 /** Starts a transition from the drawn arm to its target. */
-export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
+export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
   directionArc(drawn.upperArm, wanted.upperArm, wanted.outside, transition.upperArm);
   directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);
   transition.age = 0;
   transition.speed = 0;
   transition.longestPath = 0;
-  remember(transition, drawn, wanted);
+  storeDrawn(transition, drawn, wanted);
 }
 
 /** Stores the hand's target in this frame, and the drawn elbow and wrist. */
-function remember(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
+function storeDrawn(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
   copyVec3(wanted.hand, transition.hand);
   placeJoints(drawn.upperArm, drawn.forearm, wanted);
   copyVec3(elbow, transition.elbow);
@@ -186,7 +186,7 @@ function remember(transition: ArmTransition, drawn: ArmDirections, wanted: Wante
 /**
  * Returns the path [m] of elbow and wrist in this frame: accelerating and decelerating evenly, and along with the hand.
  */
-function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, deltaSeconds: number): number {
+function stepOf(transition: ArmTransition, toGo: number, wanted: ArmGoal, deltaSeconds: number): number {
   const { hand } = transition;
   const seconds = Math.max(shortestSeconds, wanted.minDuration);
   transition.longestPath = Math.max(transition.longestPath, toGo);
@@ -201,7 +201,7 @@ function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, delt
 /** Writes the arm of this frame into `drawn`, which holds that of the frame before. */
 export function followTransition(
   transition: ArmTransition,
-  wanted: WantedArm,
+  wanted: ArmGoal,
   drawn: ArmDirections,
   deltaSeconds: number,
 ): void {
@@ -221,14 +221,14 @@ export function followTransition(
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry =
     wanted.minDuration === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
-  const share = Math.max(hurry, least, shareWithin(transition, drawn, wanted, step));
+  const share = Math.max(hurry, least, progressWithin(transition, drawn, wanted, step));
   if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
-  goAlong(transition, wanted, drawn, share);
-  remember(transition, drawn, wanted);
+  advanceArcs(transition, wanted, drawn, share);
+  storeDrawn(transition, drawn, wanted);
 }
 
 /** Turns the drawn bones by a share of the arcs, and the hinge with them. */
-function goAlong({ upperArm, forearm }: ArmTransition, wanted: WantedArm, drawn: ArmDirections, share: number): void {
+function advanceArcs({ upperArm, forearm }: ArmTransition, wanted: ArmGoal, drawn: ArmDirections, share: number): void {
   if (share === 1) {
     copyArmDirections(wanted, drawn);
     return;

@@ -39,7 +39,7 @@ const farApart = 2.1;
  * The direction through which an arm swings all the way round, in the axes of the body or its chest: ahead, to its own
  * side and a little down.
  */
-export const outsideOfBody: Readonly<Record<Side, Vec3>> = {
+export const viaDirection: Readonly<Record<Side, Vec3>> = {
   left: normalise(vec3(-1, -0.2, -1)),
   right: normalise(vec3(1, -0.2, -1)),
 };

@@ -42,15 +42,15 @@ import { restSeconds } from '../lost-hand.json';
 import type { TorsoPose } from '../trunk/fit-torso';
 import {
   type ArmDirections,
+  type ArmGoal,
   type ArmTransition,
   copyArmDirections,
   followTransition,
   makeArmDirections,
   makeArmTransition,
   startTransition,
-  type WantedArm,
 } from './arm-transition';
-import { outsideOfBody } from './direction-arc';
+import { viaDirection } from './direction-arc';
 import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, type SwivelState } from './swivel-limiter';
 
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
@@ -139,7 +139,7 @@ const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose 
   confidence: Number.NaN,
   deltaSeconds: Number.NaN,
 };
-const wanted: Mutable<WantedArm> & { readonly outside: MutableVec3 } = {
+const wanted: Mutable<ArmGoal> & { readonly outside: MutableVec3 } = {
   ...makeArmDirections(),
   shoulder: zero,
   hand: zero,
@@ -179,7 +179,7 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   normalise(subtract(elbow, wanted.shoulder, wanted.upperArm), undefined, wanted.upperArm);
   normalise(subtract(wrist, elbow, wanted.forearm), undefined, wanted.forearm);
   elbowHinge(pole, circle.axis, wanted.hinge);
-  rotate(floorFromChest, outsideOfBody[side], wanted.outside);
+  rotate(floorFromChest, viaDirection[side], wanted.outside);
   if (jumped) startTransition(state.transition, state.drawn, wanted);
   if (state.known) followTransition(state.transition, wanted, state.drawn, deltaSeconds);
   else copyArmDirections(wanted, state.drawn);

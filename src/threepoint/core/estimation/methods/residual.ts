@@ -47,8 +47,8 @@ class Residual implements JointSource, JointNetwork {
     this.#input = new Float32Array(learnedInputCount(windowSeconds));
     this.#inference = new LatestResult(
       regressor,
-      (output) => this.#learn(output),
-      () => this.#forget(),
+      (output) => this.#storeResult(output),
+      () => this.#clear(),
     );
   }
 
@@ -68,7 +68,7 @@ class Residual implements JointSource, JointNetwork {
   reset(): void {
     this.#window.clear();
     this.#inference.reset();
-    this.#forget();
+    this.#clear();
     copyJoints(nothing, this.#damped);
   }
 
@@ -77,7 +77,7 @@ class Residual implements JointSource, JointNetwork {
   }
 
   ask(solved: SolvedFrame): Promise<void> {
-    this.#remember(solved);
+    this.#addFrame(solved);
     if (this.#inference.running) return this.#inference.running;
     this.#fillInput(solved);
     return this.#inference.start(this.#input);
@@ -95,7 +95,7 @@ class Residual implements JointSource, JointNetwork {
 
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void {
     if (this.#regressor.runNow) {
-      this.#remember(solved);
+      this.#addFrame(solved);
       this.#fillInput(solved);
       this.#inference.answerNow(this.#input);
     }
@@ -111,7 +111,7 @@ class Residual implements JointSource, JointNetwork {
   }
 
   /** Adds a requested frame to the window. */
-  #remember({ time, completed, points, ik }: SolvedFrame): void {
+  #addFrame({ time, completed, points, ik }: SolvedFrame): void {
     const seen = this.#seen;
     seen.left = completed.leftHand.source === 'tracked';
     seen.right = completed.rightHand.source === 'tracked';
@@ -126,7 +126,7 @@ class Residual implements JointSource, JointNetwork {
     chestFeatures(points, ik, this.#body, input, windowSeconds.length * featureCount);
   }
 
-  #learn(output: Float32Array): void {
+  #storeResult(output: Float32Array): void {
     for (let index = 0; index < estimatedJoints.length; index++) {
       const residual = this.#newest[estimatedJoints[index]!];
       setVec3(residual, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
@@ -135,7 +135,7 @@ class Residual implements JointSource, JointNetwork {
     this.#known = true;
   }
 
-  #forget(): void {
+  #clear(): void {
     copyJoints(nothing, this.#newest);
     this.#known = false;
   }

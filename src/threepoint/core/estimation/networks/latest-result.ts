@@ -45,9 +45,9 @@ export class LatestResult {
   /** Runs a regressor that answers at once (`runNow`); `fault` is the fault of its answer. Makes no garbage. */
   answerNow(features: Float32Array): void {
     try {
-      this.#take(this.#regressor.runNow!(features));
+      this.#finish(this.#regressor.runNow!(features));
     } catch (error) {
-      this.#refuse(error);
+      this.#fail(error);
     }
   }
 
@@ -60,15 +60,15 @@ export class LatestResult {
     const startedIn = this.#epoch;
     try {
       const output = await this.#regressor.run(features);
-      if (startedIn === this.#epoch) this.#take(output);
+      if (startedIn === this.#epoch) this.#finish(output);
     } catch (error) {
-      this.#refuse(error);
+      this.#fail(error);
     } finally {
       this.#open = false;
     }
   }
 
-  #take(output: Float32Array): void {
+  #finish(output: Float32Array): void {
     if (output.length !== this.#outputs) {
       throw new Error(`${output.length} numbers came out, the contract says ${this.#outputs}`);
     }
@@ -77,7 +77,7 @@ export class LatestResult {
     this.#fault = null;
   }
 
-  #refuse(error: unknown): void {
+  #fail(error: unknown): void {
     this.#failed();
     this.#fault = `${this.#regressor.contract.name}: ${reasonOf(error)}`;
   }

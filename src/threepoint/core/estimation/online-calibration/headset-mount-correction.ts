@@ -26,7 +26,7 @@ export class HeadsetMountCorrection {
   }
 
   /**
-   * Returns the head pose as the wearer holds it, lower by `rise` [m] along its own up, floor frame; overwritten by the
+   * Returns the head pose as the user holds it, lower by `rise` [m] along its own up, floor frame; overwritten by the
    * next call.
    */
   apply(tracked: TrackedPose, rise: number): TrackedPose {

@@ -35,7 +35,7 @@ export interface HandTiltsState {
 
 const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, noticed: vec3(0, 0, 0) });
 
-/** Returns the state for a wearer with these calibrated tilts. */
+/** Returns the state for a user with these calibrated tilts. */
 export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTiltsState {
   const state: HandTiltsState = {
     left: makeHandTiltState(),

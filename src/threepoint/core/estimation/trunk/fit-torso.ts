@@ -39,7 +39,7 @@ import {
 import type { CompletedFrame } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
 import limits from '../kinematic-limits.json';
-import { beginLean, followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
+import { followLean, increaseLean, type Lean, makeLean, startLeanFrame } from './lean-after-hand';
 
 const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
@@ -211,14 +211,14 @@ export function fitTorso(
   const { pose, lean } = state;
   const input: TorsoInput = { joints, frame, bones, deltaSeconds };
   setVec3(headingRight, Math.cos(frame.heading.yaw), 0, -Math.sin(frame.heading.yaw));
-  beginLean(lean.left);
-  beginLean(lean.right);
+  startLeanFrame(lean.left);
+  startLeanFrame(lean.right);
   followShoulderLine(state, joints, bones, deltaSeconds);
   placeUprightNeck(state.shoulderLine, input, unleaned);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
     placeThorax(state, input, lean.left.wanted, lean.right.wanted, thorax);
-    const pulledLeft = leanFurther(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
-    const pulledRight = leanFurther(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
+    const pulledLeft = increaseLean(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
+    const pulledRight = increaseLean(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
     if (!pulledLeft && !pulledRight) break;
   }
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);

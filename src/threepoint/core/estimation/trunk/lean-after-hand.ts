@@ -51,7 +51,7 @@ export const makeLean = (): Lean => ({
 const towards = vec3(0, 0, 0);
 
 /** Nothing is wanted yet in this frame. */
-export function beginLean(lean: Lean): void {
+export function startLeanFrame(lean: Lean): void {
   setVec3(lean.wanted, 0, 0, 0);
   lean.extremity = 0;
 }
@@ -63,7 +63,7 @@ export function beginLean(lean: Lean): void {
  *
  * reach: the arm's [m]; pass: how often this frame has leaned already.
  */
-export function leanFurther(
+export function increaseLean(
   lean: Lean,
   shoulder: Vec3,
   { position, source }: CompletedHand,
