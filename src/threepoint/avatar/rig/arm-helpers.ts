@@ -158,7 +158,7 @@ function spreadArmOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: A
     upperArm: upperArm.node,
     lowerArm: lowerArm.node,
     hand: hand.node,
-    places: [upperArm.restPosition, lowerArm.restPosition, hand.restPosition],
+    jointPositions: [upperArm.restPosition, lowerArm.restPosition, hand.restPosition],
     shoulder: shoulder.node,
     elbow: elbow.node,
     wrist: wrist.node,

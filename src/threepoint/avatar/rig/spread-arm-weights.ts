@@ -18,7 +18,7 @@ export interface SpreadArm {
   readonly lowerArm: Object3D;
   readonly hand: Object3D;
   /** Shoulder, elbow and wrist at rest, world frame [m]. */
-  readonly places: readonly [Vector3, Vector3, Vector3];
+  readonly jointPositions: readonly [Vector3, Vector3, Vector3];
   /** The joints whose rotation is halfway between the adjacent bones. */
   readonly shoulder: Object3D;
   readonly elbow: Object3D;
@@ -32,7 +32,7 @@ export interface SpreadArm {
  * The range along a bone in which weights move from one joint to the next [fractions of its length]; the ends belong to
  * the hinges.
  */
-const handedOn = { from: 0.1, to: 0.9 };
+const blendRange = { from: 0.1, to: 0.9 };
 /** The number of bones that move a vertex, in three.js and on the graphics device. */
 const influences = 4;
 
@@ -51,7 +51,7 @@ interface ArmIndices {
   readonly wrist: number;
   readonly alongUpper: readonly number[];
   readonly alongLower: readonly number[];
-  readonly places: SpreadArm['places'];
+  readonly jointPositions: SpreadArm['jointPositions'];
 }
 
 /** The names of twist bones in Unreal, Character Creator and 3ds Max that are not between a bone and the next. */
@@ -133,22 +133,22 @@ function addJoints(skeleton: Skeleton, arm: SpreadArm): ArmIndices | null {
     wrist: between(arm.wrist, third),
     alongUpper: along(arm.alongUpper, first),
     alongLower: along(arm.alongLower, second),
-    places: arm.places,
+    jointPositions: arm.jointPositions,
   };
 }
 
 /** Removes the weights of some bones and returns their sum. */
-function removeWeights(shares: VertexWeights, bones: ReadonlySet<number>): number {
+function removeWeights(vertexWeights: VertexWeights, bones: ReadonlySet<number>): number {
   let sum = 0;
   for (const bone of bones) {
-    sum += shares.get(bone) ?? 0;
-    shares.delete(bone);
+    sum += vertexWeights.get(bone) ?? 0;
+    vertexWeights.delete(bone);
   }
   return sum;
 }
 
-const addWeight = (shares: VertexWeights, bone: number, share: number): void => {
-  if (share > 0) shares.set(bone, (shares.get(bone) ?? 0) + share);
+const addWeight = (vertexWeights: VertexWeights, bone: number, weight: number): void => {
+  if (weight > 0) vertexWeights.set(bone, (vertexWeights.get(bone) ?? 0) + weight);
 };
 
 /** Returns the weight of the joint between two bones: all of theirs if they are equal, none if one has all. */
@@ -158,50 +158,50 @@ const axis = new Vector3();
 const from = new Vector3();
 
 /** Returns the position of a point along a bone, 0 to 1, within the range between the hinges. */
-function positionAlong(place: Vector3, begin: Vector3, end: Vector3): number {
+function positionAlong(position: Vector3, begin: Vector3, end: Vector3): number {
   axis.subVectors(end, begin);
-  const along = from.subVectors(place, begin).dot(axis) / Math.max(1e-9, axis.lengthSq());
-  return Math.min(1, Math.max(0, (along - handedOn.from) / (handedOn.to - handedOn.from)));
+  const along = from.subVectors(position, begin).dot(axis) / Math.max(1e-9, axis.lengthSq());
+  return Math.min(1, Math.max(0, (along - blendRange.from) / (blendRange.to - blendRange.from)));
 }
 
 /** Distributes a weight between the two neighbouring bones of a row. */
-function addWeightAlong(shares: VertexWeights, row: readonly number[], share: number, along: number): void {
+function addWeightAlong(vertexWeights: VertexWeights, row: readonly number[], weight: number, along: number): void {
   const step = along * (row.length - 1);
   const index = Math.min(row.length - 2, Math.floor(step));
   const [before, after] = [row[index], row[index + 1]];
   if (before === undefined || after === undefined) return;
-  addWeight(shares, before, share * (index + 1 - step));
-  addWeight(shares, after, share * (step - index));
+  addWeight(vertexWeights, before, weight * (index + 1 - step));
+  addWeight(vertexWeights, after, weight * (step - index));
 }
 
 /** Redistributes the weights that a vertex has for the bones of an arm; returns false if it has none. */
-function spreadVertex(shares: VertexWeights, arm: ArmIndices, place: Vector3): boolean {
-  let upper = removeWeights(shares, arm.upper);
-  let lower = removeWeights(shares, arm.lower);
+function spreadVertex(vertexWeights: VertexWeights, arm: ArmIndices, position: Vector3): boolean {
+  let upper = removeWeights(vertexWeights, arm.upper);
+  let lower = removeWeights(vertexWeights, arm.lower);
   if (upper + lower === 0) return false;
   let trunk = 0;
-  for (const [bone, share] of shares) if (!arm.arm.has(bone)) trunk += share;
+  for (const [bone, weight] of vertexWeights) if (!arm.arm.has(bone)) trunk += weight;
   const atShoulder = arm.shoulder < 0 ? 0 : middleWeight(trunk, upper);
   if (trunk > 0 && atShoulder > 0) {
     const left = (trunk - atShoulder / 2) / trunk;
-    for (const [bone, share] of shares) if (!arm.arm.has(bone)) shares.set(bone, share * left);
+    for (const [bone, weight] of vertexWeights) if (!arm.arm.has(bone)) vertexWeights.set(bone, weight * left);
     upper -= atShoulder / 2;
-    addWeight(shares, arm.shoulder, atShoulder);
+    addWeight(vertexWeights, arm.shoulder, atShoulder);
   }
   const atElbow = arm.elbow < 0 ? 0 : middleWeight(upper, lower);
   upper -= atElbow / 2;
   lower -= atElbow / 2;
-  addWeight(shares, arm.elbow, atElbow);
-  const hand = shares.get(arm.hand) ?? 0;
+  addWeight(vertexWeights, arm.elbow, atElbow);
+  const hand = vertexWeights.get(arm.hand) ?? 0;
   const atWrist = arm.wrist < 0 ? 0 : middleWeight(lower, hand);
   if (atWrist > 0) {
     lower -= atWrist / 2;
-    shares.set(arm.hand, hand - atWrist / 2);
-    addWeight(shares, arm.wrist, atWrist);
+    vertexWeights.set(arm.hand, hand - atWrist / 2);
+    addWeight(vertexWeights, arm.wrist, atWrist);
   }
-  const [shoulder, elbow, wrist] = arm.places;
-  addWeightAlong(shares, arm.alongUpper, upper, positionAlong(place, shoulder, elbow));
-  addWeightAlong(shares, arm.alongLower, lower, positionAlong(place, elbow, wrist));
+  const [shoulder, elbow, wrist] = arm.jointPositions;
+  addWeightAlong(vertexWeights, arm.alongUpper, upper, positionAlong(position, shoulder, elbow));
+  addWeightAlong(vertexWeights, arm.alongLower, lower, positionAlong(position, elbow, wrist));
   return true;
 }
 
@@ -211,7 +211,7 @@ interface SkinAttributes {
 }
 
 /** The number of vertices that one step processes. */
-const verticesAStep = 512;
+const verticesPerStep = 512;
 
 function* spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Steps<SkinAttributes | null> {
   const { skinIndex, skinWeight } = mesh.geometry.attributes;
@@ -219,38 +219,38 @@ function* spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Steps<Skin
   const indices = new Uint16Array(skinIndex.count * influences);
   const weights = new Float32Array(skinIndex.count * influences);
   const touched = new Set(arms.flatMap(({ upper, lower }) => [...upper, ...lower]));
-  const shares: VertexWeights = new Map();
-  const place = new Vector3();
+  const vertexWeights: VertexWeights = new Map();
+  const position = new Vector3();
   for (let vertex = 0; vertex < skinIndex.count; vertex++) {
-    if (vertex % verticesAStep === 0) yield;
-    shares.clear();
+    if (vertex % verticesPerStep === 0) yield;
+    vertexWeights.clear();
     let isOfArm = false;
     for (let slot = 0; slot < influences; slot++) {
       const bone = skinIndex.getComponent(vertex, slot);
-      const share = skinWeight.getComponent(vertex, slot);
-      addWeight(shares, bone, share);
-      isOfArm ||= share > 0 && touched.has(bone);
+      const weight = skinWeight.getComponent(vertex, slot);
+      addWeight(vertexWeights, bone, weight);
+      isOfArm ||= weight > 0 && touched.has(bone);
     }
     if (isOfArm) {
-      mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld);
-      for (const arm of arms) if (spreadVertex(shares, arm, place)) break;
+      mesh.getVertexPosition(vertex, position).applyMatrix4(mesh.matrixWorld);
+      for (const arm of arms) if (spreadVertex(vertexWeights, arm, position)) break;
     }
-    writeStrongest(shares, vertex * influences, indices, weights);
+    writeStrongest(vertexWeights, vertex * influences, indices, weights);
   }
   return { indices: new BufferAttribute(indices, influences), weights: new BufferAttribute(weights, influences) };
 }
 
 /** Writes the four largest weights, normalised to a sum of 1. */
-function writeStrongest(shares: VertexWeights, at: number, indices: Uint16Array, weights: Float32Array): void {
-  const rows = [...shares]
-    .filter(([, share]) => share > 1e-4)
-    .sort(([a, share], [b, other]) => other - share || a - b)
+function writeStrongest(vertexWeights: VertexWeights, at: number, indices: Uint16Array, weights: Float32Array): void {
+  const rows = [...vertexWeights]
+    .filter(([, weight]) => weight > 1e-4)
+    .sort(([a, weight], [b, other]) => other - weight || a - b)
     .slice(0, influences);
   let sum = 0;
-  for (const [, share] of rows) sum += share;
-  rows.forEach(([bone, share], slot) => {
+  for (const [, weight] of rows) sum += weight;
+  rows.forEach(([bone, weight], slot) => {
     indices[at + slot] = bone;
-    weights[at + slot] = sum > 0 ? share / sum : 0;
+    weights[at + slot] = sum > 0 ? weight / sum : 0;
   });
 }
 
@@ -271,7 +271,7 @@ export function* spreadArmWeights(scene: Object3D, arms: readonly SpreadArm[]): 
       skeleton.init();
     }
     if (own.length === 0) continue;
-    // Meshes of one file often share their attributes.
+    // Meshes of one file often weight their attributes.
     const before = geometry.attributes.skinIndex;
     const shared = done.get(skeleton) ?? new Map<unknown, SkinAttributes>();
     done.set(skeleton, shared);

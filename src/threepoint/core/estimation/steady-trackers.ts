@@ -9,7 +9,7 @@ const trackers: readonly Tracker[] = ['head', 'leftHand', 'rightHand'];
 
 /** The filtered trackers that joints are estimated from, floor frame. Head and hands are drawn unfiltered. */
 export type SteadyTrackersState = Readonly<Record<Tracker, FilteredPose<'floor'>>> & {
-  /** The distance that each hand has moved about the head since the frame before [m], floor axes; 0 in the first. */
+  /** The path of each hand relative to the head since the previous frame [m], floor axes; 0 in the first frame. */
   readonly travel: Record<Side, number>;
   /** Each hand from the head [m], floor axes. */
   readonly fromHead: Readonly<Record<Side, MutableVec3>>;

@@ -22,8 +22,9 @@ export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
 
 /**
- * The learned network: the residual of the IK solution in the frame of IK's chest. It is low-passed there and added to
- * the IK of the current frame, so that neither the filter nor a late answer delays what follows head, hands and chest.
+ * The learned network: the residual of the IK solution in the frame of IK's chest. It is low-passed in that frame and
+ * added to the IK of the current frame, so that neither the filter nor a late result delays the motion of head, hands
+ * and chest.
  */
 class Residual implements JointSource, JointNetwork {
   readonly #regressor: PoseRegressor;
@@ -36,7 +37,7 @@ class Residual implements JointSource, JointNetwork {
   readonly #answered = makeJoints();
   readonly #inference: LatestResult;
   #body: ChestSpaceBody;
-  /** Whether `newest` is an answer of the network. */
+  /** Whether `newest` is a result of the network. */
   #known = false;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
@@ -100,7 +101,7 @@ class Residual implements JointSource, JointNetwork {
       this.#inference.answerNow(this.#input);
     }
     const { ik, floorFromHeading } = solved;
-    // Without an answer the correction fades, and IK is drawn.
+    // Without a result the correction fades to zero.
     const share = smoothingFactor(correctionHalfLife, deltaSeconds);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;

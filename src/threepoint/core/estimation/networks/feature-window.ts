@@ -13,7 +13,7 @@ export class FeatureWindow {
   readonly #longestAge: number;
   readonly #width: number;
 
-  /** width: the number of features of a frame. */
+  /** `width`: the number of features of a frame. */
   constructor(longestAgeSeconds: number, width: number = featureCount) {
     this.#longestAge = longestAgeSeconds;
     this.#width = width;

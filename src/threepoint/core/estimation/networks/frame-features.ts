@@ -9,7 +9,7 @@ import type { JointPositions } from '../joint-positions';
 /** The number of features of a frame; their order is in docs/estimation.md. */
 export const featureCount = 46;
 
-/** Whether the device saw each hand in the frame. */
+/** Whether each hand is tracked in the frame. */
 export interface SeenHands {
   readonly left: boolean;
   readonly right: boolean;
