@@ -246,8 +246,8 @@ export class Playback {
   /** Blends from the pose at the stall to the current one over `rejoinSeconds`. */
   private rejoin(time: number, at: number): void {
     if (Number.isNaN(this.rejoinAt)) return;
-    const share = smoothstep(0, rejoinSeconds, time - this.rejoinAt);
-    if (share >= 1 || isAcrossJump(this.samples, at)) this.rejoinAt = Number.NaN;
-    else this.shown.interpolate(this.rejoinFrom, this.shown, share);
+    const fraction = smoothstep(0, rejoinSeconds, time - this.rejoinAt);
+    if (fraction >= 1 || isAcrossJump(this.samples, at)) this.rejoinAt = Number.NaN;
+    else this.shown.interpolate(this.rejoinFrom, this.shown, fraction);
   }
 }

@@ -156,9 +156,9 @@ function allHave(samples: readonly PathSample[], { first, count }: PathFit, part
 // The sum of one call of fitPose or fitBody.
 const sum = quat(0, 0, 0, 0);
 
-/** Adds `share` times q, or −q if that is nearer to `near`, to `sum`. */
-function addWeighted(q: Quat, share: number, near: Quat): void {
-  const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -share : share;
+/** Adds `weight` times q, or −q if that is nearer to `near`, to `sum`. */
+function addWeighted(q: Quat, weight: number, near: Quat): void {
+  const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -weight : weight;
   sum.x += k * q.x;
   sum.y += k * q.y;
   sum.z += k * q.z;

@@ -20,17 +20,17 @@ export interface LoadOptions {
    * without workers.
    */
   readonly createWorker?: () => Worker;
-  /** The address of the runtime's own files; absent: where the bundler put them. */
+  /** The URL of the runtime's files. Default: as a bundler resolves them. */
   readonly wasmPaths?: WasmPaths;
-  /** Called with the share [0, 1] of the model file that has arrived. */
+  /** Called with the fraction [0, 1] of the model file that has loaded. */
   readonly onProgress?: (share: number) => void;
   /** Called with the reason when WASM replaces WebGPU, at load or when the device fails later. */
   readonly onProviderFallback?: (reason: string) => void;
 }
 
 /**
- * A network, ready to run: contract and model fetched, size and SHA-256 checked, tensors compared with the contract,
- * one run made to warm up. Rejects with a sentence that says what is wrong with which file.
+ * Loads a network: fetches contract and model, verifies size, SHA-256 and tensors, and runs it once to warm up. Rejects
+ * with an Error that names the file and its fault.
  */
 export async function loadRegressor(contractUrl: string, options: LoadOptions = {}): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
@@ -78,7 +78,7 @@ export async function startRegressor(
   });
 }
 
-/** Throws a sentence where an open session does not match the contract of its file. */
+/** Runs an open session once; throws an Error if it does not match its contract. */
 async function runOnce(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
   if (!session.inputNames.includes(input) || !session.outputNames.includes(output)) {
     const has = `${session.inputNames.join(', ')} → ${session.outputNames.join(', ')}`;

@@ -12,8 +12,8 @@ export async function fetchContract(url: string): Promise<ModelContract> {
 }
 
 /**
- * Loads a file and checks its size and SHA-256 against its contract; rejects with a sentence. onProgress: share [0, 1]
- * that has arrived.
+ * Loads a file and checks its size and SHA-256 against its contract; rejects with a sentence. `onProgress`: called with
+ * the fraction [0, 1] that has loaded.
  */
 export async function fetchFile(
   url: string,

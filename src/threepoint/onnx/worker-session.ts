@@ -23,9 +23,8 @@ function namesOf(answer: WorkerResponse): Pick<InferenceSession, 'inputNames' | 
 }
 
 /**
- * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between
- * frames. Rejects when there is no worker or it does not take the model; a worker that breaks or falls silent rejects
- * every run from then on.
+ * Opens a model in its own worker: a frame only sends the request, and the result arrives between frames. Rejects if
+ * the worker does not start or cannot open the model. After a crash or a timeout of the worker every run rejects.
  */
 export async function createWorkerSession(
   model: Uint8Array,

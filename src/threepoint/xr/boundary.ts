@@ -1,10 +1,10 @@
-/** The sides [m] of the room within a boundary, along the axes of the floor. */
+/** The size [m] of the boundary's bounding box, along the axes of the floor. */
 export interface BoundarySize {
   readonly width: number;
   readonly depth: number;
 }
 
-/** Returns the room within the session's boundary; null: the device has none, or does not report it. */
+/** Returns the size of the session's boundary; null: the device has none, or does not report it. */
 export async function readBoundary(session: XRSession): Promise<BoundarySize | null> {
   let space: XRReferenceSpace;
   try {

@@ -14,7 +14,7 @@ export const requestVrSession = (deviceBody = false): Promise<XRSession> =>
 export const requestPassthroughSession = (deviceBody = false): Promise<XRSession> =>
   requestSession('immersive-ar', [...roomFeatures, ...(deviceBody ? [bodyFeature] : [])]);
 
-/** The session features that every session asks for beside the floor. */
+/** The optional features that every session requests. */
 export const defaultFeatures = ['hand-tracking', 'bounded-floor', 'layers'] as const;
 
 /** Requests a session with a floor, the usual features and these. Rejects with a sentence. Needs a click. */

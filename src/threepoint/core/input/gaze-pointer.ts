@@ -4,17 +4,17 @@ import { rotate } from '../math/quat';
 import { copyVec3, forward } from '../math/vec3';
 import { defaultDwellSeconds, MutablePointer, type PointerTarget } from './pointer';
 
-/** A gaze that passes over something for less than this time [s] holds nothing. */
+/** The time [s] that a gaze must rest on a target before a hold starts. */
 const settleSeconds = 0.25;
-/** A gaze may leave what it rests on for this time [s]: a head is never still. */
+/** The time [s] for which a gaze may leave its target, because a head is never still. */
 const leaveSeconds = 0.15;
 
 const keyOf = (target: PointerTarget | null): string | null =>
   target === null || target.id === null ? null : `${target.owner} ${target.id}`;
 
 /**
- * A pointer along the head's gaze that acts on what it rests on. It acts once: the gaze must move to something else
- * before it acts again.
+ * A pointer along the head's gaze that activates the target on which it rests. It activates a target once: the gaze
+ * must move to another target before it acts again.
  */
 export class GazePointer extends MutablePointer {
   override readonly releases = false;

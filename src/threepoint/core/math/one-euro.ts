@@ -10,7 +10,7 @@ import { copyVec3, distance, lerp, type MutableVec3, vec3 } from './vec3';
 export interface OneEuroTuning {
   /** Cutoff at rest, and of the low-pass on the speed [Hz]. */
   readonly restCutoff: number;
-  /** What one metre a second adds to the cutoff [Hz per m/s]. */
+  /** The increase of the cutoff with speed [Hz per m/s]. */
   readonly cutoffPerSpeed: number;
 }
 

@@ -12,20 +12,19 @@ import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
 /**
- * Detects a user who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
- * sit.
+ * Detects a user who stands taller than the calibration. A lower headset proves nothing: people crouch, slouch and sit.
  */
 interface GrowthDetector {
   /**
-   * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null.
-   * Another object is another calibration, unless it is the one that was returned.
+   * Observes a frame with the calibration in use. Returns a larger calibration in the frame that proves it too small,
+   * else null. Another object is another calibration, unless it is the returned one.
    */
   observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
   /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */
   reset(): void;
 }
 
-/** The time [s] at a height that proves it: longer than anybody jumps. */
+/** The time [s] at a height that proves it, longer than a jump. */
 const provingSeconds = 1.25;
 /** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
@@ -71,7 +70,7 @@ export function createGrowthDetector(): GrowthDetector {
     stand = null;
   }
 
-  /** Returns the height [m] of the eyes with a level head: looking up lifts a headset and makes no one taller. */
+  /** Returns the height [m] of the eyes with a level head, because looking up lifts the headset. */
   function levelHeight({ position, orientation }: TrackingFrame['head']): number {
     return position.y - rotate(orientation, eyesInHeadset).y + levelRise;
   }

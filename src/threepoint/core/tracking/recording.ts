@@ -139,7 +139,7 @@ function parseJson(text: string): unknown {
   }
 }
 
-/** Locates a syntax error: each frame is one line, and the first line that does not parse is damaged. */
+/** Returns the place of a syntax error: each frame is one line, and the first line that does not parse is damaged. */
 function placeOfSyntaxError(text: string, message: string): string {
   const lines = text.split('\n');
   const broken = lines.slice(1, -2).findIndex((line) => {
@@ -251,7 +251,7 @@ function indexAt(frames: TrackingFrames, time: number): number {
   const isLater = (index: number): boolean => frames.at(index)!.time > time;
   const last = frames.length - 1;
   const [first, end] = [frames.at(0)!.time, frames.at(-1)!.time];
-  // Devices keep their rate: the search starts where the frame would lie at an even one, and doubles its steps.
+  // The search starts at the index for an even frame rate, and doubles its steps.
   let low = Math.floor(clamp(end > first ? (time - first) / (end - first) : 0, 0, 1) * last);
   let high = low + 1;
   for (let step = 1; low > 0 && isLater(low); step *= 2) [low, high] = [Math.max(0, low - step), low];
@@ -266,8 +266,8 @@ function indexAt(frames: TrackingFrames, time: number): number {
 }
 
 /**
- * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame.
- * A hand that either neighbour lacks is null, its device's body absent: never on its way from or to nowhere.
+ * Returns the interpolated frame at a time [s] on the recording's clock; before the first and after the last that
+ * frame. A hand that either neighbour lacks is null, and a device body that either lacks is absent.
  */
 export function sampleRecording({ frames }: Replayable, time: number): TrackingFrame {
   const low = indexAt(frames, time);
