@@ -11,8 +11,8 @@ const shortestStep = 1 / 1000;
  */
 export interface PageClock {
   /**
-   * Returns the time [s] of the frame with the time stamp `timestampMs`. After a time stamp of another clock, which goes
-   * back, the time advances by the length of the last frame. After a pause, with a time stamp more than
+   * Returns the time [s] of the frame with the time stamp `timestampMs`. After a time stamp of another clock, which
+   * goes back, the time advances by the length of the last frame. After a pause, with a time stamp more than
    * `maxStepSeconds` ahead, it advances by `maxStepSeconds`. The same time stamp within half a frame is the same frame:
    * the time and `paused` stay. A time stamp that is not finite is replaced by the result of `read`.
    */
