@@ -86,7 +86,7 @@ export function withoutThree(
 
 /** The default: the learned network without a runtime, or another one that the page has. */
 export async function byDefault(): Promise<Body> {
-  const network: PoseRegressor = await loadLearned({ onProgress: (share) => console.log(share) });
+  const network: PoseRegressor = await loadLearned({ onProgress: (fraction) => console.log(fraction) });
   const body = new Body({ networks: async () => network });
   await body.dispose();
   return body;
@@ -95,8 +95,8 @@ export async function byDefault(): Promise<Body> {
 /** A recording as files for other programs, and a pose as WebXR has bodies. */
 export async function forOthers(text: string, signal: AbortSignal): Promise<Blob[]> {
   const recording = parseRecording(text);
-  const onProgress = ({ share, secondsLeft }: { share: number; secondsLeft: number | null }) =>
-    console.log(share, secondsLeft);
+  const onProgress = ({ fraction, secondsLeft }: { fraction: number; secondsLeft: number | null }) =>
+    console.log(fraction, secondsLeft);
   const bvh = await exportMotion(recording, { format: 'bvh', unit: 'cm', rateHz: 30, signal, onProgress });
   const glb = await exportMotion(recording, { format: await avatarMotionWriter('/avatars/me.vrm'), estimator: 'ik' });
   return [bvh, glb].map(({ parts, type }) => new Blob([...parts], { type }));

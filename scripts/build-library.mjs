@@ -70,7 +70,7 @@ const readers = [
   {
     module: 'bundled-weights',
     file: 'public/models/learned.bin',
-    code: (bytes) => `export async function readOwnWeights(_stated, onProgress) {
+    code: (bytes) => `export async function readBundledWeights(_stated, onProgress) {
       const read = await ${bytes};
       onProgress?.(1);
       return read;
@@ -79,7 +79,7 @@ const readers = [
   {
     module: 'bundled-mannequin',
     file: 'public/avatars/mannequin.vrm',
-    code: (bytes) => `export const readOwnMannequin = async () => (await ${bytes}).buffer;`,
+    code: (bytes) => `export const readBundledMannequin = async () => (await ${bytes}).buffer;`,
   },
   {
     module: 'bundled-validator',

@@ -7,7 +7,7 @@ import { BodySolver } from 'threepoint/api/body-solver';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { mean, median, quantile } from 'threepoint/core/math/statistics';
 import { distance, lerp, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
@@ -51,8 +51,8 @@ function record(durationMs: number): readonly (readonly Vec3[])[] {
 function transmit(format: BodyFormat, durationMs: number): { packets: readonly Sent[]; bytes: number } {
   const body = actor();
   // All formats have the same delays and losses, by the number of the packet.
-  const delays = randomNumbers(47);
-  const losses = randomNumbers(48);
+  const delays = createRandom(47);
+  const losses = createRandom(48);
   const packets: Sent[] = [];
   let bytes = 0;
   let now = 0;

@@ -1,6 +1,6 @@
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply, rotate, slerp } from 'threepoint/core/math/quat';
-import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
+import { createNormalRandom, createRandom } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import { add, length, lerp, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { trackers as simulated } from 'threepoint/core/mocap/mocap-rules.json';
@@ -57,7 +57,7 @@ export const lossLengthFrom =
 
 /** Losses at seeded times, of either hand; up to the first that the clip is too short for, with its aftermath. */
 export function scheduleLosses(frames: number, rateHz: number, lengthOf: LossLength, seed: number): Loss[] {
-  const random = randomNumbers(seed);
+  const random = createRandom(seed);
   const losses: Loss[] = [];
   const drawLength = () => Math.max(1, Math.round(lengthOf(random) * rateHz));
   let start = Math.round((earliestSeconds + startSpreadSeconds * random()) * rateHz);
@@ -157,7 +157,7 @@ export function addNoise<P extends TrackedPose>(pose: P, { metres, radians }: Tr
 
 /** Recorded frames with the simulated trackers' noise raised to `noise`: independent variances add up. */
 export function raiseNoise(frames: readonly RecordedFrame[], noise: TrackingNoise, seed: number): RecordedFrame[] {
-  const normal = normalNumbers(seed);
+  const normal = createNormalRandom(seed);
   const missing = (tracker: 'head' | 'hands'): TrackerNoise => {
     const rest = (part: keyof TrackerNoise) =>
       Math.sqrt(Math.max(0, noise[tracker][part] ** 2 - simulatedNoise[tracker][part] ** 2));

@@ -1,7 +1,7 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { identity, type Quat } from 'threepoint/core/math/quat';
-import { normalNumbers } from 'threepoint/core/math/random';
+import { createNormalRandom } from 'threepoint/core/math/random';
 import { add, dot, length, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { addNoise, simulatedNoise, type TrackingNoise } from './disturbances';
@@ -117,7 +117,7 @@ export async function measureTremble(
   noise: TrackingNoise = simulatedNoise,
   rateHz = 60,
 ): Promise<Readonly<Record<string, number>>> {
-  const normal = normalNumbers(15);
+  const normal = createNormalRandom(15);
   const sums = new Map(joints.map((joint) => [joint, 0]));
   const [settling, counted] = [2 * rateHz, 10 * rateHz];
   let before: Readonly<Record<string, Vec3>> | null = null;

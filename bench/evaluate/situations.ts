@@ -7,7 +7,7 @@ import {
   transformPose,
 } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import {
@@ -126,7 +126,7 @@ const atRate =
   });
 
 /** Numbers in [0, 1) of a text. */
-const randomOf = (text: string): (() => number) => randomNumbers(seedOf(text));
+const randomOf = (text: string): (() => number) => createRandom(seedOf(text));
 
 /**
  * The wearer resets the reference space every three to five seconds: the floor turns and moves, and the page forgets

@@ -6,8 +6,8 @@ import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { unjudgedSavings } from 'threepoint/xr/frame-rate';
-import { requestVrSession } from 'threepoint/xr/session';
+import { defaultSavings } from 'threepoint/xr/frame-rate';
+import { requestVrSession } from 'threepoint/xr/request-session';
 import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
 import { type Emulator, installEmulator } from 'threepoint-page/emulator/emulator';
@@ -83,7 +83,7 @@ class CountedStage {
           aside: 0,
           watched: null,
           mirror: mirror ? 'always' : 'never',
-          savings: unjudgedSavings,
+          savings: defaultSavings,
         };
         const draw = () => {
           stage.look(shot);

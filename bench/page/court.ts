@@ -1,7 +1,7 @@
 import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
@@ -63,7 +63,7 @@ export class Court {
     this.#seen = Array.from({ length: places }, (_, seat) => ({
       id: seat,
       calibration: defaultCalibration,
-      avatar: plainAvatar,
+      avatar: defaultAvatar,
       palette: 'ember',
       pose: { head, leftHand: null, rightHand: null, body: null },
       placement: composeTransforms(floorFromArena, arenaFromCirclePlace(seat, places)),

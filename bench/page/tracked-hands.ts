@@ -3,8 +3,8 @@ import {
   closedHand,
   type FingerName,
   fingerNames,
+  lerpHandShape,
   makeHandShape,
-  mixHandShape,
   relaxedHand,
 } from 'threepoint/core/body/hand-shape';
 import { type Pose, transformPoint } from 'threepoint/core/math/pose';
@@ -35,7 +35,7 @@ function writeMatrix({ x, y, z }: Vec3, turned: Quat, target: Float32Array, at: 
 
 /** A hand's joints in the order of its map, the wrist first. */
 function matricesOf(side: Side, wrist: Pose<'floor'>, closed: number): Float32Array {
-  const shape = mixHandShape(relaxedHand, closedHand, closed, makeHandShape());
+  const shape = lerpHandShape(relaxedHand, closedHand, closed, makeHandShape());
   const hand = averageHand(1.59);
   const matrices = new Float32Array(16 * (1 + joints.length));
   writeMatrix(wrist.position, wrist.orientation, matrices, 0);

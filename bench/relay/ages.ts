@@ -6,7 +6,7 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { clamp } from 'threepoint/core/math/damper';
 import type { TrackedPose } from 'threepoint/core/math/pose';
-import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
+import { createNormalRandom, createRandom } from 'threepoint/core/math/random';
 import { median, quantile } from 'threepoint/core/math/statistics';
 import { distance, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
@@ -94,7 +94,7 @@ class Jerk {
  * it is sent again.
  */
 function arrivals(leaving: readonly number[], { roundTrip, jitter, loss }: Way, seed: number): readonly number[] {
-  const chance = randomNumbers(seed);
+  const chance = createRandom(seed);
   let last = 0;
   return leaving.map((time) => {
     // Three later packets reveal a loss; then half a round trip to the sender, and half a one back.
@@ -134,7 +134,7 @@ function performed(seconds: number, tremor: number): readonly SentFrame[] {
   const before = performances.get(key);
   if (before) return before;
   const ik = createIk(defaultCalibration);
-  const noise = normalNumbers(1);
+  const noise = createNormalRandom(1);
   const frames = Array.from({ length: Math.floor(seconds * displayHz) }, (_, i) => {
     const time = i / displayHz;
     const { pose } = ik.update(trembling(actorFrame(time, defaultCalibration), tremor, noise));

@@ -1,7 +1,7 @@
 // The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is
 // what is measured.
 
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { relaxedHand } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
@@ -244,7 +244,7 @@ class Client {
       spectate: false,
       bot: false,
       seat: null,
-      avatar: plainAvatar,
+      avatar: defaultAvatar,
       voice: null,
     };
     this.#sendMessage({ type: 'join', version: protocolVersion, ...person });

@@ -3,7 +3,7 @@ import { basename, extname, join } from 'node:path';
 import { type MotionWriter, writeMotionFile } from 'threepoint/api/motion-file';
 import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
 import type { WorkOptions } from 'threepoint/api/run-work';
-import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
+import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
 import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { NetworkName } from 'threepoint/core/estimation/estimators';
@@ -62,7 +62,7 @@ async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | M
   }
   const path = avatar ?? join(root, 'public/avatars/mannequin.vrm');
   const file = readGiven(path, '--avatar');
-  return avatarClip(new Uint8Array(file).buffer, basename(path));
+  return createAvatarMotionWriter(new Uint8Array(file).buffer, basename(path));
 }
 
 function checked<Name extends string>(option: string, value: string, names: readonly Name[]): Name {

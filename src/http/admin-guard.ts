@@ -3,7 +3,7 @@ import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
 import { type AuthThrottle, createAuthThrottle, TooManyAttempts } from './auth-throttle';
 import { clientAddressOf } from './client-address';
-import { HttpError } from './response';
+import { HttpError } from './http-error';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 

@@ -2,10 +2,10 @@ import { createHash } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { ClientAddress } from './client-address';
 
-/** The kind of a secret: a token opens a server, a withdrawal code deletes, an invitation takes a place. */
+/** The kind of a secret: a server's token, a code that withdraws a participant's data, or an invitation to a study. */
 export type SecretKind = 'token' | 'withdrawal code' | 'invitation';
 
-/** A wrong guess for the log: everything but the secret that was sent. */
+/** A failed attempt for the log, without the secret that was sent. */
 export interface FailedAttempt {
   readonly what: SecretKind;
   readonly address: string;
@@ -19,11 +19,11 @@ export interface AuthAttempt {
   readonly what: SecretKind;
   readonly address: ClientAddress;
   readonly of: string | null;
-  /** The secret that was sent, with the name of what it opens. */
+  /** The secret that was sent. */
   readonly secret: string;
 }
 
-/** Refuses a guess unchecked, because too many before it were wrong. */
+/** The error of an attempt that is not checked, because too many attempts before it failed. */
 export class TooManyAttempts extends Error {
   readonly retryAfterSeconds: number;
 
@@ -33,11 +33,11 @@ export class TooManyAttempts extends Error {
   }
 }
 
-/** Limits how often secrets may be tried: the delay grows with the number of wrong guesses. */
+/** Limits how often secrets may be tried: the delay grows with the number of failed attempts. */
 export interface AuthThrottle {
   /**
-   * Calls `isRight` where this address and this study have a guess left; throws TooManyAttempts otherwise. `isRight` is
-   * synchronous; where it throws, no guess is counted. A repeated wrong secret counts once. A secret that was right
+   * Calls `isRight` if this address and this study may attempt again; throws TooManyAttempts otherwise. `isRight` is
+   * synchronous; if it throws, no attempt is counted. A repeated wrong secret counts once. A secret that was right
    * before is never delayed.
    */
   attempt(guess: AuthAttempt, isRight: () => boolean): Promise<boolean>;
@@ -49,7 +49,10 @@ const memorySeconds = 3600;
 const trustSeconds = 12 * 3600;
 /** Wrong guesses without a delay; after them the delay doubles from one second up to a limit [s]. */
 const addressLimits = { free: 5, longestDelay: 900 } as const;
-/** The limits of all addresses together. Its delay stays short, or a stranger could keep the study's own people out. */
+/**
+ * The limits of all addresses together. The delay stays short, so that an attacker cannot lock out the study's
+ * participants.
+ */
 const studyLimits = { free: 20, longestDelay: 60 } as const;
 
 const digestOf = ({ what, of, secret, address: { network } }: AuthAttempt): string =>

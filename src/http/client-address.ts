@@ -1,6 +1,6 @@
 import type { IncomingMessage } from 'node:http';
 import { BlockList, isIP, isIPv4, SocketAddress } from 'node:net';
-import { HttpError } from './response';
+import { HttpError } from './http-error';
 
 /** The normalised address of a client. Every limit of the server counts by `network`. */
 export interface ClientAddress {

@@ -1,10 +1,10 @@
-/** Combines the flushes that many callers ask for: all who ask while one is under way share the next. */
+/** Combines the flushes of many callers: all calls during a flush share the next one. */
 export class GroupCommit {
   readonly #flush: () => Promise<void>;
   #last: Promise<void> = Promise.resolve();
   #next: Promise<void> | null = null;
 
-  /** `flush` writes everything so far through to the disk. */
+  /** `flush` writes everything so far to the disk. */
   constructor(flush: () => Promise<void>) {
     this.#flush = flush;
   }

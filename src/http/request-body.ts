@@ -1,5 +1,5 @@
 import type { IncomingMessage } from 'node:http';
-import { HttpError } from './response';
+import { HttpError } from './http-error';
 
 /**
  * Passes the body to `onChunk` as it arrives. Throws an HttpError if it is longer than the limit [bytes] or is cut off.

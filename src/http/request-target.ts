@@ -39,7 +39,7 @@ export function hostProblem({ url = '', headersDistinct, httpVersion }: Incoming
   if (hosts.length > 1) return 'the request has more than one Host header';
   if (host === undefined && httpVersion === '1.1') return 'the request has no Host header';
   const named = absolute.exec(url)?.[0];
-  // A target that cannot be parsed is refused where it is read.
+  // The reader of the target refuses one that cannot be parsed.
   if (named === undefined || !URL.canParse(named)) return null;
   const { protocol, origin } = new URL(named);
   const expected = `${protocol}//${host}`;

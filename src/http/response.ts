@@ -1,32 +1,14 @@
 import { type IncomingMessage, type ServerResponse, STATUS_CODES } from 'node:http';
 import type { Duplex } from 'node:stream';
+import type { HttpError } from './http-error';
 import { securityHeaders } from './security-headers';
 
-/** The answer to a request, before it is sent. */
+/** A response before it is sent. */
 export interface HttpResponse {
   readonly status: number;
   /** Headers by their names in lower case; they replace the default ones. */
   readonly headers?: Readonly<Record<string, string | number>>;
   readonly body?: string | Uint8Array;
-}
-
-/** A refusal that the client receives: a status and a sentence. */
-export class HttpError extends Error {
-  readonly status: number;
-  /** The invalid field of the body, as `records[1].body.age`; null: no single field is at fault. */
-  readonly field: string | null;
-  readonly headers: Readonly<Record<string, string>>;
-
-  constructor(
-    status: number,
-    message: string,
-    { field = null, headers = {} }: { field?: string | null; headers?: Readonly<Record<string, string>> } = {},
-  ) {
-    super(message);
-    this.status = status;
-    this.field = field;
-    this.headers = headers;
-  }
 }
 
 export const jsonResponse = (value: unknown, status = 200): HttpResponse => ({
@@ -41,7 +23,7 @@ export const textResponse = (text: string, status = 200): HttpResponse => ({
   body: `${text}\n`,
 });
 
-/** An answer without a body. */
+/** A response without a body. */
 export const noContent: HttpResponse = { status: 204 };
 
 export const errorResponse = ({ status, message, field, headers }: HttpError): HttpResponse => {
@@ -79,7 +61,7 @@ function drain(request: IncomingMessage, done: () => void): void {
   request.on('data', count).on('end', finish).on('close', finish).resume();
 }
 
-/** Sends an answer with the security headers. After an unread body the connection is closed. */
+/** Sends a response with the security headers. If the request's body was not read, the connection is closed. */
 export function sendResponse(request: IncomingMessage, response: ServerResponse, answer: HttpResponse): void {
   if (response.destroyed || response.headersSent) return;
   const unread = announcesBody(request) && !request.complete;
@@ -95,14 +77,14 @@ export function sendResponse(request: IncomingMessage, response: ServerResponse,
   drain(request, () => response.end());
 }
 
-/** Sends an answer on a raw socket: the request could not be parsed, or asked for an upgrade. */
+/** Sends a response on a raw socket, because the request could not be parsed or is an upgrade. */
 export function sendRawResponse(socket: Duplex, answer: HttpResponse): void {
   const headers = { ...headersOf(answer), connection: 'close' };
   const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
   const head = `HTTP/1.1 ${answer.status} ${STATUS_CODES[answer.status]}\r\n${lines.join('')}\r\n`;
   const timer = setTimeout(() => socket.destroy(), lingerMs);
   socket.once('close', () => clearTimeout(timer));
-  // Without a reader the client's end would not be noticed.
+  // Without a reader the end of the client's stream is not detected.
   socket.resume();
   socket.end(Buffer.concat([Buffer.from(head, 'latin1'), Buffer.from(answer.body ?? '')]));
 }

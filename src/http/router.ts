@@ -1,8 +1,9 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from 'threepoint/core/validation/validation';
+import { HttpError } from './http-error';
 import { readWholeBody } from './request-body';
 import { parseRequestTarget } from './request-target';
-import { errorResponse, HttpError, type HttpResponse, jsonResponse, sendResponse } from './response';
+import { errorResponse, type HttpResponse, jsonResponse, sendResponse } from './response';
 import { createSitePolicy, type SitePolicy } from './site-policy';
 
 /** A request to a route, with its body. */

@@ -39,7 +39,7 @@ function withoutRepeats(text: string): { readonly kept: string; readonly repeats
 
 /**
  * Returns an upper bound of a secret's entropy [bits] from its length and alphabet; words and repetitions count little.
- * It cannot prove that a secret is random, but finds those that plainly are not.
+ * It cannot prove that a secret is random, but finds secrets that are not.
  */
 export function secretEntropyBits(secret: string): number {
   const { kept, repeats } = withoutRepeats(secret);
@@ -51,7 +51,7 @@ export function secretEntropyBits(secret: string): number {
   return (kept.length - textual) * perCharacter + textual * bitsOfTextLetter + repeats * bitsOfRepeat;
 }
 
-/** Returns why a secret is too weak, as the rest of a sentence that begins with its name; null: it is strong enough. */
+/** Returns why a secret is too weak, as a clause that follows its name in a sentence; null: it is strong enough. */
 export function secretWeakness(secret: string): string | null {
   const bits = Math.floor(secretEntropyBits(secret));
   if (bits >= fewestSecretBits) return null;

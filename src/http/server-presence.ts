@@ -1,6 +1,6 @@
 /**
- * Whether the page's host is a threepoint server: not known yet, asked, here, none (a host of static files answered),
- * or silent (no answer).
+ * Whether the page's host is a threepoint server: not known yet, requested, present, absent (a static host responded),
+ * or silent (no response).
  */
 export type ServerState = 'unknown' | 'asked' | 'here' | 'none' | 'silent';
 
@@ -26,8 +26,8 @@ async function stateFrom(response: Response): Promise<ServerState> {
 }
 
 /**
- * Finds out by a request whether the page's host has rooms and studies. The built page includes a file
- * public/api/rooms, which a static host serves; a threepoint server never serves files below /api.
+ * Detects by a request whether the page's host has rooms and studies. The built page includes a file public/api/rooms,
+ * which a static host serves; a threepoint server never serves files below /api.
  */
 export class ServerPresence {
   readonly #server: string;
@@ -45,12 +45,12 @@ export class ServerPresence {
     return this.#state;
   }
 
-  /** Resolves to the known state, after a request if there is none. Never rejects. */
+  /** Resolves to the state, after a request if it is unknown. Never rejects. */
   whenKnown(): Promise<ServerState> {
     return this.#state === 'unknown' ? this.refresh() : (this.#answer ?? Promise.resolve(this.#state));
   }
 
-  /** Asks again, unless a request is under way. Never rejects. */
+  /** Sends the request again, unless one is pending. Never rejects. */
   refresh(): Promise<ServerState> {
     this.#answer ??= this.#ask();
     return this.#answer;

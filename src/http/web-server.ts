@@ -9,9 +9,10 @@ import { createServer as createHttpsServer } from 'node:https';
 import { createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
 import type { Duplex } from 'node:stream';
 import type { ConnectionLimiter } from './connection-limiter';
+import { HttpError } from './http-error';
 import { listenOnFreePort } from './listen-on-free-port';
 import { hostProblem, parseRequestTarget } from './request-target';
-import { errorResponse, HttpError, sendRawResponse, sendResponse } from './response';
+import { errorResponse, sendRawResponse, sendResponse } from './response';
 
 /** A private key and its certificate, PEM. */
 export interface Credentials {

@@ -2,7 +2,7 @@ import {
   type DownloadOptions,
   downloadLimited,
   type FileKind,
-  tooLarge,
+  fileTooLargeError,
 } from 'threepoint/avatar/file/limited-download';
 import { nameOfAddress } from 'threepoint/core/files';
 
@@ -29,6 +29,6 @@ export async function readLimited(
 }
 
 function readFile(file: File, kind: FileKind): Promise<ArrayBuffer> {
-  if (file.size > kind.megabytes * 2 ** 20) throw tooLarge(file.name, kind);
+  if (file.size > kind.megabytes * 2 ** 20) throw fileTooLargeError(file.name, kind);
   return file.arrayBuffer();
 }

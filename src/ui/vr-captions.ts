@@ -1,4 +1,4 @@
-import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
+import { showToEyesOnly } from 'threepoint/avatar/eye-layers';
 import { dampVec3 } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
@@ -20,7 +20,7 @@ export function createVrCaptions() {
   mesh.name = 'captions';
   mesh.renderOrder = 20;
   mesh.visible = false;
-  showToEyesAlone(mesh);
+  showToEyesOnly(mesh);
   const material = [mesh.material].flat()[0];
   if (material) material.depthTest = false;
   let current: { readonly text: string; until: number | null } | null = null;

@@ -1,4 +1,4 @@
-import type { PointedAt, Pointer } from 'threepoint/core/input/pointer';
+import type { Pointer, PointerTarget } from 'threepoint/core/input/pointer';
 import type { Mutable } from 'threepoint/core/records';
 import type { PanelPoint, VrPanel } from './vr-panel';
 
@@ -48,7 +48,7 @@ export function createPanelTouch<Target extends PanelTarget>(
 ): PanelTouch<Target> {
   const behind = new WeakMap<Pointer, boolean>();
   const point: PanelPoint = { x: 0, y: 0, distance: 0 };
-  const met: Mutable<PointedAt> = { distance: 0, owner, id: null };
+  const met: Mutable<PointerTarget> = { distance: 0, owner, id: null };
   const pressed: Target[] = [];
   const touched: Mutable<Touched<Target>> = { pointedAt: null, pressed };
 

@@ -1,7 +1,7 @@
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import * as fc from 'fast-check';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { type HeadsetReport, writeHeadsetReport } from 'threepoint-page/check/headset-report';
 import { describe, expect, test } from 'vitest';
 import { readCheckFile, trackingOf } from '../../bench/evaluate/checked-headset';
@@ -49,7 +49,7 @@ describe('the tracking of a checked device', () => {
 
   test('loses hands for as long as the file says', () => {
     const lengthOf = lossLengthFrom(trackingOf(report, 'quest.json').losses);
-    const random = randomNumbers(8);
+    const random = createRandom(8);
     const drawn = Array.from({ length: 20_000 }, () => lengthOf(random)).sort((a, b) => a - b);
     expect(drawn[0]).toBeCloseTo(0.05, 3);
     expect(drawn.at(-1)).toBeCloseTo(2, 1);

@@ -1,7 +1,7 @@
 import { Scene } from 'three';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { MovedPointer } from 'threepoint/core/input/pointer';
+import { MutablePointer } from 'threepoint/core/input/pointer';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
 import { ServerPresence } from 'threepoint-http/server-presence';
@@ -42,7 +42,7 @@ export function activityServices(address = '?seed=5&quality=low') {
       aims.enabled = on;
     },
   };
-  const mousePointer = new MovedPointer('mouse');
+  const mousePointer = new MutablePointer('mouse');
   mousePointer.setRay(vec3(0, 1.6, 0), vec3(0, 0, -1));
   const study = new PageStudy();
   const services = {
@@ -61,7 +61,7 @@ export function activityServices(address = '?seed=5&quality=low') {
     pointer: () => (settings.mouse && !headset.worn ? mousePointer : null),
     headset,
     body: { calibration: defaultCalibration },
-    avatar: { isBuiltIn: true, worn: plainAvatar },
+    avatar: { isBuiltIn: true, worn: defaultAvatar },
     fetchBuiltInAvatar,
     server: new ServerPresence('http://127.0.0.1:9', () => undefined),
     notices: { show: (level, text) => void notices.push({ level, text }) },

@@ -1,18 +1,18 @@
 import type { Mesh } from 'three';
-import { MovedPointer, type PointerSource } from 'threepoint/core/input/pointer';
+import { MutablePointer, type PointerSource } from 'threepoint/core/input/pointer';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { expect, test } from 'vitest';
 
 /** A pointer of this source that has met something 2 m away. */
-function pointing(source: PointerSource, progress = 0): MovedPointer {
-  const pointer = new MovedPointer(source);
+function pointing(source: PointerSource, progress = 0): MutablePointer {
+  const pointer = new MutablePointer(source);
   pointer.progress = progress;
   pointer.pointAt({ distance: 2, owner: 'menu', id: 'exit' });
   return pointer;
 }
 
 /** What is drawn of each pointer: line, dot, ring. */
-function drawn(...shown: readonly MovedPointer[]) {
+function drawn(...shown: readonly MutablePointer[]) {
   const pointers = createVrPointers();
   pointers.show(shown);
   return pointers.objects.children.map((each) => each.visible && each.children.map(({ visible }) => visible));
@@ -24,7 +24,10 @@ test('hands draw a line to what they point at; eyes and pinches that aim by them
 });
 
 test('a ray that meets nothing is not drawn; a gaze shows where it goes', () => {
-  expect(drawn(new MovedPointer('hand'), new MovedPointer('gaze')).slice(0, 2)).toEqual([false, [false, true, false]]);
+  expect(drawn(new MutablePointer('hand'), new MutablePointer('gaze')).slice(0, 2)).toEqual([
+    false,
+    [false, true, false],
+  ]);
 });
 
 test('a gaze that rests on something fills a ring there', () => {

@@ -1,4 +1,4 @@
-import { MovedPointer } from 'threepoint/core/input/pointer';
+import { MutablePointer } from 'threepoint/core/input/pointer';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { createPanelTouch, type PanelTarget } from 'threepoint-ui/vr-touch';
@@ -21,8 +21,8 @@ function sheet() {
   return createPanelTouch(panel, 'menu');
 }
 
-function aiming(x: number, y: number, pressed = false): MovedPointer {
-  const pointer = new MovedPointer('controller', 'right');
+function aiming(x: number, y: number, pressed = false): MutablePointer {
+  const pointer = new MutablePointer('controller', 'right');
   const away = Math.hypot(x, y, 1);
   pointer.setRay(vec3(0, 0, 0), vec3(x / away, y / away, -1 / away));
   pointer.pressed = pressed;

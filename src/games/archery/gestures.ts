@@ -11,7 +11,7 @@ import {
 import { copyPose, makePose, type TrackedPose } from 'threepoint/core/math/pose';
 import { otherSide, type Side, sides } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { longestStep } from 'threepoint/core/tracking/page-clock';
+import { maxStepSeconds } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fistOf } from '../fist';
 import type { HapticPulse } from '../haptic-pulse';
@@ -78,7 +78,7 @@ export interface GestureFrame {
 export const nockReach = 0.18;
 const nearMargin = 0.03;
 /** A longer interval between two frames [s] is a pause: the page's clock counts its longest step for it. */
-const longestFrame = longestStep - 1e-3;
+const longestFrame = maxStepSeconds - 1e-3;
 
 const none: readonly never[] = [];
 

@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import {
   addScaled,
   distance,
@@ -84,7 +84,7 @@ export const defaultArcheryOptions: ArcheryOptions = {
 export const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
 
 function placeTargets(eyeHeight: number, seed: number): Target[] {
-  const chance = randomNumbers(seed);
+  const chance = createRandom(seed);
   const mirrored = chance() < 0.5 ? -1 : 1;
   const eyes = vec3(0, eyeHeight, 0);
   return layout.map((place): Target => {

@@ -1,5 +1,5 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import {
   add,
@@ -81,7 +81,7 @@ class Thrower implements BallBot {
   constructor(body: PlayerBody, seed: number) {
     this.#postures = createPlayerPostures(body);
     this.#moves = new ThrowPostures(this.#postures);
-    this.#random = randomNumbers(seed);
+    this.#random = createRandom(seed);
   }
 
   follow(time: number, sight: BotView): PlayerInput {

@@ -1,4 +1,4 @@
-import type { BuiltInBody } from 'threepoint/core/body/avatar-ref';
+import type { BuiltInBody } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';

@@ -1,16 +1,16 @@
-import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
 import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { PointedAt } from 'threepoint/core/input/pointer';
+import type { PointerTarget } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Pulse } from 'threepoint/xr/haptics';
+import type { HapticPulse } from 'threepoint/xr/haptics';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
 import type { CameraScene } from '../scene/desktop-view';
@@ -73,15 +73,15 @@ export interface OpenActivity {
   /** Returns the input of the simulated player, or of the one that a pointer steers; null: no player is moved. */
   act(time: number): PlayerInput | null;
   /** Advances the game by a tracked frame. Returns haptic pulses for the hands; null: the game is paused. */
-  update(frame: TrackingFrame, buttons: Buttons): readonly Pulse[] | null;
+  update(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] | null;
   /** Closes a hand around the object that it holds. Returns false if it holds nothing. */
-  grasp?(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean;
+  grasp?(side: Side, wrist: Pose<'floor'>, holding: ObjectHolds, target: MutableHandShape): boolean;
   /** Sends the solved body to other players. */
   send?(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
   /** Updates the view. `frame`: null if the head is not tracked. */
   show(time: number, frame: TrackingFrame | null): void;
   /** Returns the button in the scene that a ray meets, or null. `press`: also presses the button. */
-  point?(ray: Ray, press: boolean): PointedAt | null;
+  point?(ray: Ray, press: boolean): PointerTarget | null;
   /** The user's floor frame changed: movement since the last frame is not a gesture. */
   discontinuity?(): void;
   /** A session started or ended: another input source moves the hands from now on. */

@@ -1,14 +1,14 @@
-import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import type { PointedAt } from 'threepoint/core/input/pointer';
+import type { PointerTarget } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
 import { identity, rotate } from 'threepoint/core/math/quat';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, up, vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Pulse } from 'threepoint/xr/haptics';
+import type { HapticPulse } from 'threepoint/xr/haptics';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
@@ -75,7 +75,7 @@ export class ArcheryActivity implements OpenActivity {
     return this.play.steer(time, steering, head && vec3(head.x, 0, head.z));
   }
 
-  update(frame: TrackingFrame, allButtons: Buttons): readonly Pulse[] | null {
+  update(frame: TrackingFrame, allButtons: Buttons): readonly HapticPulse[] | null {
     const { study, settings, writer, onChange } = this.#context;
     this.#newestFrame = frame;
     if (study.paused) return null;
@@ -89,7 +89,7 @@ export class ArcheryActivity implements OpenActivity {
     return [...haptics, ...eventHaptics(events, bowSide)];
   }
 
-  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean {
+  grasp(side: Side, wrist: Pose<'floor'>, holding: ObjectHolds, target: MutableHandShape): boolean {
     const { study, settings } = this.#context;
     const bow = this.play.newest?.bow;
     if (!bow || study.idle) return false;
@@ -114,7 +114,7 @@ export class ArcheryActivity implements OpenActivity {
     this.#view.show(newest.state, this.#context.study.idle ? null : newest.bow, newest.time, frame.head);
   }
 
-  point({ origin, direction }: Ray, press: boolean): PointedAt | null {
+  point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
     const distance = this.#view.result.restartAt(origin, direction);
     this.#view.result.setHovered(distance !== null);
     if (distance === null) return null;

@@ -1,10 +1,10 @@
-import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import type { PointedAt } from 'threepoint/core/input/pointer';
+import type { PointerTarget } from 'threepoint/core/input/pointer';
 import type { Pose, Transform } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
@@ -164,7 +164,7 @@ export class BallActivity implements OpenActivity {
     this.play.send(frame, pose, fingers);
   }
 
-  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean {
+  grasp(side: Side, wrist: Pose<'floor'>, holding: ObjectHolds, target: MutableHandShape): boolean {
     return graspAtCourt(this.play, side, wrist, holding, target);
   }
 
@@ -191,7 +191,7 @@ export class BallActivity implements OpenActivity {
     this.#view.playEvents(newest.resumed ? noEvents : newest.events, newest.cues);
   }
 
-  point({ origin, direction }: Ray, press: boolean): PointedAt | null {
+  point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
     const { lobby } = this.#view;
     const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
     lobby.setHovered(hit?.id ?? null);
@@ -320,6 +320,6 @@ async function roomFor({ place, switches, clock, server, layout }: ActivityConte
 
 /** Downloads the body of other players and connects to the room. Rejects with a reason. */
 export async function openBallActivity(context: ActivityContext): Promise<BallActivity> {
-  const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(plainAvatar), roomFor(context)]);
+  const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(defaultAvatar), roomFor(context)]);
   return new BallActivity(context, room, mannequin);
 }

@@ -2,8 +2,8 @@ import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { loadSeenAvatar } from 'threepoint/avatar/load-untrusted-avatar';
-import { type BuiltInBody, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { loadUntrustedAvatar } from 'threepoint/avatar/load-untrusted-avatar';
+import { type BuiltInBody, defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityContext } from '../activity/activity-context';
@@ -27,7 +27,7 @@ export class BuiltInBodies {
 
   /** `mannequin`: the file of the plain body; `fetch`: downloads another one. */
   constructor(mannequin: ArrayBuffer, fetch: (name: BuiltInBody) => Promise<ArrayBuffer>) {
-    this.#files.set(plainAvatar, Promise.resolve(mannequin));
+    this.#files.set(defaultAvatar, Promise.resolve(mannequin));
     this.#fetch = fetch;
   }
 
@@ -55,7 +55,7 @@ export function createCourtAvatars({ context, exchange, mannequin, play, voices 
     notify: (level, text) => notices.show(level, text),
     onRefused: (text) => notices.show('info', text),
     loadBuiltIn: (body) => builtIn.load(body),
-    loadFile: (bytes) => loadSeenAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),
+    loadFile: (bytes) => loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),
     plain: () => settings.plainOthers,
     mouthOf: (seat) => voices.seats.mouthOf(seat),
     shadows: true,

@@ -1,4 +1,4 @@
-import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Pose, transformPoint } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
@@ -19,7 +19,7 @@ export function graspAtCourt(
   { newest, floorFromArena }: Pick<BallPlay, 'newest' | 'floorFromArena'>,
   side: Side,
   wrist: Pose<'floor'>,
-  holding: Holding,
+  holding: ObjectHolds,
   target: MutableHandShape,
 ): boolean {
   if (!newest) return false;

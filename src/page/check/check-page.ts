@@ -1,6 +1,6 @@
 import { BodySolver } from 'threepoint/api/body-solver';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { describeXrSupport } from 'threepoint/xr/session';
+import { describeXrSupport } from 'threepoint/xr/session-support';
 import { element, pageElement } from 'threepoint-ui/element';
 import { createEnterButton } from 'threepoint-ui/enter-button';
 import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';

@@ -1,7 +1,8 @@
 import type { WebGLRenderer } from 'three';
 import { bodyFeature, DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import { drawSession } from 'threepoint/xr/draw-session';
-import { isSessionOffered, requestSession, usualFeatures } from 'threepoint/xr/session';
+import { defaultFeatures, requestSession } from 'threepoint/xr/request-session';
+import { isSessionOffered } from 'threepoint/xr/session-support';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { HeadsetReport } from './headset-report';
 
@@ -57,7 +58,7 @@ export class OfferedFeatures {
     const offered = await Promise.all(modes.map(isSessionOffered));
     return {
       modes: modes.filter((_, index) => offered[index]),
-      asked: ['local-floor', ...usualFeatures, ...askedFeatures],
+      asked: ['local-floor', ...defaultFeatures, ...askedFeatures],
       granted: this.#xr.enabledFeatures ? [...this.#xr.enabledFeatures] : null,
     };
   }

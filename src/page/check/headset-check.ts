@@ -156,7 +156,7 @@ export class HeadsetCheck {
         views: this.#views,
       },
       features: await offered.features(),
-      ...this.#measurements.figures(session.bodyReader.complaint),
+      ...this.#measurements.figures(session.bodyReader.problem),
     });
   }
 }

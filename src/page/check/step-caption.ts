@@ -1,5 +1,5 @@
 import type { Mesh } from 'three';
-import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
+import { showToEyesOnly } from 'threepoint/avatar/eye-layers';
 import { dampVec3 } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 import { rotate } from 'threepoint/core/math/quat';
@@ -28,7 +28,7 @@ export class StepCaption {
     this.object.name = 'step caption';
     this.object.renderOrder = 20;
     this.object.visible = false;
-    showToEyesAlone(this.object);
+    showToEyesOnly(this.object);
     const material = [this.object.material].flat()[0];
     if (material) material.depthTest = false;
   }

@@ -1,7 +1,7 @@
-import { hashOf } from 'threepoint/avatar/file/file-hash';
+import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
 import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { type FileBones, UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import { type FileBones, UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
 import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
@@ -42,7 +42,7 @@ async function sourceOf({ motion, skeleton, map }: MocapFiles) {
   const name = fileNameOf(motion);
   const bytes = await bytesOf(motion);
   const skeletonBytes = skeleton ? await bytesOf(skeleton) : bytes;
-  const hash = map ? null : await hashOf(skeletonBytes);
+  const hash = map ? null : await sha256Base64Url(skeletonBytes);
   const mapped = map ? { map: named(map, await bytesOf(map)) } : {};
   const file: MocapSource = skeleton
     ? { format: 'amc', ...named(motion, bytes), skeleton: named(skeleton, skeletonBytes) }
@@ -64,7 +64,7 @@ async function read({ bones, boneMaps, ...files }: MocapQuestion): Promise<void>
       clips.flatMap(({ tracked, truth }) => [tracked.buffer, truth.buffer]),
     );
   } catch (error) {
-    if (!(error instanceof UnknownBones)) throw error;
+    if (!(error instanceof UnknownBonesError)) throw error;
     const { joints, matched, confidence } = error;
     tell({ refused: firstLine(error.message), bones: { joints, matched, confidence }, hash });
   }

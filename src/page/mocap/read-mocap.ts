@@ -1,5 +1,5 @@
 import type { WorkOptions } from 'threepoint/api/run-work';
-import { type FileBones, UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import { type FileBones, UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
 import type { PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { secondsLeft } from 'threepoint/core/motion/work';
 import { fileNameOf } from 'threepoint-ui/limited-files';
@@ -10,7 +10,7 @@ import type { MocapAnswer, MocapQuestion, MotionMap } from './mocap-worker';
 const forWorker = (file: MocapFile): MocapFile => (typeof file === 'string' ? new URL(file, location.href).href : file);
 
 /** The error of a motion whose bones match no humanoid: a map of them can be given, and kept by the file's hash. */
-export class UnmatchedMotion extends UnknownBones {
+export class UnmatchedMotion extends UnknownBonesError {
   constructor(
     message: string,
     bones: FileBones,

@@ -1,6 +1,6 @@
 import { Fog, Mesh, type Object3D, PlaneGeometry, ShadowMaterial } from 'three';
 import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
-import type { PlayRoom } from 'threepoint/xr/session';
+import type { BoundarySize } from 'threepoint/xr/boundary';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Activity, FloorNeeds } from '../activity/activity';
 import type { Quality } from '../scene/renderer';
@@ -13,7 +13,7 @@ import { RoomLight } from './room-light';
 export interface PassthroughOptions {
   readonly session: XRSession;
   /** The space within the boundary of the headset; null: the device does not report it. */
-  readonly room: PlayRoom | null;
+  readonly room: BoundarySize | null;
   readonly quality: Quality;
   readonly studio: Studio;
   readonly notices: Pick<Notices, 'show'>;

@@ -1,7 +1,7 @@
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 
 /** A stream of numbers in [0, 1), the same for the same seed, for placing what only decorates. */
 export function createRandomRange(seed: number): (low?: number, high?: number) => number {
-  const random = randomNumbers(seed);
+  const random = createRandom(seed);
   return (low = 0, high = 1) => low + (high - low) * random();
 }

@@ -1,5 +1,5 @@
 import { BackSide, Mesh, ShaderMaterial, SphereGeometry } from 'three';
-import { showToEyesAlone } from 'threepoint/avatar/eye-layers';
+import { showToEyesOnly } from 'threepoint/avatar/eye-layers';
 import { smoothstep } from 'threepoint/core/math/damper';
 import type { Pose } from 'threepoint/core/math/pose';
 
@@ -36,7 +36,7 @@ export function createVignette() {
   object.renderOrder = 10_000;
   object.frustumCulled = false;
   // In a mirror it would be a black ball for a head.
-  showToEyesAlone(object);
+  showToEyesOnly(object);
   object.visible = false;
   let closedAt = Number.NEGATIVE_INFINITY;
   return {

@@ -1,14 +1,14 @@
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-body-labels';
+import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
+import { avatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
 import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
-import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { avatarLimits } from 'threepoint/avatar/file/inspect-avatar';
+import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
 import type { ReadBones } from 'threepoint/avatar/humanoid/read-file-bones';
 import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
-import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/built-in-bodies';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
@@ -34,7 +34,7 @@ export interface MappedFile {
 export const buildBuiltIn = async (
   body: BuiltInBody,
   bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
-): Promise<Avatar> => createAvatarBetweenFrames(await parseAvatar(await bytes, labelOf(body)));
+): Promise<Avatar> => createAvatarBetweenFrames(await parseAvatar(await bytes, bodyLabelOf(body)));
 
 /** An avatar, and the reference by which other players see it. */
 export interface LoadedUserAvatar {
@@ -57,7 +57,7 @@ export interface AvatarLoaderOptions {
 async function fileFor({ bytes, file, hash }: CheckedAvatar, bones: BoneMap | undefined) {
   if (!bones) return { file, hash };
   const named = await withNamedBones(bytes, bones);
-  return { file: new Blob([named]), hash: await hashOf(named) };
+  return { file: new Blob([named]), hash: await sha256Base64Url(named) };
 }
 
 const withBytes = async (checked: AvatarFile): Promise<CheckedAvatar> => ({
@@ -88,11 +88,11 @@ export class AvatarLoader {
     options: { readonly onProgress: (share: number) => void; readonly signal: AbortSignal },
   ): Promise<CheckedAvatar> {
     const bytes = await readLimited(source, avatarFile, options);
-    return checkInWorker(bytes, { name: fileNameOf(source), unpacked: Object.keys(decoders) });
+    return checkInWorker(bytes, { name: fileNameOf(source), supportedCompressions: Object.keys(decoders) });
   }
 
   /**
-   * Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBones if
+   * Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBonesError if
    * they are unknown.
    */
   build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
@@ -113,8 +113,8 @@ export class AvatarLoader {
 
   /** Reads the bones of a checked file, and what they are without a map. */
   async bonesOf(checked: AvatarFile, name: string): Promise<ReadBones> {
-    const { bonesOfFile } = await import('threepoint/avatar/humanoid/read-file-bones');
-    return bonesOfFile(await withBytes(checked), name, decoders);
+    const { readFileBones } = await import('threepoint/avatar/humanoid/read-file-bones');
+    return readFileBones(await withBytes(checked), name, decoders);
   }
 
   async #build(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<LoadedUserAvatar> {

@@ -1,19 +1,13 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { type BoundarySize, readBoundary } from 'threepoint/xr/boundary';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import type { DeviceCommands } from 'threepoint/xr/device-commands';
 import { drawSession, endSession } from 'threepoint/xr/draw-session';
-import { FrameRateControl, type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
-import { buzz, type Pulse } from 'threepoint/xr/haptics';
+import { defaultSavings, FrameRateControl, type Savings } from 'threepoint/xr/frame-rate';
+import { type HapticPulse, playPulses } from 'threepoint/xr/haptics';
 import { Pointing } from 'threepoint/xr/pointing';
-import {
-  describeXrSupport,
-  isSessionOffered,
-  type PlayRoom,
-  requestPassthroughSession,
-  requestVrSession,
-  roomOf,
-  type XrFault,
-} from 'threepoint/xr/session';
+import { requestPassthroughSession, requestVrSession } from 'threepoint/xr/request-session';
+import { describeXrSupport, isSessionOffered, type XrFault } from 'threepoint/xr/session-support';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { Notices } from 'threepoint-ui/notices';
 import { type Emulator, installEmulator } from '../emulator/emulator';
@@ -66,7 +60,7 @@ interface Session {
   /** The session shows the room around the user. */
   readonly passthrough: boolean;
   /** What the device's boundary leaves [m]; null: the device does not report it. */
-  readonly room: PlayRoom | null;
+  readonly room: BoundarySize | null;
   readonly tracking: TrackedSession;
   readonly rates: FrameRateControl;
 }
@@ -104,7 +98,7 @@ export class Headset {
   }
 
   /** The room that the boundary of the headset leaves; null: the device does not report it, or is not worn. */
-  get room(): PlayRoom | null {
+  get room(): BoundarySize | null {
     return this.#session?.room ?? null;
   }
 
@@ -147,7 +141,7 @@ export class Headset {
 
   /** The reductions of picture quality that keep frames in time. */
   get savings(): Savings {
-    return this.#session?.rates.savings ?? unjudgedSavings;
+    return this.#session?.rates.savings ?? defaultSavings;
   }
 
   /** Counts a frame at this time [s] whose work took this long [s]; lets the headset draw at the rate that is held. */
@@ -164,7 +158,7 @@ export class Headset {
   get bodyComplaint(): string | null {
     if (!this.#session) return null;
     const { bodyReader } = this.#session.tracking;
-    return bodyReader ? bodyReader.complaint : 'the headset’s body tracking is off';
+    return bodyReader ? bodyReader.problem : 'the headset’s body tracking is off';
   }
 
   /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
@@ -253,16 +247,16 @@ export class Headset {
 
   /** How much higher the user stands than the device reports [m]. */
   get raised(): number {
-    return this.#session?.tracking.raised ?? 0;
+    return this.#session?.tracking.heightOffset ?? 0;
   }
 
   /** Overrides the user's height for this session: this much higher than the device reports [m]. */
   raise(height: number): void {
-    this.#session?.tracking.raise(height);
+    this.#session?.tracking.setHeightOffset(height);
   }
 
-  buzz(pulses: readonly Pulse[]): void {
-    if (this.#session) buzz(this.#session.xr, pulses);
+  buzz(pulses: readonly HapticPulse[]): void {
+    if (this.#session) playPulses(this.#session.xr, pulses);
   }
 
   async #begin(passthrough: boolean): Promise<void> {
@@ -271,13 +265,13 @@ export class Headset {
     const xr = await (passthrough ? requestPassthroughSession(deviceBody) : requestVrSession(deviceBody));
     const room = await drawSession(xr, renderer.xr, () => {
       if (this.#emulator) reduceEmulatedResolution(renderer, quality);
-      return roomOf(xr);
+      return readBoundary(xr);
     });
     this.#follow(xr, room, passthrough);
   }
 
   /** Tracks the session until it ends. */
-  #follow(xr: XRSession, room: PlayRoom | null, passthrough: boolean): void {
+  #follow(xr: XRSession, room: BoundarySize | null, passthrough: boolean): void {
     const { renderer, settings } = this.#options;
     const tracking = new TrackedSession({
       session: xr,

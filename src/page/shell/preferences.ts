@@ -1,4 +1,5 @@
-import { avatarHash, builtInBodies, skinTones } from 'threepoint/core/body/avatar-ref';
+import { avatarHashPattern } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies, skinTones } from 'threepoint/core/body/built-in-bodies';
 import { calibrationProblem } from 'threepoint/core/body/calibration';
 import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
 import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';
@@ -45,7 +46,7 @@ const schema = v.object({
   bots: v.optional(v.boolean()),
   name: v.optional(v.pipe(v.string(), v.maxLength(40))),
   /** The bone maps that the user gave for files, by SHA-256. */
-  bones: v.optional(v.record(v.pipe(v.string(), v.regex(avatarHash)), boneMap)),
+  bones: v.optional(v.record(v.pipe(v.string(), v.regex(avatarHashPattern)), boneMap)),
   shareAvatar: v.optional(v.boolean()),
   plainOthers: v.optional(v.boolean()),
   voicesByRelay: v.optional(v.boolean()),

@@ -1,4 +1,4 @@
-import { type BuiltInBody, plainAvatar, type SkinTone } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, defaultAvatar, type SkinTone } from 'threepoint/core/body/built-in-bodies';
 import type { ActivitySettings } from '../activity/activity-context';
 import type { PreferenceStore, Preferences } from './preferences';
 import type { Switches } from './switches';
@@ -49,7 +49,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     singleKeys: preferences.singleKeys ?? true,
     panel: switches.panel ?? preferences.panel ?? true,
     palette: preferences.palette ?? 'porcelain',
-    builtInBody: preferences.builtInBody ?? plainAvatar,
+    builtInBody: preferences.builtInBody ?? defaultAvatar,
     skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,

@@ -1,10 +1,10 @@
 import type { Avatar } from 'threepoint/avatar/avatar';
 import { createDebugSkeleton } from 'threepoint/avatar/debug-skeleton';
-import { createHeadLoss } from 'threepoint/avatar/head-loss-fade';
+import { createHeadLossFade } from 'threepoint/avatar/head-loss-fade';
 import { Mirror } from 'threepoint/avatar/mirror';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { type Savings, unjudgedSavings } from 'threepoint/xr/frame-rate';
+import { defaultSavings, type Savings } from 'threepoint/xr/frame-rate';
 import { createVrCaptions } from 'threepoint-ui/vr-captions';
 import type { Watched } from '../activity/activity';
 import { DesktopView, type Insets } from '../scene/desktop-view';
@@ -57,11 +57,11 @@ export class Stage {
   readonly #mirror: Mirror;
   readonly #mirrorHeight: number;
   readonly #skeleton = createDebugSkeleton();
-  readonly #headLoss = createHeadLoss();
+  readonly #headLoss = createHeadLossFade();
   readonly #headsetCamera = createHeadsetCamera();
   readonly #captions = createVrCaptions();
   #lastTime = 0;
-  #savings = unjudgedSavings;
+  #savings = defaultSavings;
 
   constructor(canvas: HTMLCanvasElement, quality: Quality) {
     this.#quality = quality;
@@ -137,11 +137,11 @@ export class Stage {
     this.#save(savings);
     const inside = inSession || view.view === 'first-person';
     if (avatar) {
-      this.#skeleton.show(avatar.jointPositions());
+      this.#skeleton.setJoints(avatar.jointPositions());
       this.#skeleton.object.position.x = beside;
       avatar.object.position.x = beside;
       avatar.object.visible = watched === null;
-      avatar.setOpacity(this.#headLoss.follow(time, frame !== null));
+      avatar.setOpacity(this.#headLoss.opacityAt(time, frame !== null));
       avatar.setFirstPerson(inside && beside === 0);
     }
     const eyes = inSession && frame ? frame.head : null;
@@ -162,7 +162,7 @@ export class Stage {
     if (savings === this.#savings) return;
     this.#savings = savings;
     this.renderer.xr.setFoveation(savings.foveation);
-    this.#mirror.setMostRate(savings.mirrorRateHz);
+    this.#mirror.setMaxRate(savings.mirrorRateHz);
   }
 
   #count(part: 'mirror' | 'scene'): void {

@@ -1,12 +1,12 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Avatar } from 'threepoint/avatar/avatar';
-import { labelOf } from 'threepoint/avatar/built-in-body-labels';
+import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
 import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
-import { type BuiltInBody, bodyOf, plainAvatar, skinToneOf } from 'threepoint/core/body/avatar-ref';
+import { MotionOnlyError } from 'threepoint/avatar/file/motion-only-error';
+import { type BuiltInBody, bodyOf, defaultAvatar, skinToneOf } from 'threepoint/core/body/built-in-bodies';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import { UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import { fileNameOf } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
@@ -48,8 +48,8 @@ export class UserAvatar {
   readonly #options: UserAvatarOptions;
   readonly #loader: AvatarLoader;
   #avatar: Avatar | null = null;
-  #name = labelOf(plainAvatar);
-  #worn: OwnAvatar = plainAvatar;
+  #name = bodyLabelOf(defaultAvatar);
+  #worn: OwnAvatar = defaultAvatar;
   #source: LoadedUserAvatar['source'] = null;
   #seatPalette: string | null = null;
   #pending: string | null = null;
@@ -140,7 +140,7 @@ export class UserAvatar {
    */
   openBuiltIn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
     const { builtInBody, skinTone } = this.#options.settings;
-    const request = this.#request(labelOf(builtInBody), true);
+    const request = this.#request(bodyLabelOf(builtInBody), true);
     return this.#arrive(request, () => this.#loader.loadBuiltIn(builtInBody, skinTone, bytes));
   }
 
@@ -155,7 +155,7 @@ export class UserAvatar {
       request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });
       return this.#loader.build(request.checked, request.name);
     }).catch((error: unknown) => {
-      if (!(error instanceof MotionWithoutBody)) throw error;
+      if (!(error instanceof MotionOnlyError)) throw error;
       return 'motion' as const;
     });
   }
@@ -262,7 +262,7 @@ export class UserAvatar {
       return true;
     } catch (error) {
       if (cancellation.signal.aborted) return false;
-      if (error instanceof MotionWithoutBody) {
+      if (error instanceof MotionOnlyError) {
         if (turn === this.#requested) this.#pending = null;
         throw error;
       }
@@ -277,7 +277,7 @@ export class UserAvatar {
   #refuse({ turn, name, isBuiltIn, checked }: Request, error: unknown): void {
     const { notices } = this.#options;
     const isNewest = turn === this.#requested;
-    if (error instanceof UnknownBones && checked && isNewest) {
+    if (error instanceof UnknownBonesError && checked && isNewest) {
       const { joints, matched: bones, confidence } = error;
       const asked = { complaint: null, isShown: false, canForgetMap: false };
       this.#waiting = { name, joints, bones, confidence, ...asked, checked };

@@ -1,8 +1,8 @@
-import { type AvatarHash, avatarHash } from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, avatarHashPattern } from 'threepoint/core/body/avatar-ref';
 import * as v from 'valibot';
 import type { RoomPass } from './room-pass';
 
-/** What a server's avatar store accepts, and what it has of this person. */
+/** The limits of a server's avatar store, and this person's file in it. */
 export interface AvatarTerms {
   /** The largest file that it accepts [bytes]; 0: none. */
   readonly mostBytes: number;
@@ -25,8 +25,8 @@ export interface AvatarExchange {
   /** Resolves to whether the other server has this file, which then needs no upload. */
   isStoredElsewhere(hash: AvatarHash): Promise<boolean>;
   /**
-   * Uploads a file; the server keeps it while its owner wears it on a seat. Rejects with a sentence if the server
-   * refuses it.
+   * Uploads a file; the server keeps it while its owner uses it on a seat. Rejects with an Error if the server refuses
+   * it.
    */
   store(hash: AvatarHash, file: Blob): Promise<void>;
   /** Resolves to the addresses at which this file may be, the likeliest first. */
@@ -36,7 +36,7 @@ export interface AvatarExchange {
 const terms = v.object({
   mostBytes: v.pipe(v.number(), v.minValue(0)),
   elsewhere: v.nullable(v.pipe(v.string(), v.url(), v.startsWith('https://'), v.endsWith('/'))),
-  yours: v.nullable(v.pipe(v.string(), v.regex(avatarHash))),
+  yours: v.nullable(v.pipe(v.string(), v.regex(avatarHashPattern))),
 });
 
 /** Creates the exchange of a room. `base`: the address of the relay, without a trailing slash. */

@@ -12,12 +12,12 @@ export interface PathSample {
 const width = 0.036;
 /** Samples further away than this are ignored [s]. */
 const furthest = 3.4 * width;
-/** A packet gains its full weight over this time after its arrival [s], so that a late one causes no jump. */
+/** The time after its arrival in which a packet gains its full weight [s], so that a late one causes no jump. */
 const trustSeconds = 0.08;
 const leastTrust = 1e-4;
 /** Regularisation of slope and curvature, where the samples do not determine them [share of the sum of weights]. */
 const stiffness = 1e-9;
-/** The most samples of one fit. */
+/** The maximum number of samples of one fit. */
 const maxSamples = 24;
 
 /**

@@ -3,7 +3,7 @@ import { roomMessageReader } from '../protocol/messages';
 import { noMatchState, type People, peopleKind, sharedFloor } from '../room/people-policy';
 import type { ClientPolicy } from './client-policy';
 
-/** A room without a game, for its clients. */
+/** The client policy of a room without a game. */
 export const peopleClientPolicy: ClientPolicy<People> = {
   kind: peopleKind,
   readMessage: roomMessageReader<People>(peopleKind, v.null(), v.never()),

@@ -23,7 +23,7 @@ export interface PlaybackReport {
 export const initialPlayoutOffset = 0.1;
 const shortestDelay = 0.04;
 const longestDelay = 0.2;
-/** A pose is extrapolated at most this far beyond the newest packet [s]. */
+/** The longest extrapolation beyond the newest packet [s]. */
 export const longestExtrapolation = 0.1;
 /** Silence after which a player is a ghost, and after which they are hidden [s]. */
 const ghostAfter = 1;
@@ -57,7 +57,7 @@ function intervalOf(samples: readonly PathSample[]): number {
   return first && last && samples.length > 1 ? (last.time - first.time) / (samples.length - 1) : 1 / 30;
 }
 
-/** Returns whether a path leads from this sample to the next. */
+/** Returns whether the path is continuous from this sample to the next. */
 function isContinuous(samples: readonly PathSample[], i: number): boolean {
   const next = samples[i + 1];
   return next !== undefined && !next.packet.jump && next.time - samples[i]!.time <= longestGap;
@@ -84,7 +84,10 @@ function opacityAfter(silence: number): number {
   return ghost * (1 - smoothstep(hideAfter - fadeSeconds, hideAfter, silence));
 }
 
-/** Plays one player's packets with a jitter buffer. Unknown times are NaN, so that the fields stay unboxed numbers. */
+/**
+ * Plays one player's packets back through a jitter buffer. Unknown times are NaN, so that the fields stay unboxed
+ * numbers.
+ */
 export class Playback {
   private samples: PathSample[] = [];
   private readonly transits = new TransitWindow(transitMemory);
@@ -243,8 +246,8 @@ export class Playback {
   /** Blends from the pose at the stall to the current one over `rejoinSeconds`. */
   private rejoin(time: number, at: number): void {
     if (Number.isNaN(this.rejoinAt)) return;
-    const share = smoothstep(0, rejoinSeconds, time - this.rejoinAt);
-    if (share >= 1 || isAcrossJump(this.samples, at)) this.rejoinAt = Number.NaN;
-    else this.shown.interpolate(this.rejoinFrom, this.shown, share);
+    const fraction = smoothstep(0, rejoinSeconds, time - this.rejoinAt);
+    if (fraction >= 1 || isAcrossJump(this.samples, at)) this.rejoinAt = Number.NaN;
+    else this.shown.interpolate(this.rejoinFrom, this.shown, fraction);
   }
 }

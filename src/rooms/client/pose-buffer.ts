@@ -8,9 +8,9 @@ import {
 import {
   copyHandShape,
   type HandShape,
+  lerpHandShape,
   type MutableHandShape,
   makeHandShape,
-  mixHandShape,
 } from 'threepoint/core/body/hand-shape';
 import { jointNames } from 'threepoint/core/body/joints';
 import {
@@ -156,9 +156,9 @@ function allHave(samples: readonly PathSample[], { first, count }: PathFit, part
 // The sum of one call of fitPose or fitBody.
 const sum = quat(0, 0, 0, 0);
 
-/** Adds `share` times q, or −q if that is nearer to `near`, to `sum`. */
-function addWeighted(q: Quat, share: number, near: Quat): void {
-  const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -share : share;
+/** Adds `weight` times q, or −q if that is nearer to `near`, to `sum`. */
+function addWeighted(q: Quat, weight: number, near: Quat): void {
+  const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -weight : weight;
   sum.x += k * q.x;
   sum.y += k * q.y;
   sum.z += k * q.z;
@@ -278,7 +278,7 @@ function mixFingers(
   t: number,
   target: MutableHandShape,
 ): MutableHandShape | null {
-  if (a && b) return mixHandShape(a, b, Math.min(t, 1), target);
+  if (a && b) return lerpHandShape(a, b, Math.min(t, 1), target);
   const held = t < 1 ? a : b;
   return held && copyHandShape(held, target);
 }

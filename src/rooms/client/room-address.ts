@@ -13,7 +13,7 @@ export interface RoomAddressOptions {
   readonly room: string;
   /** The terms of the room, if this page is the first in it. */
   readonly terms?: RoomTerms;
-  /** Keeps the pass, with which a reload takes the same place again. Absent: a reload is a new person. */
+  /** Stores the pass, by which a reloaded page gets its seat back. Absent: a reloaded page is a new person. */
   readonly storage?: PassStorage;
   /** A pass that another service issues. Default: the server issues one. */
   readonly pass?: RoomPass;
@@ -21,7 +21,7 @@ export interface RoomAddressOptions {
   readonly clock?: LocalClock;
 }
 
-/** A room of a server with the pass of this page's person, for connections and avatars. */
+/** The address of a room on a server, and this person's pass to it: creates connections and the avatar exchange. */
 export class RoomAddress<Game extends HostedGame> {
   readonly pass: RoomPass;
   readonly avatars: AvatarExchange;

@@ -41,7 +41,7 @@ const noSeats: readonly never[] = [];
 const arenaIsFloor: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
 
 /**
- * A page's part in a room: its connection, the playback of the other people, and the sending of its own body. Times are
+ * A page's client of a room: holds the connection, plays back the other people, and sends the user's body. Times are on
  * the page's clock [s].
  *
  * @example
@@ -62,13 +62,13 @@ export class RoomClient<Game extends HostedGame> {
   #placedBy: Transform<'arena', 'floor'> | null = null;
   #floorFromArena = arenaIsFloor;
 
-  /** `connection`: a connection, or what makes it at the time of the first update. */
+  /** `connection`: a connection, or a function that creates it at the first update. */
   constructor(connection: Connection<Game> | ((time: number) => Connection<Game>)) {
     this.#connect = typeof connection === 'function' ? connection : () => connection;
     this.#connection = typeof connection === 'function' ? null : connection;
   }
 
-  /** The connection; null before the update that makes it. */
+  /** The connection; null before the first update if a function creates it. */
   get connection(): Connection<Game> | null {
     return this.#connection;
   }
@@ -82,7 +82,7 @@ export class RoomClient<Game extends HostedGame> {
     return this.#connection?.room ?? null;
   }
 
-  /** The other people to draw in this frame, without those silent for 3 s. The same list in every frame. */
+  /** The other people to draw in this frame, without those silent for 3 s. The array is reused in every frame. */
   get people(): readonly RemotePerson[] {
     return this.#people;
   }
@@ -102,7 +102,9 @@ export class RoomClient<Game extends HostedGame> {
     return this.#floorFromArena;
   }
 
-  /** Receives what has arrived, and plays the others at this time; to be called first in each frame. */
+  /**
+   * Returns the messages that have arrived, and plays the others back at this time [s]. Call it first in each frame.
+   */
   update(time: number): ConnectionUpdate<Game> {
     this.#connection ??= this.#connect(time);
     const update = this.#connection.update(time);

@@ -1,4 +1,5 @@
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import type { Transform } from 'threepoint/core/math/pose';
@@ -71,7 +72,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     this.#knowsClock = knowsClock;
     this.#calibration = toMillimetres(visitor.calibration);
     this.#skeleton = skeletonFromCalibration(this.#calibration);
-    this.#avatar = visitor.avatar ?? plainAvatar;
+    this.#avatar = visitor.avatar ?? defaultAvatar;
     this.#seatRequest = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
   }
 

@@ -1,16 +1,11 @@
-import {
-  type AvatarHash,
-  type AvatarRef,
-  type BuiltInAvatar,
-  mostAvatarBytes,
-  plainAvatar,
-} from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, type AvatarRef, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInAvatar, defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { HostedGame } from '../room/match-policy';
 import type { AvatarExchange } from './avatar-exchange';
 import type { RoomView } from './connection';
 
-/** The avatar that a person shows to the others: a built-in one, or a file. */
+/** The user's avatar: a built-in one, or a file. */
 export type OwnAvatar =
   | BuiltInAvatar
   | {
@@ -50,7 +45,7 @@ async function upload(exchange: AvatarExchange, hash: AvatarHash, file: Blob): P
  */
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
-  /** The avatar that was sent last, and the stay in the room in which it was sent. */
+  /** The avatar that was sent last, and the welcome count at that time. */
   #wear: OwnAvatar | null = null;
   #welcomes = 0;
   #turn = 0;
@@ -59,7 +54,7 @@ export class SharedAvatar {
     this.#options = options;
   }
 
-  /** Once per frame; `room`: null before the first welcome. */
+  /** Shares a changed avatar; called once per frame. `room`: null before the first welcome. */
   update(room: RoomView<HostedGame> | null): void {
     if (!room || room.mySeat === null) return;
     const wear = this.#options.wear();
@@ -68,21 +63,21 @@ export class SharedAvatar {
     this.#wear = wear;
     this.#welcomes = room.welcomeCount;
     this.#turn += 1;
-    if (wear === null || typeof wear === 'string') this.#options.send(wear ?? plainAvatar);
+    if (wear === null || typeof wear === 'string') this.#options.send(wear ?? defaultAvatar);
     else void this.#share(wear, this.#turn, returned);
   }
 
-  /** Never rejects. `quiet`: the user was notified before. */
+  /** Uploads a file and sends its reference. Never rejects. `quiet`: the user was notified before. */
   async #share({ name, file, hash }: Exclude<OwnAvatar, string>, turn: number, quiet: boolean): Promise<void> {
     const { exchange, send, notify } = this.#options;
     if (!exchange) return;
     const isNewest = () => turn === this.#turn;
     // Until the file is uploaded the others see the plain avatar, not the previous one.
-    if (!quiet) send(plainAvatar);
+    if (!quiet) send(defaultAvatar);
     try {
       if (hash === null) throw new Error('this page is not on a secure connection (https)');
-      if (file.size > mostAvatarBytes)
-        throw new Error(`it has ${megabytes(file.size)}; the limit is ${megabytes(mostAvatarBytes)}`);
+      if (file.size > maxAvatarBytes)
+        throw new Error(`it has ${megabytes(file.size)}; the limit is ${megabytes(maxAvatarBytes)}`);
       const kept = (await exchange.isStoredElsewhere(hash)) ? '' : ' The server keeps the file until you leave.';
       if (kept && isNewest()) await upload(exchange, hash, file);
       if (!isNewest()) return;
@@ -90,7 +85,7 @@ export class SharedAvatar {
       if (!quiet) notify('info', `The other players see you as ${name} now.${kept}`);
     } catch (error) {
       if (!isNewest()) return;
-      send(plainAvatar);
+      send(defaultAvatar);
       if (!quiet)
         notify('warning', `The other players see you as a mannequin, not as ${name}. Reason: ${reasonOf(error)}.`);
     }

@@ -1,6 +1,7 @@
 import type { Object3D } from 'three';
-import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { type AvatarRef, plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
+import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { reasonOf } from 'threepoint/core/errors/reasons';
@@ -22,9 +23,9 @@ import { PlacedPose } from './placed-pose';
 import { RoomBodies } from './room-bodies';
 import { relativeTransform } from './world-transform';
 
-/** The wearer's body: a `BodyTracker` of threepoint is one. */
+/** The user's body: a `BodyTracker` of threepoint, for example. */
 export interface RoomBody extends PoseSource {
-  /** Its object lies where the floor is. Absent: at the origin of `others.object`. */
+  /** The avatar whose object is placed on the floor. Default: the floor is at the origin of `others.object`. */
   readonly avatar?: { readonly object: Object3D };
   addEventListener?(type: 'discontinuity', listener: () => void): void;
   removeEventListener?(type: 'discontinuity', listener: () => void): void;
@@ -33,20 +34,20 @@ export interface RoomBody extends PoseSource {
 export interface JoinRoomOptions<Game extends HostedGame = People> {
   /** The name that the others see; at most 20 characters of it. */
   readonly name: string;
-  /** The body to send; null: watch without a place among the sixteen. */
+  /** The body to send; null: join as a spectator, without a seat. */
   readonly body: RoomBody | null;
   /** The name of the room: lower-case letters, digits and hyphens, at most 32. Default: 'lobby'. */
   readonly room?: string;
-  /** The game of the room, whose match policy the server has. Default: none, the room is just people. */
+  /** The client policy of the room's game; the server needs its match policy. Default: a room without a game. */
   readonly game?: ClientPolicy<Game>;
-  /** The file of the wearer's avatar, which the server passes on to the others. Default: they draw the mannequin. */
+  /** The file of the user's avatar, which the server sends to the others. Default: they draw the mannequin. */
   readonly avatarFile?: Blob | null;
   /**
-   * Returns the avatar to draw for another person; the reference is 'mannequin' or the hash of the file that they
-   * uploaded. Default: that file, checked and within the limits for strangers' files, or the mannequin.
+   * Loads the avatar of another person; the reference is 'mannequin' or the hash of the file that they uploaded.
+   * Default: that file, validated and within the limits of untrusted files, or the mannequin.
    */
   readonly avatar?: (reference: AvatarRef) => Promise<Avatar>;
-  /** Keeps the pass, with which a reload takes the same place again. Default: the storage of the tab. */
+  /** Stores the pass, by which a reloaded page gets its seat back. Default: the storage of the tab. */
   readonly storage?: PassStorage | null;
 }
 
@@ -54,11 +55,11 @@ export interface JoinRoomOptions<Game extends HostedGame = People> {
 export interface RoomPerson {
   readonly seat: number;
   readonly name: string;
-  /** away: the page is hidden. gone: the connection is lost, and the place is held for 30 s. */
+  /** away: the page is hidden. gone: the connection is lost, and the seat is held for 30 s. */
   readonly presence: SeatInfo['presence'];
 }
 
-/** A joined room. The connection comes back by itself until `leave`, or until the server ends it. */
+/** A joined room. It reconnects until `leave` is called or the server ends the connection. */
 export interface JoinedRoom<Game extends HostedGame = People> {
   readonly others: {
     /** The object to add to the scene, with a body for each other person. People are within 8.19 m of its origin. */
@@ -67,30 +68,30 @@ export interface JoinedRoom<Game extends HostedGame = People> {
     readonly people: readonly RoomPerson[];
   };
   readonly status: ConnectionStatus;
-  /** The number of this page's place, 0 to 15; null: it watches. */
+  /** The number of this page's seat, 0 to 15; null: a spectator. */
   readonly seat: number | null;
-  /** The room itself: its state, the actions of its game, its voices. */
+  /** The client of the room: its state, the actions of its game, its voices. */
   readonly client: RoomClient<Game>;
   /**
-   * Sends the body's pose and draws the others at this time [ms], on the page's clock; to be called in every frame.
-   * Returns the events of the game since the last call.
+   * Sends the body's pose and draws the others at this time [ms] on the page's clock. Call it in every frame. Returns
+   * the events of the game since the last call.
    */
   update(timeMs: number): ConnectionUpdate<Game>;
-  /** Gives up the place, ends the connection and removes the others. */
+  /** Gives up the seat, ends the connection and removes the others. */
   leave(): void;
 }
 
-/** How often a room is tried before `joinRoom` gives up. */
+/** The number of attempts before `joinRoom` rejects. */
 const mostAttempts = 3;
-/** The measures of a page that watches; no page draws them. */
+/** The measures of a spectator, which no page draws. */
 const spectatorCalibration: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
-/** The farthest that a packet states a head [m], along x and z. */
+/** The largest x and z of a head in a packet [m]. */
 const farthest = mostSteps(headBits) * placeUnit;
 
 /**
- * Joins a room of a server that has `attachRooms`, and draws the others in a three.js scene. `url`: the server's
- * address, with the path of `attachRooms` if it has one. Rejects with a sentence if the server cannot be reached,
- * refuses the page or has another version.
+ * Joins a room of a server that uses `attachRooms`, and draws the others in a three.js scene. `url`: the server's URL,
+ * with the path of `attachRooms` if it has one. Rejects with an Error if the server cannot be reached, refuses the page
+ * or has another version.
  *
  * @example
  * const room = await joinRoom('https://example.org', { name: 'Ada', body: tracker });
@@ -111,7 +112,7 @@ export async function joinRoom<Game extends HostedGame = People>(
   const base = new URL(url, globalThis.location?.href).href.replace(/\/$/, '');
   const address = new RoomAddress(game, { url: base, room, ...(storage && { storage }) });
   const visitor = { name, calibration: body?.calibration ?? spectatorCalibration, spectate: body === null };
-  const worn = avatarFile ? await ownAvatarFrom(avatarFile) : plainAvatar;
+  const worn = avatarFile ? await ownAvatarFrom(avatarFile) : defaultAvatar;
   // A frame cannot report that the default body is missing.
   const ready = options.avatar ? [] : [await loadMannequin()];
   const loadBuiltIn = async () => ready.pop() ?? loadMannequin();
@@ -124,7 +125,7 @@ export async function joinRoom<Game extends HostedGame = People>(
 const ownAvatarFrom = async (file: Blob): Promise<OwnAvatar> => ({
   name: 'your avatar',
   file,
-  hash: await hashOf(await file.arrayBuffer()),
+  hash: await sha256Base64Url(await file.arrayBuffer()),
 });
 
 /** Resolves to a connection that has joined; rejects, after ending it, when it cannot. */
@@ -132,7 +133,7 @@ async function connect<Game extends HostedGame>(
   address: RoomAddress<Game>,
   visitor: Visitor,
 ): Promise<Connection<Game>> {
-  // The socket repeats a failed request for ever: the first one states its reason.
+  // The socket retries forever; the reason of the first failure is reported.
   await address.pass.token(false);
   return new Promise((resolve, reject) => {
     let settled = false;
@@ -275,9 +276,9 @@ class OtherPeople {
   }
 }
 
-/** Returns the page's avatar; without it the mannequin, which a file that is refused leaves in its place. */
+/** Returns the avatar that the page loads, or the mannequin if that fails. */
 async function loadedBy(load: (avatar: AvatarRef) => Promise<Avatar>, avatar: AvatarRef): Promise<Avatar> {
-  if (avatar !== plainAvatar) return load(avatar);
+  if (avatar !== defaultAvatar) return load(avatar);
   return load(avatar).catch((error: unknown) => {
     console.warn(`threepoint-rooms: the page's own avatar is replaced by the mannequin: ${reasonOf(error)}`);
     return loadMannequin();

@@ -14,7 +14,7 @@ import {
 import { copyQuat, multiply } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 
-/** A buffer for a pose on a floor that the page has moved. */
+/** A buffer for a pose that is transformed from the user's floor to the scene's. */
 export class PlacedPose implements AvatarPose {
   readonly head: MutableTrackedPose = makeTrackedPose();
   leftHand: TrackedPose | null = null;
@@ -26,7 +26,7 @@ export class PlacedPose implements AvatarPose {
   readonly #feet: Record<Side, Pose<'floor'> | null> = { left: null, right: null };
   readonly #ankles: Readonly<Record<Side, MutablePose<'floor'>>> = { left: makePose(), right: makePose() };
 
-  /** Writes a pose on the wearer's floor as one on the floor of the scene. */
+  /** Transforms a pose from the user's floor frame to the scene's and writes it into the buffer. */
   place(sceneFromFloor: Transform<'floor', 'floor'>, { head, leftHand, rightHand, body, feet }: AvatarPose): this {
     placeTracked(sceneFromFloor, head, this.head);
     this.leftHand = leftHand && placeTracked(sceneFromFloor, leftHand, this.#hands.left);

@@ -7,14 +7,14 @@ import { worldTransform } from './world-transform';
 
 export interface RemoteBodiesOptions extends RemotePosesOptions {
   /**
-   * Returns the avatar for the reference that a person sent (null: none). Each call must return an avatar that nothing
-   * else draws. The reference is a stranger's text: load only what the page expects. Default: the mannequin.
+   * Loads the avatar for the reference that a person sent (null: none). Each call must return a new avatar. The
+   * reference is untrusted text: load only what the page expects. Default: the mannequin.
    */
   readonly avatar?: AvatarLoader;
 }
 
 /**
- * Draws the bodies of other people in a three.js scene from the packets of their `PoseSender`, over any transport.
+ * Draws the bodies of other people in a three.js scene, from the packets of their `PoseSender`.
  *
  * @example
  * const others = new RemoteBodies();
@@ -48,14 +48,14 @@ export class RemoteBodies {
   }
 
   /**
-   * Takes a packet of a peer. `peer` is the name by which the transport knows the sender: never one that the packet
-   * states. `timeMs`: its arrival, on the clock of `update`. Returns whether it was taken.
+   * Handles a packet of a peer. `peer` identifies the sender and must come from the transport, not from the packet.
+   * `timeMs`: the time of arrival on the clock of `update`. Returns whether the packet was accepted.
    */
   receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
     return this.#poses.receive(peer, bytes, timeMs);
   }
 
-  /** Draws the bodies of this time [ms], on the page's clock; to be called in every frame. Returns who is drawn. */
+  /** Draws the bodies at this time [ms] on the page's clock. Call it in every frame. Returns the people drawn. */
   update(timeMs: number): readonly RemotePose[] {
     const poses = this.#poses.update(timeMs);
     this.#drawn.draw(poses, timeMs / 1000);
@@ -68,7 +68,7 @@ export class RemoteBodies {
     this.#drawn.remove(peer);
   }
 
-  /** Returns the measurements of a peer's playback; null: nothing has arrived from it. */
+  /** Returns measurements of a peer's playback; null: an unknown peer. */
   report(peer: string): PlaybackReport | null {
     return this.#poses.report(peer);
   }
@@ -80,8 +80,8 @@ export class RemoteBodies {
 }
 
 /**
- * Returns where the floor of an object lies in the scene, as a `PoseSender` sends it: pass `tracker.avatar.object`
- * where the page moves its wearer about. An object that is tilted is taken for upright.
+ * Returns the pose of an object's floor in the scene, for the option `placement` of `PoseSender.update`. Pass
+ * `tracker.avatar.object` if the page moves its user. The tilt of the object is ignored.
  */
 export function placementOf(object: Object3D): FloorPlacement {
   const { position, orientation } = worldTransform(object);

@@ -1,35 +1,30 @@
-import { hashOf } from 'threepoint/avatar/file/file-hash';
-import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
+import { untrustedAvatarLimits } from 'threepoint/avatar/file/avatar-limits';
+import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
 import { downloadLimited, type FileKind } from 'threepoint/avatar/file/limited-download';
-import {
-  type AvatarHash,
-  type AvatarRef,
-  type BuiltInBody,
-  bodyOf,
-  isBuiltInAvatar,
-} from 'threepoint/core/body/avatar-ref';
+import type { AvatarHash, AvatarRef } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInBody, bodyOf, isBuiltInAvatar } from 'threepoint/core/body/built-in-bodies';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { Avatar } from 'threepoint/three';
 import type { AvatarExchange } from '../client/avatar-exchange';
 
 /** The file of another person. */
-const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };
+const seenFile: FileKind = { what: 'an avatar that others see', megabytes: untrustedAvatarLimits.megabytes };
 
 export interface RoomAvatarLoaderOptions {
   /** null: without a server, and in rooms of a study; then no file can be loaded. */
   readonly exchange: AvatarExchange | null;
   /** Loads a copy of a built-in body. */
   loadBuiltIn(name: BuiltInBody): Promise<Avatar>;
-  /** Loads a stranger's file, which has the announced hash; `loadAvatar` with `untrusted` refuses the same files. */
+  /** Loads an untrusted file that has the announced hash; `loadAvatar` with `untrusted` refuses the same files. */
   loadFile(bytes: ArrayBuffer): Promise<Avatar>;
-  /** A download that takes longer [ms] is cancelled: other avatars wait for it. */
+  /** The timeout of a download [ms], because other avatars wait for it. */
   readonly timeoutMs?: number;
 }
 
 /**
  * Loads the avatars of other people. A file comes only from the store of the room or from the server that the store
- * names. It is refused if its hash differs from the announced one, or if it exceeds what a stranger's file may have.
+ * names. It is refused if its hash differs from the announced one, or if it exceeds a limit of untrusted files.
  */
 export class RoomAvatarLoader {
   readonly #options: RoomAvatarLoaderOptions;
@@ -39,7 +34,7 @@ export class RoomAvatarLoader {
     this.#options = options;
   }
 
-  /** Rejects with a sentence; with a TransientError where the avatar could not be fetched. */
+  /** Loads an avatar. Rejects with an Error, with a TransientError if the file could not be fetched. */
   async load(avatar: AvatarRef): Promise<Avatar> {
     if (isBuiltInAvatar(avatar)) return this.#options.loadBuiltIn(bodyOf(avatar));
     return this.#options.loadFile(await this.#fetch(avatar));
@@ -52,14 +47,14 @@ export class RoomAvatarLoader {
 
   async #fetch(hash: AvatarHash): Promise<ArrayBuffer> {
     const bytes = await this.#download(hash);
-    if ((await hashOf(bytes)) === hash) return bytes;
+    if ((await sha256Base64Url(bytes)) === hash) return bytes;
     throw new Error('the server sent a different file than the player announced');
   }
 
   async #download(hash: AvatarHash): Promise<ArrayBuffer> {
     const { exchange, timeoutMs = 60_000 } = this.#options;
     if (!exchange) throw new Error('no server has the file');
-    // Named, and asked below: Node forgets a timeout of which nothing but AbortSignal.any knows (nodejs/node#57736).
+    // Kept in a variable: Node collects a timeout that only AbortSignal.any refers to (nodejs/node#57736).
     const late = AbortSignal.timeout(timeoutMs);
     const signal = AbortSignal.any([this.#leaving.signal, late]);
     let reason = '';

@@ -15,25 +15,25 @@ export interface RoomBodiesOptions extends RoomAvatarLoaderOptions {
   room(): RoomView<HostedGame> | null;
   /** Sends the reference of the own avatar to the room. */
   send(avatar: AvatarRef): void;
-  /** Returns the own avatar: the same object for as long as it is worn; null: it is not shared. Read in every frame. */
+  /** Returns the user's avatar, the same object until it changes; null: it is not shared. Called in every frame. */
   wear(): OwnAvatar | null;
   /** Receives sentences about the own avatar. */
   notify(level: 'info' | 'warning', text: string): void;
   /** Receives a sentence about each avatar of another person that cannot be shown. */
   onRefused(text: string): void;
-  /** Loads each avatar in another way; absent: built-in bodies, and the files of the room. */
+  /** Loads an avatar. Default: built-in bodies, and the files of the room. */
   readonly load?: ((avatar: AvatarRef) => Promise<Avatar>) | undefined;
   /** Returns whether all people are drawn as the mannequin. Default: false. */
   plain?(): boolean;
-  /** Returns the opening of a person's mouth: 0 shut to 1. Default: shut. */
+  /** Returns the opening of a person's mouth, 0 (shut) to 1. Default: 0. */
   mouthOf?(seat: number): number;
   /** Whether a soft shadow lies under each body. Default: false. */
   readonly shadows?: boolean;
 }
 
 /**
- * The bodies of the other people of a room, in the avatars that they wear, and the own avatar as the others see it. A
- * file that is a stranger's is checked before it is drawn; a mannequin is drawn for one that is refused.
+ * Draws the other people of a room in their avatars, and shares the user's avatar with them. Files of others are
+ * validated before they are drawn; the mannequin replaces a file that is refused.
  */
 export class RoomBodies {
   readonly #options: RoomBodiesOptions;
@@ -51,17 +51,17 @@ export class RoomBodies {
     this.#shared = new SharedAvatar({ exchange, wear, send, notify });
   }
 
-  /** The bodies, to be added to the scene where the floor of this page is. */
+  /** The bodies; add the object to the scene at the origin of this page's floor. */
   get object(): Object3D {
     return this.#drawn.object;
   }
 
-  /** Shares the own avatar; to be called in each frame, after the room's messages were received. */
+  /** Shares the user's avatar. Call it in each frame, after the room's messages were received. */
   share(): void {
     this.#shared.update(this.#options.room());
   }
 
-  /** Draws these people alone, at a time [s] on the page's clock. */
+  /** Draws exactly these people at a time [s] on the page's clock. */
   show(people: readonly RemotePerson[], time: number): void {
     this.#drawn.show(people, time);
   }

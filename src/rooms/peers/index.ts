@@ -1,4 +1,4 @@
-// "threepoint-rooms": bodies over any transport, without three.js and without a socket.
+// "threepoint-rooms": sends and receives bodies over any transport; needs no three.js and no server.
 export type { PlaybackReport } from '../client/playback';
 export type { FloorPlacement } from '../protocol/pose-packet';
 export { maxAvatarReferenceLength, maxPeerPacketBytes, peerPacketVersion } from './peer-packet';

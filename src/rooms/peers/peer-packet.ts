@@ -10,7 +10,7 @@ import { type FloorPlacement, maxPosePacketBytes, poseVersion } from '../protoco
  */
 export const peerPacketVersion = poseVersion * 16 + 1;
 
-/** The second byte: what follows. */
+/** The second byte: the kind of the packet. */
 const kinds = { profile: 0, pose: 1, placedPose: 2 } as const;
 
 /** Bytes before a pose packet without and with a placement: version, kind, mouth; x, y, z, heading as Float32. */
@@ -26,17 +26,17 @@ export const maxAvatarReferenceLength = 200;
 /** The longest peer packet [bytes]. */
 export const maxPeerPacketBytes = 2 + longestProfile;
 
-/** What others must know of a person before they can draw a pose. */
+/** The data of a person that others need before they can draw a pose. */
 export interface PeerProfile {
   readonly name: string;
   readonly calibration: Calibration;
   /** A reference that the receiving page turns into an avatar; null: its default. */
   readonly avatar: string | null;
-  /** false: the person shows no pose at present, for example because their session has ended. */
+  /** false: the person has no pose at present, for example because their session has ended. */
   readonly visible: boolean;
 }
 
-/** A peer packet, taken apart; the pose packet's bytes are not decoded yet. */
+/** A parsed peer packet; the bytes of the pose packet inside are not decoded. */
 export type PeerPacket =
   | { readonly kind: 'profile'; readonly profile: PeerProfile }
   | {
@@ -100,8 +100,8 @@ export function encodePeerPose(pose: Uint8Array, mouth: number, placement: Floor
 }
 
 /**
- * Takes a packet apart. Returns a sentence for bytes that no `PoseSender` of this version writes; never throws. The
- * pose packet inside is not validated: `decodePose` does that.
+ * Parses a packet. Returns a sentence about the fault for bytes that no `PoseSender` of this version writes; never
+ * throws. `decodePose` validates the pose packet inside.
  */
 export function readPeerPacket(bytes: Uint8Array): PeerPacket | string {
   const version = bytes[0];

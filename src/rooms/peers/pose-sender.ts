@@ -7,25 +7,28 @@ import { encodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { encodePeerPose, encodeProfile } from './peer-packet';
 
-/** The person whose body is sent: a `BodyTracker` or `BodySolver` of threepoint is one. */
+/** The source of the poses to send: a `BodyTracker` or `BodySolver` of threepoint, for example. */
 export interface PoseSource {
   /** The pose of the newest frame with its fingers, floor frame [m]; null: there is none, and others hide the body. */
   readonly pose: AvatarPose | null;
   readonly calibration: Calibration;
 }
 
-/** What a packet has beyond the body. */
+/** Optional data of a pose packet. */
 export interface PoseSendOptions {
   /** The opening of the mouth, 0 to 1. Default: 0. */
   readonly mouth?: number;
-  /** The place of the floor in the scene. Default: at its origin. */
+  /** The pose of the floor in the scene. Default: the scene's origin. */
   readonly placement?: FloorPlacement | null;
 }
 
 export interface PoseSenderOptions {
   /** The name that the others see; at most 20 characters of it. */
   readonly name: string;
-  /** A reference that the other pages turn into an avatar, at most 200 characters. Default: null, theirs. */
+  /**
+   * A reference by which the other pages load the avatar, at most 200 characters. Default: null, for which they choose
+   * one.
+   */
   readonly avatar?: string | null;
   /** Poses a second, 1 to 60. Default: 30. */
   readonly rateHz?: number;
@@ -35,9 +38,8 @@ export interface PoseSenderOptions {
 const profileMs = 1000;
 
 /**
- * Makes the packets of one person's body for any transport: a WebSocket, a data channel, the state of another
- * multiplayer framework. Packets may be lost or change their order; none is longer than `maxPeerPacketBytes`, and most
- * have 70 bytes or less.
+ * Encodes one person's body as packets for any transport: a WebSocket, a data channel, or another multiplayer
+ * framework. Packets may be lost or reordered. None is longer than `maxPeerPacketBytes`; most have 70 bytes or less.
  *
  * @example
  * const sender = new PoseSender((bytes) => channel.send(bytes), { name: 'Ada' });
@@ -59,7 +61,8 @@ export class PoseSender {
   #jump = false;
 
   /**
-   * `send` passes the bytes of a packet on; the array is its own. Throws a RangeError for a rate outside 1 to 60.
+   * `send` sends the bytes of a packet and may keep the array. Throws a RangeError for a rate outside 1 to 60, or an
+   * avatar reference that is too long.
    */
   constructor(send: (bytes: Uint8Array<ArrayBuffer>) => void, { name, avatar = null, rateHz = 30 }: PoseSenderOptions) {
     if (!(rateHz >= 1 && rateHz <= 60)) throw new RangeError(`A rate of ${rateHz} poses a second is outside 1 to 60.`);
@@ -67,13 +70,13 @@ export class PoseSender {
     this.#intervalMs = 1000 / rateHz;
     this.#name = name;
     this.#avatar = avatar;
-    // Throws here, rather than in the first frame.
+    // Checked here, so that the first frame does not throw.
     assertAvatarReference(avatar);
   }
 
   /**
-   * Sends what is due; to be called in every frame, with its time [ms] by any monotonic clock. Without a pose it
-   * sends once a second that the person is not visible. Throws a RangeError where the measures are not human.
+   * Sends the packets that are due. Call it in every frame with its time [ms] on any monotonic clock. Without a pose it
+   * sends once a second that the person is not visible. Throws a RangeError for measures that no person has.
    */
   update(timeMs: number, { pose, calibration }: PoseSource, frame: PoseSendOptions = {}): void {
     this.#setCalibration(calibration);
@@ -97,7 +100,10 @@ export class PoseSender {
     this.#nextProfileMs = Number.NEGATIVE_INFINITY;
   }
 
-  /** The space was re-anchored or the wearer teleported: no page draws the way from the last pose to the next. */
+  /**
+   * Marks the next pose as a jump, because the space was re-anchored or the user teleported: others do not interpolate
+   * to it.
+   */
   discontinuity(): void {
     this.#jump = true;
   }
@@ -131,7 +137,7 @@ export class PoseSender {
   }
 }
 
-/** Throws a RangeError where no profile can have this reference to an avatar. */
+/** Throws a RangeError if the reference to an avatar is too long for a profile. */
 function assertAvatarReference(avatar: string | null): void {
   encodeProfile({ name: '', avatar, visible: false, calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
 }

@@ -30,23 +30,23 @@ export interface RemotePose {
 
 export interface RemotePosesOptions {
   /**
-   * Called with a sentence for every packet that is refused. Default: the first of each peer is reported on the
+   * Called with the reason for every packet that is refused. Default: the first one of each peer is reported on the
    * console.
    */
   readonly onRefused?: (peer: string, reason: string) => void;
-  /** Called with a peer that was removed because it has sent nothing for 30 s. */
+  /** Called when a peer was removed because it sent nothing for 30 s. */
   readonly onPeerTimeout?: (peer: string) => void;
-  /** The most peers at a time; further ones are refused. Default: 64. */
+  /** The maximum number of peers; packets of further ones are refused. Default: 64. */
   readonly maxPeers?: number;
 }
 
-/** Packets of a peer: three times what a `PoseSender` of 30 Hz sends, and a second of them at once. */
+/** The limit of packets of a peer: three times the rate of a `PoseSender` of 30 Hz, and a second of them at once. */
 const packetsPerSecond = 90;
 /** A peer that sends nothing for this long [s] is removed. */
 const forgetAfter = 30;
 
 /**
- * Creates the poses of the other people from their packets, over any transport. It needs no three.js.
+ * Decodes the packets of other people and plays their poses back without jitter. It needs no three.js.
  *
  * @example
  * const poses = new RemotePoses();
@@ -68,9 +68,9 @@ export class RemotePoses {
   }
 
   /**
-   * Takes a packet of a peer. `peer` is the name by which the transport knows the sender: never one that the packet
-   * states. `timeMs`: its arrival, on the clock of `update`. Returns whether it was taken; what is malformed, too
-   * frequent or of another version is refused, and never throws.
+   * Handles a packet of a peer. `peer` identifies the sender and must come from the transport, not from the packet.
+   * `timeMs`: the time of arrival on the clock of `update`. Returns whether the packet was accepted; a malformed one,
+   * one too many or one of another version is refused. Never throws.
    */
   receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
     const known = this.#peers.get(peer);
@@ -78,7 +78,7 @@ export class RemotePoses {
       return this.#refuse(peer, `there are ${this.#maxPeers} peers, as many as may be`);
     }
     const person = known ?? new Peer(peer, timeMs / 1000);
-    // Also where its first packet is refused: a flood of bad packets is counted too.
+    // Added even if its first packet is refused, so that invalid packets count towards the limit.
     this.#peers.set(peer, person);
     if (!person.acceptsPacket(timeMs / 1000)) return this.#refuse(peer, 'it sends too many packets');
     const packet = readPeerPacket(bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes));
@@ -88,8 +88,8 @@ export class RemotePoses {
   }
 
   /**
-   * Returns the people to draw at this time [ms] by the page's clock, without those who show no pose. The list is the
-   * same in every frame.
+   * Returns the people to draw at this time [ms] on the page's clock, without those who have no pose. The array is
+   * reused in every frame.
    */
   update(timeMs: number): readonly RemotePose[] {
     const time = timeMs / 1000;
@@ -103,13 +103,13 @@ export class RemotePoses {
     return this.#drawn;
   }
 
-  /** Forgets a peer who has left. A later packet of that name adds the peer again. */
+  /** Removes a peer who has left. A later packet of that peer adds it again. */
   remove(peer: string): void {
     this.#peers.delete(peer);
     this.#warned.delete(peer);
   }
 
-  /** Returns the measurements of a peer's playback; null: nothing has arrived from it. */
+  /** Returns measurements of a peer's playback; null: an unknown peer. */
   report(peer: string): PlaybackReport | null {
     return this.#peers.get(peer)?.report() ?? null;
   }
@@ -120,14 +120,14 @@ export class RemotePoses {
   }
 
   #warnOnce(peer: string, reason: string): void {
-    // A stranger cannot fill the memory with names.
+    // Bounded, because senders choose names.
     if (this.#warned.has(peer) || this.#warned.size >= this.#maxPeers) return;
     this.#warned.add(peer);
     console.warn(`threepoint-rooms: a packet of ${JSON.stringify(peer)} was refused: ${reason}.`);
   }
 }
 
-/** One other person: the profile, the playback of the poses, and what is drawn of them. */
+/** Another person: the profile, the playback of the poses, and the current pose. */
 class Peer implements RemotePose {
   readonly #bucket = new TokenBucket(packetsPerSecond);
   readonly #playback = new Playback();
@@ -181,7 +181,7 @@ class Peer implements RemotePose {
     if (packet.kind === 'profile') {
       this.#setProfile(packet.profile);
     } else {
-      // Poses are relative to the sender's measures: those before the profile cannot be drawn.
+      // Poses are relative to the sender's measures: they cannot be decoded before the profile has arrived.
       if (!this.#skeleton) return null;
       const pose = decodePose(packet.pose, this.#skeleton);
       if (!pose) return 'its pose is malformed';

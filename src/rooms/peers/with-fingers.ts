@@ -1,7 +1,7 @@
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import type { Fingers } from 'threepoint/core/body/hand-shape';
 
-/** Returns a view of a pose and its fingers that changes with them. */
+/** Returns a pose with these fingers. It reads both on each access. */
 export const withFingers = (of: { readonly pose: AvatarPose; readonly fingers: Fingers }): AvatarPose => ({
   get head() {
     return of.pose.head;

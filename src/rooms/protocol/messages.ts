@@ -1,4 +1,5 @@
-import { type AvatarRef, avatarHash, type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/avatar-ref';
+import { type AvatarRef, avatarHashPattern } from 'threepoint/core/body/avatar-ref';
+import { type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import * as v from 'valibot';
 import { cleanName } from './player-name';
@@ -32,7 +33,7 @@ const calibration = v.strictObject({
 
 const name = v.pipe(v.string(), v.maxLength(200), v.transform(cleanName));
 /** The schema of a AvatarRef. */
-const avatar = v.union([v.custom<BuiltInAvatar>(isBuiltInAvatar), v.pipe(v.string(), v.regex(avatarHash))]);
+const avatar = v.union([v.custom<BuiltInAvatar>(isBuiltInAvatar), v.pipe(v.string(), v.regex(avatarHashPattern))]);
 
 /** The first message: what the others see of the player. Without a seat (null) the first free one is taken. */
 const join = v.strictObject({

@@ -61,7 +61,7 @@ const readFlag = (): boolean => reader.read(1) === 1;
  * | 1, 1, 1 | only then: the back is bent; the left, the right foot is pinned |
  * | 16, 14, 16 | head x, y, z: 0.25 mm; x, z ±8.19 m, y −1 to 3.095 m |
  * | 35 | head orientation: two bits name the largest of x, y, z, w (made positive), 11 bits for each other one |
- * | 40 + 35 | each hand that has a place: `writeRelativePosition`, orientation. A lost hand with a body: the body's wrist |
+ * | 40 + 35 | each hand with a position: `writeRelativePosition`, orientation. A lost hand with a body: its wrist |
  * | 33 | each hand with fingers: `fingerFields` |
  * | 3 × 32 | with a body: hips, upper chest, neck against the floor, smallest three of 10 bits |
  * | 6 + 6 | twist of the spine against the hips, of the chest against the upper chest, ±90° |

@@ -11,7 +11,7 @@ export const poseVersion = 5;
 /** The longest packet [bytes]: fingers of both hands, a bent back and both feet. Without trackers it has 64 at most. */
 export const maxPosePacketBytes = 87;
 
-/** The place of the sender's floor in the scene, to which the page has moved its wearer. */
+/** The place of the sender's floor in the scene, to which the page has moved its user. */
 export interface FloorPlacement {
   /** The floor's origin in the scene [m]. */
   readonly position: Vec3;

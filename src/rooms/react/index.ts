@@ -1,11 +1,11 @@
-// "threepoint-rooms/react": the other people of a room, as a component of react-three-fiber.
+// "threepoint-rooms/react": a component of react-three-fiber for the other people of a room.
 import { useFrame } from '@react-three/fiber';
 import { createElement, type ReactElement, type Ref, useEffect, useImperativeHandle, useRef, useState } from 'react';
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from '../drawing/join-room';
 
 /**
- * Props of `RoomAvatars`: the options of `joinRoom` and the server's address. Another `url`, `room`, `name` or `body` leaves
- * the room and joins again; the other options are read on joining.
+ * Props of `RoomAvatars`: the options of `joinRoom` and the server's address. A change of `url`, `room`, `name` or
+ * `body` leaves the room and joins again; the other options are read on joining.
  */
 export interface RoomAvatarsProps extends JoinRoomOptions {
   /** The server's address, with the path of `attachRooms` if it has one. */

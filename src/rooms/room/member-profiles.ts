@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { ClientMessage, JoinRequest } from '../protocol/messages';
 import type { HostedGame } from './match-policy';
 import type { RefusalReason, RoomHost } from './room-host';
@@ -32,7 +32,7 @@ export class MemberProfiles {
       name,
       bot,
       calibration,
-      avatar: this.#assigned ? plainAvatar : avatar,
+      avatar: this.#assigned ? defaultAvatar : avatar,
       voice: spectate ? null : this.#voices.admitted(identity, voice),
       moves: allowedMoves(),
     };

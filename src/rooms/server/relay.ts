@@ -1,6 +1,4 @@
 import { randomBytes } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { dirname } from 'node:path';
 import { type Logger, pino } from 'pino';
 import type { Service } from 'threepoint-http/router';
 import type { UpgradeListener } from 'threepoint-http/web-server';
@@ -10,8 +8,9 @@ import { AvatarStore } from './avatars/avatar-store';
 import type { ConnectionCounts } from './connection-counts';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createSocketHost, type SocketHost } from './hosting/socket-host';
-import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby/lobby';
+import { createOwnLobby, createRedisLobby } from './lobby/lobby';
 import { LobbyPublisher } from './lobby/lobby-publisher';
+import { connectRedis, connectRedisPatiently } from './lobby/redis-connection';
 import { RelayRoutes } from './relay-routes';
 import type { RelayConfiguration } from './settings/relay-configuration';
 import { createRelayMetrics, type RelayCensus } from './settings/relay-metrics';
@@ -33,18 +32,6 @@ export interface Relay {
 const unixTime = (): number => Date.now() / 1000;
 /** Interval at which avatars that nobody wears are deleted [ms]. */
 const sweepMs = 1000;
-
-/** Returns the secret in a file, and creates it if needed, so that tokens stay valid after a restart. */
-export function loadOrCreateSecret(path: string): string {
-  if (existsSync(path)) {
-    const kept = readFileSync(path, 'utf8').trim();
-    if (kept.length >= 32) return kept;
-  }
-  const secret = randomBytes(32).toString('base64url');
-  mkdirSync(dirname(path), { recursive: true });
-  writeFileSync(path, `${secret}\n`, { mode: 0o600 });
-  return secret;
-}
 
 /** Connects to the Redis that several processes share; null: a single process. */
 function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {

@@ -1,4 +1,4 @@
-import { normalNumbers } from 'threepoint/core/math/random';
+import { createNormalRandom } from 'threepoint/core/math/random';
 import { rankSumPs, standardError } from './between-tests';
 import { signedRankP } from './paired-tests';
 import { ranksOf } from './ranks';
@@ -78,7 +78,11 @@ function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => n
  * values. The same seed gives the same power.
  */
 export function simulatedPower(planned: PlannedTest, n: number, { seed, studies }: Simulation): Power {
-  const study = (planned.design === 'paired' ? pairedStudy : betweenStudy)(planned, n, normalNumbers(seed + 7919 * n));
+  const study = (planned.design === 'paired' ? pairedStudy : betweenStudy)(
+    planned,
+    n,
+    createNormalRandom(seed + 7919 * n),
+  );
   const found = { t: 0, wilcoxon: 0 };
   for (let i = 0; i < studies; i++) {
     const finding = study();

@@ -1,6 +1,6 @@
 /**
- * Throws a TypeError where options are missing or have a name that is not known: a misspelt one would have no effect.
- * `of`: the function or class with these options.
+ * Throws a TypeError if options are missing or one has an unknown name: a misspelt option would have no effect. `of`:
+ * the name of the function or class.
  */
 export function assertOptions(of: string, options: object | null | undefined, known: readonly string[]): void {
   if (typeof options !== 'object' || options === null) {
@@ -14,15 +14,3 @@ export function assertOptions(of: string, options: object | null | undefined, kn
 /** Returns the names of all options of a type, which the compiler compares with the type. */
 export const optionNames = <Options extends object>(names: Record<keyof Required<Options>, true>): readonly string[] =>
   Object.keys(names);
-
-const warned = new WeakSet<object>();
-
-/**
- * Warns once for each object that is used after its `dispose`: a frame must not throw. `what`: the name of its class,
- * which bundlers change.
- */
-export function warnAfterDispose(object: object, what: string): void {
-  if (warned.has(object)) return;
-  warned.add(object);
-  console.warn(`threepoint: “update” has no effect after “dispose”. Stop calling it, or create another ${what}.`);
-}

@@ -9,16 +9,17 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
 import { type AfterFrame, createAfterFrame } from './after-frame';
-import { assertOptions, optionNames, warnAfterDispose } from './assert-options';
+import { assertOptions, optionNames } from './assert-options';
 import { EstimatorSelector } from './estimator-selector';
 import { HeightEstimator } from './height-estimator';
 import { type InferenceProfiler, withProfiler } from './inference-profiler';
+import { warnAfterDispose } from './warnings';
 
 export type { TrackedPoint } from '../core/tracking/tracking-validator';
 
 /**
- * The origin of a body's measures: given by the page, the headset's height at the start of a session, a wearer who
- * stood up taller, a change between the wearer and a stand-in, or the default.
+ * The origin of a body's measures: given by the page, the headset's height at the start of a session, a user who
+ * stood up taller, a change between the user and a stand-in, or the default.
  */
 export type CalibrationSource = 'given' | 'headset' | 'stood-taller' | 'stand-in' | 'default';
 
@@ -30,7 +31,7 @@ export interface BodyEvents {
   /** The measures in force have changed, from the next frame on. */
   calibrated?(calibration: Calibration, source: CalibrationSource): void;
   /**
-   * The wearer stands `difference` [m] taller than the given measures, which stay in force. Called once for each
+   * The user stands `difference` [m] taller than the given measures, which stay in force. Called once for each
    * calibration.
    */
   heightmismatch?(difference: number): void;
@@ -41,7 +42,7 @@ export interface BodyEvents {
   fallback?(estimator: EstimatorName, reason: string): void;
   /** `estimator`, `provider` or `unavailableEstimators` has changed. */
   estimatorchange?(): void;
-  /** The body was reset and continues elsewhere: nothing may be drawn, sent or scored on the way there. */
+  /** The body was reset and continues elsewhere. Do not interpolate between its last pose and the next. */
   discontinuity?(): void;
   /**
    * The point is no longer tracked. Without a head the body keeps its pose; the arm of a lost or guessed hand sinks to
@@ -57,7 +58,7 @@ export interface BodyEvents {
   trackermismatch?(mismatch: TrackerMismatch): void;
   /** A session starts: frames of its wearer follow. */
   sessionstart?(): void;
-  /** The session is over: `pose` is null. Others must not be shown the last pose any longer. */
+  /** The session is over: `pose` is null. Stop showing the last pose to others. */
   sessionend?(): void;
 }
 
@@ -65,16 +66,19 @@ export interface BodySolverOptions {
   /** The estimator. Default: 'learned', replaced by inverse kinematics until its weights have loaded. */
   readonly estimator?: EstimatorName;
   /**
-   * The wearer's measures. 'auto' (default): estimated from the headset's height, and enlarged when the wearer stands
+   * The user's measures. 'auto' (default): estimated from the headset's height, and enlarged when the user stands
    * taller.
    */
   readonly calibration?: Calibration | 'auto';
   /**
-   * Whether the wearer may stand taller than the measures (default: true). Those of 'auto' grow; given ones stay, and
+   * Whether the user may stand taller than the measures (default: true). Those of 'auto' grow; given ones stay, and
    * `heightmismatch` is called.
    */
   readonly autoGrow?: boolean;
-  /** Loads a network by name; rejects with a sentence. `onnxNetworks` of threepoint/onnx loads both. */
+  /**
+   * Loads a network by name; rejects with an Error whose message is a sentence. `onnxNetworks` of threepoint/onnx loads
+   * both.
+   */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
   /** Draws the trackers of frames: `pinning` of threepoint/trackers. Without it frames must have none. */
   readonly pinning?: Pinning;
@@ -111,8 +115,8 @@ const eventNames = optionNames<BodyEvents>({
 });
 
 /**
- * Solves the body of one wearer from three tracked points. It selects the estimator, falls back to inverse kinematics,
- * estimates the wearer's height and reports lost points. Each frame is one call of `tick` and one of `update`. It
+ * Solves the body of one user from three tracked points. It selects the estimator, falls back to inverse kinematics,
+ * estimates the user's height and reports lost points. Each frame is one call of `tick` and one of `update`. It
  * contains no network: `networks` loads them. `Body` adds the learned network.
  *
  * @example
@@ -131,16 +135,16 @@ export class BodySolver {
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
   #afterFrame: AfterFrame | null = null;
-  /** The measures in force: the wearer's, or a stand-in's. */
+  /** The measures in force: the user's, or a stand-in's. */
   #calibration: Calibration;
-  #wearer: Calibration;
+  #userCalibration: Calibration;
   #given: boolean;
   /** Whether a stand-in moved the body in the newest frame. */
   #hasStandIn = false;
   #pose: AvatarPose | null = null;
   #inSession = false;
   #disposed = false;
-  /** The newest frame's request to a network that answers later. */
+  /** The newest frame's request to a network that runs after the frame. */
   #request: InferenceRequest | null = null;
   readonly #sendRequest = () => {
     const request = this.#request;
@@ -152,7 +156,8 @@ export class BodySolver {
   };
 
   /**
-   * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
+   * Throws a RangeError for a calibration that no person has or an unknown estimator, a TypeError for an unknown
+   * option.
    */
   constructor(options: BodySolverOptions) {
     assertOptions('Body', options, bodyOptions);
@@ -164,8 +169,8 @@ export class BodySolver {
     this.#profiler = profiler;
     this.#pinning = pinning;
     this.#given = calibration !== 'auto';
-    this.#wearer = calibration === 'auto' ? defaultCalibration : this.#copyChecked(calibration);
-    this.#calibration = this.#wearer;
+    this.#userCalibration = calibration === 'auto' ? defaultCalibration : this.#copyChecked(calibration);
+    this.#calibration = this.#userCalibration;
     this.#choice = new EstimatorSelector({
       estimator,
       calibration: this.#calibration,
@@ -175,7 +180,7 @@ export class BodySolver {
       onUnavailable: (name, reason) => this.#events.fallback?.(name, reason),
     });
     this.#height = new HeightEstimator({
-      calibration: () => this.#wearer,
+      calibration: () => this.#userCalibration,
       isCalibrated: () => this.#given,
       autoGrow: options.autoGrow ?? true,
       onMeasured: (measured, source) => this.#setUserCalibration(measured, source),
@@ -191,17 +196,17 @@ export class BodySolver {
     return this.#pose;
   }
 
-  /** The measures in force: the wearer's, or a stand-in's. */
+  /** The measures in force: the user's, or a stand-in's. */
   get calibration(): Calibration {
     return this.#calibration;
   }
 
-  /** The wearer's measures, also while a stand-in moves the body. */
+  /** The user's measures, also while a stand-in moves the body. */
   get userCalibration(): Calibration {
-    return this.#wearer;
+    return this.#userCalibration;
   }
 
-  /** The estimator that draws now: 'ik' while a network loads, and where it fails. */
+  /** The estimator in use: 'ik' while a network loads, and after it failed. */
   get estimator(): EstimatorName {
     return this.#choice.current.name;
   }
@@ -222,15 +227,15 @@ export class BodySolver {
   }
 
   /**
-   * Selects the estimator. Resolves when it draws, or after `fallback` was called because it cannot. Rejects with a
-   * RangeError where no estimator has this name, or with what a callback throws.
+   * Selects the estimator. Resolves when it is in use, or after `fallback` was called because it is unavailable.
+   * Rejects with a RangeError where no estimator has this name, or with what a callback throws.
    */
   setEstimator(estimator: EstimatorName): Promise<void> {
     return this.#choice.setEstimator(estimator);
   }
 
   /**
-   * Sets the wearer's measures [m]; 'auto' discards them and estimates new ones. Throws a RangeError where they are not
+   * Sets the user's measures [m]; 'auto' discards them and estimates new ones. Throws a RangeError where they are not
    * human.
    */
   calibrate(calibration: Calibration | 'auto'): void {
@@ -241,7 +246,7 @@ export class BodySolver {
     this.#setUserCalibration(measures, given ? 'given' : 'default');
   }
 
-  /** Starts a session: a headset was put on, and the wearer's height is estimated again. */
+  /** Starts a session: a headset was put on, and the user's height is estimated again. */
   startSession(): void {
     this.#inSession = true;
     this.#height.startSession();
@@ -285,10 +290,10 @@ export class BodySolver {
   /**
    * Solves one tracking frame, floor frame [m, s]. Returns the body's pose; null before the first frame of a session.
    * Without a head (null) the pose stays as it is: `trackinglost` reports it. A point with a number that is not finite
-   * counts as lost; an invalid time counts as that of the frame before. `standIn`: the measures of someone else who
-   * moves the body in this frame, such as an actor or a recording; they are in force then, and nothing is estimated
-   * about the wearer. Never waits and never returns NaN. After `dispose` it returns null and warns once. Throws a
-   * RangeError where a stand-in's measures are not human, a TypeError where the frame has trackers and the body no
+   * counts as lost; an invalid time counts as that of the frame before. `standIn`: the measures of another person who
+   * moves the body in this frame, such as an actor or a recording; they are in force in this frame, and nothing is
+   * estimated about the user. Never waits and never returns NaN. After `dispose` it returns null and warns once. Throws
+   * a RangeError where a stand-in's measures are not human, a TypeError where the frame has trackers and the body no
    * `pinning`, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
@@ -311,9 +316,9 @@ export class BodySolver {
   }
 
   /**
-   * Draws the last of these frames with the estimator's state after all of them: floor frame, rising times. Awaits each
-   * answer of the network. With a network that answers at once, `pose` is set when this returns, else when it resolves.
-   * Has no effect if a discontinuity happens or another estimator is selected meanwhile.
+   * Runs the estimator over these frames (floor frame, rising times) and sets `pose` to the result of the last. Awaits
+   * each result of the network. With a network that runs within the frame, `pose` is set when this returns, else when
+   * it resolves. Has no effect if the body is reset or another estimator is selected before it resolves.
    */
   warmUp(frames: Iterable<TrackingFrame>): Promise<void> {
     return this.#choice.warmUp(validFrames(frames), (pose) => {
@@ -336,7 +341,7 @@ export class BodySolver {
 
   /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */
   #own(calibration: Calibration): Calibration {
-    const known = calibration === this.#calibration || calibration === this.#wearer;
+    const known = calibration === this.#calibration || calibration === this.#userCalibration;
     return known ? calibration : this.#copyChecked(calibration);
   }
 
@@ -348,24 +353,25 @@ export class BodySolver {
   }
 
   /**
-   * Returns whether the same person moved the body in the frame before; a page may pass equal measures as a new object.
+   * Returns whether the same person moved the body in the previous frame; equal measures in another object are the same
+   * person.
    */
   #isDrivenBy(standIn: Calibration | null): boolean {
     if (standIn === null) return !this.#hasStandIn;
     return this.#hasStandIn && sameCalibration(standIn, this.#calibration);
   }
 
-  /** Lets a stand-in, or the wearer again, move the body from this frame on. */
+  /** Changes who moves the body from this frame on: a stand-in, or the user (null). */
   #changeDriver(standIn: Calibration | null): void {
     this.#hasStandIn = standIn !== null;
     this.discontinuity();
-    this.#applyCalibration(standIn ?? this.#wearer, 'stand-in');
+    this.#applyCalibration(standIn ?? this.#userCalibration, 'stand-in');
   }
 
-  /** Sets the wearer's measures; they come into force when no stand-in moves the body. */
+  /** Sets the user's measures; they come into force when no stand-in moves the body. */
   #setUserCalibration(calibration: Calibration, source: CalibrationSource): void {
-    const inForce = this.#calibration === this.#wearer;
-    this.#wearer = calibration;
+    const inForce = this.#calibration === this.#userCalibration;
+    this.#userCalibration = calibration;
     if (inForce) this.#applyCalibration(calibration, source);
   }
 

@@ -3,6 +3,7 @@ import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { BodySolver, type BodySolverOptions } from './body-solver';
 import { loadWithoutRuntime } from './load-learned';
+import { warnOfFallback } from './warnings';
 
 export interface BodyOptions extends Partial<BodySolverOptions> {
   /**
@@ -10,15 +11,6 @@ export interface BodyOptions extends Partial<BodySolverOptions> {
    * both.
    */
   readonly networks?: (name: NetworkName) => Promise<PoseRegressor>;
-}
-
-/**
- * Warns that another estimator draws than the one selected, for a page without a handler. `handler`: its name there.
- */
-export function warnOfFallback(estimator: EstimatorName, reason: string, handler = 'fallback'): void {
-  console.warn(
-    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “${handler}” to report it yourself.`,
-  );
 }
 
 /**

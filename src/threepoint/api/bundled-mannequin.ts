@@ -1,7 +1,6 @@
 /**
- * Returns the file of the mannequin that this package brings. In the repository it is a file next to the page; in the
- * published package a module with the same bytes takes the place of this one, so that no bundler can lose them
- * (scripts/build-library.mjs).
+ * Returns the bytes of the mannequin's VRM file. In the repository they are fetched; the published package replaces
+ * this module by one that contains the bytes, because some bundlers drop files (scripts/build-library.mjs).
  */
 export async function readBundledMannequin(): Promise<ArrayBuffer> {
   const response = await fetch(new URL('../../../public/avatars/mannequin.vrm', import.meta.url).href);

@@ -5,7 +5,7 @@ import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { Pinning } from '../core/estimation/pinning';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
 
-// The functions of core that a page calls with measures of its own: measures in centimetres would give a giant.
+// Wrappers of functions of core that check a page's measures: measures in centimetres would give a giant.
 
 /**
  * Returns the average body of this eye height and span [m]; identity rotations are an upright person in T-pose. Throws
@@ -20,9 +20,9 @@ export function skeletonFromCalibration(calibration: Calibration): bodies.Skelet
 }
 
 /**
- * Creates an estimator by its name. `paper` and `learned` throw without their regressor; `device` falls back on IK
- * without that of `learned`. Throws a RangeError where no estimator has this name, or where the measures [m] are not
- * human. `pinning` of threepoint/trackers draws the trackers of frames.
+ * Creates an estimator by its name. Throws an Error for `paper` and `learned` without their regressor; `device` without
+ * that of `learned` falls back on IK. Throws a RangeError for an unknown name, or for measures [m] that no person has.
+ * `pinning` of threepoint/trackers draws the trackers of frames.
  *
  * @example
  * const estimator = createEstimator('learned', calibration, await loadLearned());

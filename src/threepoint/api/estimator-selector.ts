@@ -13,16 +13,13 @@ export interface EstimatorSelectorOptions {
   create(name: EstimatorName, calibration: Calibration, regressor?: PoseRegressor): PoseEstimator;
   /** Loads a network; rejects with a sentence that names the file and its fault. */
   load(name: NetworkName): Promise<PoseRegressor>;
-  /** Called when another estimator draws, or when one has become unavailable. */
+  /** Called when another estimator is in use, or when one has become unavailable. */
   onChange(): void;
   /** Called when a network is unavailable: inverse kinematics draws instead. */
   onUnavailable(name: NetworkName, reason: string): void;
 }
 
-/**
- * Selects the estimator that draws: the selected one, or inverse kinematics until its network has loaded and when it
- * fails.
- */
+/** Holds the selected estimator, or inverse kinematics until its network has loaded and after it failed. */
 export class EstimatorSelector {
   readonly #options: EstimatorSelectorOptions;
   readonly #loading = new Map<NetworkName, Promise<PoseRegressor>>();
@@ -83,13 +80,13 @@ export class EstimatorSelector {
     if (this.#unavailable[needed] === undefined) {
       try {
         network = await this.#network(needed);
-        // A page may supply the network of another estimator: this one is unavailable then, whoever selected it.
+        // A page may supply the network of another estimator by mistake: creating the estimator throws then.
         this.#create(needed, network);
       } catch (error) {
         this.#markUnavailable(needed, error);
       }
     }
-    // Meanwhile the user may have selected another estimator, or the network may have failed.
+    // Another estimator may have been selected meanwhile, or the network may have failed.
     if (this.#disposed || this.#selected !== name) return;
     this.#switchTo(name, this.#unavailable[needed] === undefined ? network : null);
     this.#options.onChange();
@@ -156,7 +153,7 @@ export class EstimatorSelector {
     return network ? create(name, this.#calibration, network) : create(name, this.#calibration);
   }
 
-  /** Keeps the current estimator where method and network are the same, with its estimate of how the hands are held. */
+  /** Uses this method and network from now on. If both are the same as before, the estimator keeps its state. */
   #switchTo(name: EstimatorName, network: PoseRegressor | null): void {
     if (this.#current.name === name && this.#regressor === network) return;
     this.#current = this.#create(name, network);
@@ -165,7 +162,7 @@ export class EstimatorSelector {
   }
 
   /**
-   * Replaces what draws with a failed network: by the same method where it works without one, else by inverse
+   * Replaces an estimator whose network failed: by the same method if it works without a network, else by inverse
    * kinematics.
    */
   #markUnavailable(network: NetworkName, error: unknown): void {

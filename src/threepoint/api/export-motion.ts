@@ -17,9 +17,9 @@ const exportOptions = optionNames<ExportMotionOptions>({
 });
 
 /**
- * Returns a file of what an estimator draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation,
- * or what a writer makes. Rejects with a sentence where the estimator draws no body or fails, or its network cannot be
- * loaded; with the signal's reason where it is cancelled.
+ * Exports the motion that an estimator makes of a recording, with fingers: as BVH, a table of joints (CSV), VRM
+ * Animation, or the format of a writer. Rejects with an Error if the estimator has no body or fails, or its network
+ * cannot be loaded; with the signal's reason if it is aborted.
  *
  * @example
  * const { parts, type, extension } = await exportMotion(recording, { format: 'bvh' });
@@ -27,7 +27,7 @@ const exportOptions = optionNames<ExportMotionOptions>({
  */
 export async function exportMotion(recording: Recording, options: ExportMotionOptions): Promise<MotionFile> {
   assertOptions('exportMotion', options, exportOptions);
-  // Pages that export nothing load none of it.
+  // Loaded on demand: pages that export nothing do not load the writers.
   const { writeMotionFile: exportMotionBare } = await import('./motion-file');
   return exportMotionBare(recording, { ...options, networks: options.networks ?? loadWithoutRuntime });
 }

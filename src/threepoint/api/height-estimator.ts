@@ -9,24 +9,24 @@ const settleSeconds = 0.7;
 export interface HeightEstimatorOptions {
   /** Returns the measures in force. */
   calibration(): Calibration;
-  /** Returns whether the wearer has calibrated: these measures stay, and a mismatch is reported. */
+  /** Returns whether the user has calibrated: these measures stay, and a mismatch is reported. */
   isCalibrated(): boolean;
-  /** Whether the wearer may stand taller than the measures. */
+  /** Whether the user may stand taller than the measures. */
   readonly autoGrow: boolean;
   /**
-   * Called with new measures of a wearer who has not calibrated: from the headset's height, or because they stood up
+   * Called with new measures of a user who has not calibrated: from the headset's height, or because they stood up
    * taller.
    */
   onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
   /**
-   * Called when a calibrated wearer stands `difference` [m] taller than their calibration; once for each calibration.
+   * Called when a calibrated user stands `difference` [m] taller than their calibration; once for each calibration.
    */
   onMismatch(difference: number): void;
 }
 
 /**
- * Estimates the wearer's height. Without a calibration it is the headset's height in the first frame after
- * `settleSeconds` of tracking, and grows when the wearer stands up straight. With a calibration that is too small, the
+ * Estimates the user's height. Without a calibration it is the headset's height in the first frame after
+ * `settleSeconds` of tracking, and grows when the user stands up straight. With a calibration that is too small, the
  * mismatch is reported.
  */
 export class HeightEstimator {
@@ -41,23 +41,23 @@ export class HeightEstimator {
     this.#options = options;
   }
 
-  /** Uses the headset's height once more: it was put on. */
+  /** Restarts the estimate because the headset was put on. */
   startSession(): void {
     this.#settledSince = null;
   }
 
-  /** Restarts the settling time: the head is not seen. */
+  /** Restarts the settling time because the head is not tracked. */
   onHeadLost(): void {
     if (this.#settledSince !== 'done') this.#settledSince = null;
   }
 
-  /** Restarts the observation: the floor lies elsewhere, or another person may wear the headset. */
+  /** Restarts the observation because the floor has moved, or another person may wear the headset. */
   reset(): void {
     this.onHeadLost();
     this.#watch.reset();
   }
 
-  /** Observes a frame in which the wearer's head is seen. */
+  /** Observes a frame with a tracked or emulated head. */
   observe(frame: TrackingFrame): void {
     if (!this.#options.isCalibrated()) this.#settle(frame);
     if (this.#options.autoGrow) this.#grow(frame);

@@ -1,20 +1,20 @@
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 
 /**
- * Measures what a body does on this thread after a frame. Each part is the time since the mark before it, or since
- * `resume`.
+ * Measures the work of a body on this thread after a frame. A part lasts from the previous mark, or from `resume`, to
+ * its own mark.
  */
 export interface InferenceProfiler {
   /** Marks the start of work that a frame deferred. */
   resume(): void;
   /**
-   * Marks the end of a part. features: until the network is called. inference: until the call first waits; work
-   * elsewhere costs this thread nothing.
+   * Marks the end of a part. features: until the network is called. inference: until the call returns; work on other
+   * threads is not included.
    */
   mark(part: 'features' | 'inference'): void;
 }
 
-/** Returns the regressor with profiled runs. A run within a frame belongs to that frame and is not profiled. */
+/** Returns the regressor with its deferred runs profiled; runs within a frame are part of that frame's time. */
 export function withProfiler(regressor: PoseRegressor, profiler: InferenceProfiler): PoseRegressor {
   return {
     contract: regressor.contract,

@@ -7,17 +7,17 @@ import { readBundledWeights } from './bundled-weights';
 
 export interface LoadLearnedOptions {
   /**
-   * The address of another contract (.json), with its weights in the same folder; in Node also a file (`file:`).
-   * Default: the network that the package brings.
+   * The URL of another contract (.json), next to its weights; in Node also a `file:` URL. Default: the network in this
+   * package.
    */
   readonly modelUrl?: string | URL;
-  /** Called with the share [0, 1] of the weights that has arrived. */
+  /** Called with the fraction [0, 1] of the weights that has loaded. */
   readonly onProgress?: (share: number) => void;
 }
 
 /**
- * Loads the learned network without a runtime: 91 kB, which answer within the frame. Rejects with a sentence that names
- * the file and its fault.
+ * Loads the learned network without onnxruntime-web: 91 kB of weights, evaluated within the frame. Rejects with an
+ * Error that names the file and its fault.
  *
  * @example
  * const body = new Body({ networks: () => loadLearned({ onProgress: (share) => bar.set(share) }) });
@@ -34,7 +34,7 @@ export async function loadLearned(options: LoadLearnedOptions = {}): Promise<Pos
   return createPlainRegressor(own, await readBundledWeights(weightsOf(own), onProgress));
 }
 
-/** Loads the networks that need no runtime. */
+/** Loads the learned network without a runtime; rejects for the paper's network. */
 export function loadWithoutRuntime(name: NetworkName): Promise<PoseRegressor> {
   if (name === 'learned') return loadLearned();
   return Promise.reject(

@@ -33,9 +33,9 @@ export interface MotionFileOptions extends WorkOptions, BvhOptions {
   readonly format: MotionFormat | MotionWriter;
   /** The estimator of the body between the points; default: 'learned'. */
   readonly estimator?: EstimatorName;
-  /** Loads the networks, as of a BodySolver. They are released at the end. */
+  /** Loads a network by name, as the option of a BodySolver does. It is disposed of at the end. */
   readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
-  /** The person's measures; default: the recording's, else from the height of its first frame. */
+  /** The person's measures [m]. Default: the recording's, else estimated from the head height in its first frame. */
   readonly calibration?: Calibration | undefined;
 }
 
@@ -47,10 +47,10 @@ function writerOf({ format, ...options }: MotionFileOptions): MotionWriter {
   throw new Error(`“${String(format)}” is not a motion format. Use one of ${motionFormats.join(', ')}.`);
 }
 
-/** The share of the work that is spent on estimating; the rest is writing. */
+/** The fraction of the work that is spent on estimating; the rest is writing. */
 const estimating = 0.7;
 
-/** Throws a sentence where no frame has a device body: another method would draw all of them. */
+/** Throws an Error if no frame has a device body: another method would estimate all of them. */
 function* requireDeviceBody({ frames }: Replayable): Generator<number, void> {
   for (const { deviceBody } of frames) {
     if (deviceBody) return;
@@ -59,7 +59,7 @@ function* requireDeviceBody({ frames }: Replayable): Generator<number, void> {
   throw new Error('The recording has no device body. Choose another method.');
 }
 
-/** The admitted frames of a recording, which a program may have made itself; frames without a head are left out. */
+/** The valid frames of a recording, which a program may have created; frames without a head are left out. */
 class AdmittedRecording implements TrackingFrames {
   readonly #frames: TrackingFrames;
 
@@ -76,7 +76,7 @@ class AdmittedRecording implements TrackingFrames {
     return this.#frames.at(index);
   }
 
-  /** Yields the admitted frames. Throws a sentence where times do not rise, or no frame has a head. */
+  /** Yields the valid frames. Throws an Error if times do not rise, or no frame has a head. */
   *[Symbol.iterator](): Generator<TrackingFrame> {
     const validator = new TrackingValidator();
     let number = 0;
@@ -94,7 +94,7 @@ class AdmittedRecording implements TrackingFrames {
   }
 }
 
-/** Returns the measures for an export. Throws a RangeError where they are not human. */
+/** Returns the measures for an export. Throws a RangeError for measures that no person has. */
 function personOf({ calibration, frames }: Replayable, given: Calibration | undefined): Calibration {
   const person = given ?? calibration;
   if (!person) {
@@ -119,7 +119,7 @@ async function* exportWork(
   return yield* scaleProgressAsync(writer.write(motion), estimating, 1);
 }
 
-/** Returns the loading network. Rejects as soon as the work is aborted, and releases a network that arrives later. */
+/** Returns the loading network. Rejects as soon as the work is aborted, and disposes of a network that loads later. */
 async function untilAborted(loading: Promise<PoseRegressor>, signal: AbortSignal | undefined): Promise<PoseRegressor> {
   if (!signal) return loading;
   let giveUp = (): void => undefined;
@@ -138,10 +138,8 @@ async function untilAborted(loading: Promise<PoseRegressor>, signal: AbortSignal
 }
 
 /**
- * Exports the motion that an estimator draws of a recording, with fingers: as BVH, a table of joints (CSV), VRM
- * Animation, or the format of a writer. Rejects with a sentence where the method estimates no body or fails, no network
- * loads, the measures are not human, times do not rise, or 'device' is chosen and no frame has a device body; with the
- * signal's reason where it is aborted.
+ * Writes the motion that an estimator makes of a recording; see `exportMotion`. Rejects also if times do not rise, or
+ * if 'device' is selected and no frame has a device body.
  */
 export async function writeMotionFile(recording: Replayable, options: MotionFileOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;

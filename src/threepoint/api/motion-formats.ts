@@ -1,3 +1,3 @@
-/** Kinds of files that `exportMotion` makes by itself. */
+/** The formats that `exportMotion` writes without a MotionWriter. */
 export const motionFormats = ['bvh', 'csv', 'vrma'] as const;
 export type MotionFormat = (typeof motionFormats)[number];

@@ -1,4 +1,4 @@
-// "threepoint/motion": recordings as files of other programs, and a pose as the joints of WebXR Body Tracking.
+// "threepoint/motion": exports recordings as motion files, and converts a pose to the joints of WebXR Body Tracking.
 export type { Motion } from '../core/motion/motion';
 export type { MotionBone } from '../core/motion/skeleton';
 export type { XRBodyJoints } from '../core/motion/xr-body';

@@ -1,2 +1,2 @@
-// "threepoint/onnx-worker": what a worker of `createWorker` runs.
+// "threepoint/onnx-worker": the module of the worker that `createWorker` creates.
 import '../onnx/inference-worker';

@@ -1,4 +1,5 @@
-// "threepoint/onnx": the networks by onnxruntime-web, on WebAssembly or WebGPU, in a worker where one is given.
+// "threepoint/onnx": runs the networks in onnxruntime-web, on WebAssembly or WebGPU, on the page's thread or in a
+// worker.
 import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { loadRegressor } from '../onnx/load-regressor';
@@ -9,23 +10,23 @@ export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
 export interface OnnxNetworksOptions {
   /**
-   * Returns the address of a network's contract (.json), with its .onnx file beside it: the package's folder models/,
+   * Returns the URL of a network's contract (.json), next to its .onnx file: those of the package's folder models/,
    * served by the page.
    */
   readonly modelUrl: (name: NetworkName) => string | URL;
   /** The backend: 'wasm' (default), or 'webgpu' with 'wasm' as the fallback. */
   readonly provider?: ExecutionProvider;
   /**
-   * The address of onnxruntime-web's .wasm and .mjs files, as its `env.wasm.wasmPaths`. Default: where a bundler puts
+   * The URL of onnxruntime-web's .wasm and .mjs files, as in its `env.wasm.wasmPaths`. Default: as a bundler resolves
    * them.
    */
   readonly wasmPaths?: WasmPaths;
   /**
-   * Creates a worker that runs threepoint/onnx-worker; without it WebAssembly runs on the page's thread, after the
+   * Creates a worker with the module threepoint/onnx-worker. Default: WebAssembly runs on the page's thread, after the
    * frame.
    */
   readonly createWorker?: () => Worker;
-  /** Called with the share [0, 1] of a network's file that has arrived. */
+  /** Called with the fraction [0, 1] of a network's file that has loaded. */
   readonly onProgress?: (share: number) => void;
   /** Called with the reason when WebAssembly replaces WebGPU. */
   readonly onProviderFallback?: (reason: string) => void;
@@ -41,8 +42,8 @@ const onnxOptions = optionNames<OnnxNetworksOptions>({
 });
 
 /**
- * Returns a loader of networks by onnxruntime-web, for `networks` of a Body or BodyTracker. Its networks answer one
- * frame later. Throws a TypeError where an option is unknown or `modelUrl` is not a function.
+ * Returns a loader of networks that run in onnxruntime-web, for the option `networks` of a Body or BodyTracker. Their
+ * results are one frame late. Throws a TypeError for an unknown option, or if `modelUrl` is not a function.
  *
  * @example
  * const networks = onnxNetworks({ modelUrl: (name) => `/models/${name}.json`, wasmPaths: '/ort/' });

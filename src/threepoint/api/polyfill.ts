@@ -1,4 +1,4 @@
-// "threepoint/polyfill": the body of WebXR Body Tracking, estimated from head and hands, where a device has none.
+// "threepoint/polyfill": WebXR Body Tracking for devices without it, estimated from head and hands.
 
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
@@ -6,13 +6,14 @@ import { copyPose, invertTransform, makePose, type Pose, type Transform, transfo
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
-import { Body, type BodyOptions, warnOfFallback } from './body';
+import { Body, type BodyOptions } from './body';
 import { bodyOptions as solverOptions } from './body-solver';
+import { warnOfFallback } from './warnings';
 
 export interface InstallBodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
   /**
-   * Called with the reason when a session has no body: it has no floor, or the estimator is unavailable (inverse
-   * kinematics draws then). Default: a warning of the console.
+   * Called with the reason when a session has no body because it has no floor, or when the estimator is unavailable and
+   * inverse kinematics replaces it. Default: a warning on the console.
    */
   readonly onWarning?: (reason: string) => void;
 }
@@ -27,7 +28,7 @@ export interface EmulatedBodySpace extends XRSpace {
 
 /** An emulated body in place of an XRBody: the 83 joints by name, in the specification's order. */
 export interface EmulatedBody extends ReadonlyMap<string, EmulatedBodySpace> {
-  /** Marks joints that are estimated from three points and that no device has tracked. */
+  /** Marks a body whose joints are estimated from three points instead of tracked. */
   readonly emulated: true;
 }
 
@@ -88,7 +89,7 @@ class JointSpaces extends Map<string, EmulatedBodySpace> implements EmulatedBody
   }
 }
 
-/** The body of one session: estimates one pose for each frame that asks for it. */
+/** The body of one session. It estimates the pose once per frame, when the page first reads it. */
 class SessionBody {
   readonly spaces: EmulatedBody;
   readonly #session: XRSession;
@@ -104,7 +105,7 @@ class SessionBody {
   #lastTime = Number.POSITIVE_INFINITY;
   /** The newest joints; null before the session's first frame with a head. */
   #joints: XRBodyJoints | null = null;
-  /** The floor in the base of the newest request, and the frame of that request; null: unknown. */
+  /** The pose of the floor in the base space of the newest request, and that request; null: unknown. */
   readonly #baseFromFloor = makePose<'floor'>();
   #known: FloorFrom | null = null;
   #knownIn: { frame: XRFrame | null; frameMs: number; base: XRSpace | null } = {
@@ -122,10 +123,7 @@ class SessionBody {
     this.spaces = new JointSpaces(jointNames);
   }
 
-  /**
-   * Starts tracking once the session has a floor; rejects where it has none: then there are joints, but no poses of
-   * them.
-   */
+  /** Starts tracking once the session has a floor. Rejects if it has none: the joints then have no poses. */
   async begin(): Promise<void> {
     const floor = await this.#session.requestReferenceSpace('local-floor');
     this.#floor = floor;
@@ -154,7 +152,8 @@ class SessionBody {
   }
 
   /**
-   * Returns the pose of one space in another where at least one is a joint; null: unknown. The next call overwrites it.
+   * Returns the pose of a space in a base space, of which at least one is a joint; null: unknown. The next call
+   * overwrites it.
    */
   pose(frame: XRFrame, space: XRSpace, base: XRSpace): Place | null {
     const inFloor = this.#locate(frame, space);
@@ -162,7 +161,7 @@ class SessionBody {
     return baseFromFloor && transformPose<'floor', 'floor'>(baseFromFloor, inFloor, this.#inBase);
   }
 
-  /** Writes the matrices of all spaces. Returns false, and writes NaN, where one is unknown. */
+  /** Writes the matrices of all spaces. Writes NaN for unknown poses, and returns false if there is one. */
   fill(frame: XRFrame, spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean {
     let all = true;
     for (let i = 0; i < spaces.length; i++) {
@@ -182,7 +181,7 @@ class SessionBody {
     return pose ? copyPose(pose.transform, this.#inFloor) : null;
   }
 
-  /** Returns the floor in the base, cached: pages ask for all joints in one base. */
+  /** Returns the pose of the floor in the base space, cached because pages read all joints in one base. */
   #findBase(frame: XRFrame, base: XRSpace): FloorFrom | null {
     const asked = this.#knownIn;
     if (asked.frame === frame && asked.frameMs === this.#frameMs && asked.base === base) return this.#known;
@@ -208,7 +207,7 @@ class SessionBody {
     const time = this.#body.tick(this.#frameMs);
     const tracked = this.#tracked.read(frame, time);
     const pose = this.#body.update(tracked);
-    // One body serves all sessions: its pose belongs to the session before until this one has a head.
+    // One body serves all sessions: until this session has a head, the pose is that of the previous session.
     if (!tracked) return this.#joints;
     const { calibration } = this.#body;
     if (this.#poserOf !== calibration) {
@@ -306,7 +305,7 @@ function warnOfMissingBody(reason: string): void {
 const trackingOptions = ['onWarning', ...solverOptions.filter((name) => name !== 'events' && name !== 'clock')];
 
 /**
- * Adds `frame.body` to every session that requests the feature “body-tracking”: the device's own body, else one that is
+ * Adds `frame.body` to the sessions that request the feature “body-tracking”: the device's own body, else one that is
  * estimated from head and hands. An estimated body is marked by `emulated`, its poses by `emulatedPosition`. Call it
  * before the first session is requested, and after a WebXR emulator was installed. Returns a function that uninstalls
  * it. Throws an Error where the page has no WebXR (or Node runs it), a RangeError where the calibration is not human, a

@@ -1,4 +1,4 @@
-// "threepoint/react": the body of the user, and those of others, as components of react-three-fiber.
+// "threepoint/react": components of react-three-fiber for the user's body and for the bodies of others.
 import { useFrame, useThree } from '@react-three/fiber';
 import {
   createElement,
@@ -14,8 +14,8 @@ import type { Avatar } from '../avatar/avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from '../core/body/calibration';
 import type { BoneMap } from '../core/humanoid/bones';
-import { warnOfFallback } from './body';
 import { type AvatarSource, BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions, loadAvatar } from './three';
+import { warnOfFallback } from './warnings';
 
 /** The prop that receives each event of a tracker. */
 const callbackNames = {
@@ -40,9 +40,9 @@ export type SelfAvatarCallbacks = {
 
 /** The avatar that a component loads. */
 export interface LoadedAvatarProps {
-  /** The avatar's address, file or bytes, as of `loadAvatar`. Another value loads another avatar. */
+  /** The avatar's URL, file or bytes, as in `loadAvatar`. A change loads another avatar. */
   readonly avatar: AvatarSource;
-  /** The nodes of a humanoid's bones, as of `loadAvatar`; read when the avatar is loaded. */
+  /** The names of the nodes for a humanoid's bones, as in `loadAvatar`; read when the avatar is loaded. */
   readonly bones?: BoneMap;
 }
 
@@ -63,8 +63,8 @@ export interface SelfAvatarProps extends LoadedAvatarProps, Omit<BodyTrackerOpti
 /** Props of `RemoteAvatar`. */
 export interface RemoteAvatarProps extends LoadedAvatarProps {
   /**
-   * The pose to draw, floor frame [m], with fingers where it has them; null hides the body. A ref is read in each
-   * frame, so that a pose of 60 Hz renders no component.
+   * The pose to draw, floor frame [m], with its fingers if it has any; null hides the body. A ref is read in each
+   * frame, so that a new pose does not render the component.
    */
   readonly pose: AvatarPose | null | RefObject<AvatarPose | null>;
   /** The measures of the person behind the pose [m]: `tracker.calibration` of their page. Default: an average adult. */
@@ -87,8 +87,8 @@ interface Loaded<Made> {
 }
 
 /**
- * Loads an avatar and makes an object of it, which is disposed of with the component or with another source. An error
- * of loading is thrown in rendering.
+ * Loads an avatar and creates an object from it, which is disposed of when the component unmounts or the source
+ * changes. An error of loading is thrown while rendering.
  */
 function useLoaded<Made extends Disposable>(
   { avatar: source, bones }: LoadedAvatarProps,
@@ -135,9 +135,9 @@ function useLoaded<Made extends Disposable>(
 }
 
 /**
- * Draws the body of the user in a Canvas of react-three-fiber, also within `<XR>` of @react-three/xr: hidden without a
- * session. Place it where the camera is: in the scene, or in the `<XROrigin>` that moves the user. An avatar that
- * cannot be loaded throws to the nearest error boundary, as do options that a BodyTracker refuses.
+ * Draws the user's body in a Canvas of react-three-fiber, also within `<XR>` of @react-three/xr. It is hidden without a
+ * session. Place it where the camera is: in the scene, or in the `<XROrigin>` that moves the user. If the avatar cannot
+ * be loaded or an option is invalid, the error is thrown to the nearest error boundary.
  *
  * @example
  * <Canvas>
@@ -203,9 +203,8 @@ function listen(tracker: BodyTracker, props: RefObject<SelfAvatarProps>): void {
 }
 
 /**
- * Draws the body of someone else from a pose that their page sent, in the frame of the component's parent. The fingers
- * bend as the pose has them, and the avatar is scaled to `calibration`. An avatar that cannot be loaded throws to the
- * nearest error boundary.
+ * Draws the body of another person from a pose that their page sent, in the frame of the component's parent. The avatar
+ * is scaled to `calibration`. If it cannot be loaded, the error is thrown to the nearest error boundary.
  *
  * @example
  * const pose = useRef(null);

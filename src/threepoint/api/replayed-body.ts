@@ -4,7 +4,7 @@ import { type Replayable, sampleRecording } from '../core/tracking/recording';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import type { BodySolver } from './body-solver';
 
-/** A replay that may move a body. */
+/** The state of a replay that may move a body. */
 export interface ReplayState {
   readonly mode: 'idle' | 'recording' | 'replaying';
   /** Whether the replay is paused. */
@@ -15,12 +15,12 @@ export interface ReplayState {
   readonly recording: Replayable | null;
 }
 
-/** The time [s] before a moment for which a body is warmed up. */
+/** The length [s] of the recording before the current position with which a body is warmed up. */
 const warmUpSeconds = 5;
-/** The highest frame rate of the warm-up [Hz], whichever one a recording has. */
+/** The highest frame rate of the warm-up [Hz]; recordings with a higher rate are resampled. */
 const maxWarmUpHz = 60;
 
-/** Yields the frames of a recording up to a second of it, which gets the time `time` [s]. */
+/** Yields the last frames of a recording up to the position `seconds` [s], which gets the time `time` [s]. */
 export function* warmUpFrames(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
   const first = recording.frames.at(0)!.time;
   const rateHz = Math.min(recording.rateHz, maxWarmUpHz);
@@ -31,17 +31,18 @@ export function* warmUpFrames(recording: Replayable, seconds: number, time: numb
 }
 
 /**
- * Drives a body by a replay. While the replay is paused, the body's time stands still and its state does not fade.
- * After a seek in a paused replay, or a change of the estimator, the body is warmed up with the seconds before.
+ * Drives a body by a replay. While the replay is paused, the body's time stands still and its state does not change.
+ * After a seek in a paused replay, or a change of the estimator, the body is warmed up with the frames before the
+ * position.
  */
 export class ReplayedBody {
   readonly #body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
   readonly #replay: ReplayState;
-  /** The time for which replays were paused since the last one began [s]. */
+  /** The total of the pauses since the replay started [s]. */
   #pausedSeconds = 0;
   /** The time of the newest frame, by the page's clock [s]. */
   #time = Number.NaN;
-  /** The moment and the method that are drawn. */
+  /** The position and the estimator of the drawn pose. */
   readonly #drawn: { recording: Replayable | null; seconds: number; method: string } = {
     recording: null,
     seconds: 0,
@@ -71,7 +72,7 @@ export class ReplayedBody {
     return pose;
   }
 
-  /** Forgets the replay that moved the body. */
+  /** Resets the state: no replay moves the body. */
   stop(): void {
     this.#pausedSeconds = 0;
     this.#drawn.recording = null;
@@ -88,18 +89,18 @@ export class ReplayedBody {
     return this.#body.pose;
   }
 
-  /** Returns whether the same recording went back: nothing may be drawn on the way from its end. */
+  /** Returns whether the position in the same recording went back, which is a discontinuity. */
   #hasRestarted(): boolean {
     const { recording, seconds } = this.#replay;
     return recording === this.#drawn.recording && seconds < this.#drawn.seconds;
   }
 
-  /** Returns the frame with its time by the body's clock. */
+  /** Returns the frame with its time on the body's clock, which skips pauses. */
   #withBodyTime(frame: TrackingFrame): TrackingFrame {
     return this.#pausedSeconds === 0 ? frame : { ...frame, time: frame.time - this.#pausedSeconds };
   }
 
-  /** Stores the replay's moment and the method; returns whether either has changed. */
+  /** Stores the replay's position and the estimator; returns whether either has changed. */
   #updateDrawn(): boolean {
     const moment = this.#drawn;
     const { recording, seconds } = this.#replay;

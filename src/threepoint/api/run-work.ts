@@ -2,7 +2,7 @@ import { runInTurns, secondsLeft, type Work, type WorkHost } from '../core/motio
 
 /** The progress of long work. */
 export interface WorkProgress {
-  /** The share [0, 1] that is done. */
+  /** The fraction [0, 1] of the work that is done. */
   readonly fraction: number;
   /** The estimated time left [s]; null: too little is done for an estimate. */
   readonly secondsLeft: number | null;

@@ -1,10 +1,10 @@
-// "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
+// "threepoint/three": draws the body as an avatar in three.js, driven by a WebXR session.
 
 import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
-import { workerCheck } from '../avatar/file/avatar-check-client';
+import { createWorkerCheck } from '../avatar/file/avatar-check-client';
 import { parseAvatar } from '../avatar/load-avatar';
-import { loadSeenAvatar } from '../avatar/load-untrusted-avatar';
+import { loadUntrustedAvatar } from '../avatar/load-untrusted-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
@@ -15,37 +15,38 @@ import type { BoneMap } from '../core/humanoid/bones';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import { TrackedSession } from '../xr/tracked-session';
-import { assertOptions, warnAfterDispose } from './assert-options';
-import { Body, type BodyOptions, warnOfFallback } from './body';
+import { assertOptions } from './assert-options';
+import { Body, type BodyOptions } from './body';
 import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
 import { readBundledMannequin } from './bundled-mannequin';
 import { startValidator } from './bundled-validator';
 import { loadLearned } from './load-learned';
 import type { MotionWriter } from './motion-file';
+import { warnAfterDispose, warnOfFallback } from './warnings';
 
 export type { Avatar } from '../avatar/avatar';
 export type { BoneMap } from '../core/humanoid/bones';
 
 export interface LoadAvatarOptions {
   /**
-   * The name of the file's node for each bone, in VRM's names, instead of the bones that a VRM states and that are
-   * found in another humanoid. A VRM needs its legs as well.
+   * The name of the file's node for each bone (by VRM's bone names), instead of the bones that a VRM states or that are
+   * matched in another humanoid. For a VRM the map must contain the legs.
    */
   readonly bones?: BoneMap;
   /**
-   * Whether the file is another person's. It is validated in a worker before anything of it is decoded, and may have a
-   * third of what the wearer's own file may: 20 MB, 100,000 triangles, 64 million pixels. Default: false.
+   * Whether the file comes from another person. It is validated in a worker before it is decoded, and has lower limits:
+   * 20 MB, 100,000 triangles, 64 million pixels. Default: false.
    */
   readonly untrusted?: boolean;
 }
 
-/** The address of an avatar's file, the file, or its bytes. */
+/** The URL of an avatar's file, the file, or its bytes. */
 export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
 
 /**
- * Loads an avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB or FBX.
- * Rejects with a sentence that names the file: not reachable, not a GLB, larger than `avatarLimits`, or without a
- * needed bone. Pass `untrusted` for a file that another person has brought.
+ * Loads an avatar from a URL, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB or FBX. Rejects with an Error that
+ * names the file if it cannot be fetched or read, exceeds a limit, or lacks a needed bone. Pass `untrusted` for a file
+ * that comes from another person.
  *
  * @example
  * const avatar = await loadAvatar('/avatars/robot.glb', { bones: { hips: 'Hips', head: 'Head' } });
@@ -55,17 +56,17 @@ export async function loadAvatar(source: AvatarSource, options: LoadAvatarOption
   const { bones, untrusted = false } = options;
   const { name, bytes } = await read(source);
   if (!untrusted) return createAvatar(await parseAvatar(bytes, name, { bones }));
-  return loadSeenAvatar(bytes, name, { check: checkUntrusted, ...(bones && { bones }) });
+  return loadUntrustedAvatar(bytes, name, { check: checkUntrusted, ...(bones && { bones }) });
 }
 
-/** Checks a file in a worker; where none starts, on the thread that calls it. */
-const checkUntrusted = workerCheck(startValidator, async (...file) => {
+/** Checks a file in a worker, or on the calling thread if no worker starts. */
+const checkUntrusted = createWorkerCheck(startValidator, async (...file) => {
   const { checkAvatar } = await import('../avatar/file/check-avatar');
   return checkAvatar(...file);
 });
 
 /**
- * Loads the mannequin that comes with this package; each call returns another one.
+ * Loads the mannequin in this package; each call returns a new one.
  *
  * @example
  * const tracker = new BodyTracker(renderer, { avatar: await loadMannequin() });
@@ -75,8 +76,8 @@ export async function loadMannequin(): Promise<Avatar> {
 }
 
 /**
- * Returns a writer of animated GLB files for `format` of `exportMotion`. The avatar's file is kept, its bones turn as the
- * person's, and its steps fit the length of its legs. Rejects as `loadAvatar` does.
+ * Returns a writer of animated GLB files for the option `format` of `exportMotion`. The file contains the avatar and
+ * the motion as an animation, with steps scaled to the avatar's legs. Rejects as `loadAvatar` does.
  *
  * @example
  * const { parts, type } = await exportMotion(recording, { format: await avatarMotionWriter('/avatars/me.vrm') });
@@ -87,8 +88,11 @@ export async function avatarMotionWriter(
 ): Promise<MotionWriter> {
   assertOptions('avatarMotionWriter', options, ['bones']);
   const { bones } = options;
-  const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-motion-writer'), read(source)]);
-  return avatarClip(bytes, name, { bones });
+  const [{ createAvatarMotionWriter }, { name, bytes }] = await Promise.all([
+    import('../avatar/avatar-motion-writer'),
+    read(source),
+  ]);
+  return createAvatarMotionWriter(bytes, name, { bones });
 }
 
 async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayBuffer }> {
@@ -113,21 +117,21 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
 
 export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
   /**
-   * The avatar, from `loadAvatar`; one for each tracker, which disposes of it. Add `tracker.object` to the scene, or to
-   * the group that moves the cameras.
+   * The avatar, from `loadAvatar`; the tracker owns it and disposes of it. Add `tracker.object` to the scene, or to the
+   * group that moves the cameras.
    */
   readonly avatar: Avatar;
   /**
-   * Whether frames contain the body that the device tracks (WebXR Body Tracking), which the estimator 'device' draws.
-   * Default: false. The page must request the session with the feature 'body-tracking'.
+   * Whether to read the body that the device tracks (WebXR Body Tracking), which the estimator 'device' uses. The page
+   * must request the session with the feature 'body-tracking'. Default: false.
    */
   readonly deviceBody?: boolean;
   /**
-   * Returns the trackers beyond head and hands, floor frame [m], in each frame of a session; null: none is seen. For
-   * those that another program sends. `trackerOffsets` of the calibration place them, and `pinning` draws them.
+   * Returns the trackers beyond head and hands in each frame of a session, floor frame [m], for trackers that another
+   * program sends; null: none is seen. They need `trackerOffsets` in the calibration, and the option `pinning`.
    */
   readonly trackers?: () => BodyTrackers | null;
-  /** The address of another contract (.json) of the learned network, with its weights beside it. */
+  /** The URL of another contract (.json) of the learned network, next to its weights. */
   readonly modelUrl?: string | URL;
 }
 
@@ -153,7 +157,7 @@ const trackerOptions = [
   ...solverOptions.filter((name) => name !== 'events'),
 ];
 
-/** The avatars that trackers draw, or have disposed of. */
+/** The avatars that belong to a tracker, or were disposed of by one. */
 const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
 
 function assertRenderer(renderer: WebGLRenderer | undefined): void {
@@ -161,7 +165,7 @@ function assertRenderer(renderer: WebGLRenderer | undefined): void {
   throw new TypeError('renderer is missing. Pass the one that draws: new BodyTracker(renderer, { avatar }).');
 }
 
-/** Throws a sentence where `avatar` is no avatar, or is one of another tracker. */
+/** Throws an Error if `avatar` is no avatar, or belongs to another tracker. */
 function assertAvatar(avatar: unknown): asserts avatar is Avatar {
   const load = "avatar: await loadAvatar('/avatars/me.vrm')";
   if (avatar === undefined || avatar === null) throw new TypeError(`avatar is missing. Load one: ${load}.`);
@@ -184,7 +188,7 @@ function assertAvatar(avatar: unknown): asserts avatar is Avatar {
 }
 
 /**
- * Draws the wearer's body in a three.js page: reads head and hands of the renderer's session, estimates the body and
+ * Draws the user's body in a three.js page: reads head and hands of the renderer's session, estimates the body and
  * poses the avatar. Call `update` in each animation frame before drawing.
  *
  * @example
@@ -206,15 +210,15 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** The renderer's session and its tracking; null: there is none. */
   #session: XRSession | null = null;
   #tracked: TrackedSession | null = null;
-  /** Whether the avatar's head is hidden from the wearer's eyes. */
+  /** Whether the avatar's head is hidden from the user's eyes. */
   #firstPerson = false;
   #disposed = false;
-  /** The page's listeners to `fallback`; without one a failed network is a warning. */
+  /** The page's listeners to `fallback`; without one a failed network is reported on the console. */
   readonly #fallbackListeners = new Set<unknown>();
 
   /**
-   * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where `avatar` is
-   * none, an option is unknown or `trackers` lack `pinning`, an Error where another tracker has the avatar.
+   * Throws a RangeError for a calibration that no person has or an unknown estimator; a TypeError for a missing avatar,
+   * an unknown option or `trackers` without `pinning`; an Error for an avatar of another tracker.
    */
   constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
     super();
@@ -282,8 +286,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * The object to add to the scene, with its origin at that of the renderer's reference space; visible while there is a
-   * pose. `avatar.object` lies in it where the floor is, wherever the page has moved its wearer.
+   * The object to add to the scene. Its origin is that of the renderer's reference space; it is visible while there is
+   * a pose. `avatar.object` inside it is placed on the floor, also where the page has moved its user.
    */
   get object(): Object3D {
     return this.#object;
@@ -302,24 +306,24 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     return this.body.calibration;
   }
 
-  /** The estimator that draws now: 'ik' while a network loads, and where it fails. */
+  /** The estimator in use: 'ik' while a network loads, and after it failed. */
   get estimator(): EstimatorName {
     return this.body.estimator;
   }
 
-  /** Selects the estimator. Resolves when it draws, or after the event `fallback` because it cannot. */
+  /** Selects the estimator. Resolves when it is in use, or after the event `fallback` because it is unavailable. */
   setEstimator(estimator: EstimatorName): Promise<void> {
     return this.body.setEstimator(estimator);
   }
 
-  /** Sets the wearer's measures [m]; 'auto' estimates them. Throws a RangeError where they are not human. */
+  /** Sets the user's measures [m]; 'auto' estimates them. Throws a RangeError for measures that no person has. */
   calibrate(calibration: Calibration | 'auto'): void {
     this.body.calibrate(calibration);
   }
 
   /**
-   * Solves and draws one animation frame, with the arguments of `setAnimationLoop`. Without a session nothing moves and
-   * the avatar is hidden. Call it before any await of the frame: throws an InvalidStateError afterwards.
+   * Solves and draws one animation frame; takes the arguments of the `setAnimationLoop` callback. Without a session the
+   * avatar is hidden. Call it before the first await of the callback, or it throws an InvalidStateError.
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     if (this.#isDisposed()) return;
@@ -337,8 +341,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * Solves and draws a tracking frame of the page, floor frame [m, s]: from another device of the wearer, or from a
-   * stand-in with these measures (an actor, a recording).
+   * Solves and draws a tracking frame that the page supplies, floor frame [m, s]. `standIn`: the measures of another
+   * person who moves the body, such as an actor or a recording.
    */
   updateFromFrame(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
     if (this.#isDisposed()) return;
@@ -347,7 +351,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * Moves the floor's origin under the wearer, its −Z to where they look; the renderer's reference space moves along.
+   * Moves the floor's origin under the user, with −Z in the direction of view. The renderer's reference space moves
+   * with it.
    */
   recentre(): void {
     if (this.#disposed) return;
@@ -356,7 +361,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   /**
-   * Removes the listeners and disposes of the avatar; later frames have no effect, and the first of them warns.
+   * Removes the listeners and disposes of the avatar. Later calls of `update` have no effect, and the first one warns.
    * Resolves when every network that was loaded for this body is released.
    */
   dispose(): Promise<void> {
@@ -368,7 +373,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     return this.body.dispose();
   }
 
-  /** Returns whether the tracker was disposed of, and warns once of a page that still updates it. */
+  /** Returns whether the tracker was disposed of; warns once if so. */
   #isDisposed(): boolean {
     if (this.#disposed) warnAfterDispose(this, 'BodyTracker');
     return this.#disposed;
@@ -382,7 +387,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#object.visible = true;
   }
 
-  /** Follows the renderer's session and ends the tracking of the one before. */
+  /** Starts tracking when the renderer has another session, and ends that of the previous one. */
   #followSession(): void {
     const session = this.#renderer.xr.getSession();
     if (session === this.#session) return;
@@ -412,7 +417,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.body.endSession();
   }
 
-  /** Sets the first-person view only where it changes: a page may control it as well. */
+  /** Sets the first-person view only when it changes, because the page may set it as well. */
   #setFirstPerson(on: boolean): void {
     if (on === this.#firstPerson) return;
     this.#firstPerson = on;

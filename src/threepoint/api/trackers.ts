@@ -1,4 +1,4 @@
-// "threepoint/trackers": the part of a body that draws trackers of hips, chest and feet, for pages that have them.
+// "threepoint/trackers": support for trackers of hips, chest and feet; pages without trackers do not load it.
 export type { TrackerName, TrackerOffset, TrackerOffsets } from '../core/body/tracker-offsets';
 export { trackerAtJoint } from '../core/body/tracker-offsets';
 export type { Pinning, Pins } from '../core/estimation/pinning';

@@ -5,8 +5,8 @@ import { createJointPoses, type JointPoses } from '../core/motion/file-motion';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
 import { type Motion, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
-import { glbOfFile } from './file/convert-to-glb';
-import { chunksOf } from './file/glb-chunks';
+import { convertToGlb } from './file/convert-to-glb';
+import { readGlbChunks } from './file/glb-chunks';
 import { inspectAvatar } from './file/inspect-avatar';
 import { boneNode } from './humanoid/needed-bones';
 import { type Decoders, type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
@@ -24,8 +24,8 @@ type AvatarDescription = GltfDescription & {
   extensions?: Record<string, Record<string, unknown> | undefined>;
 };
 
-/** An avatar's file with a motion as its clip. */
-export interface AvatarClip {
+/** Writes a motion as an animated GLB file of an avatar. */
+export interface AvatarMotionWriter {
   readonly extension: 'glb';
   readonly type: 'model/gltf-binary';
   write(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]>;
@@ -33,17 +33,17 @@ export interface AvatarClip {
 
 const read = (bytes: ArrayBuffer, name: string, decoders: Decoders = {}) => {
   inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
-  const chunks = chunksOf(new Uint8Array(bytes));
+  const chunks = readGlbChunks(new Uint8Array(bytes));
   if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   return { description: JSON.parse(chunks.json) as AvatarDescription, binary: chunks.binary };
 };
 
 const whole = (parts: readonly Uint8Array<ArrayBuffer>[]): Promise<ArrayBuffer> => new Blob([...parts]).arrayBuffer();
 
-/** The part of a VRM's extension that names its bones. */
+/** The part of a VRM's extension that maps its bones. */
 const humanoidParts = ['specVersion', 'exporterVersion', 'meta', 'humanoid', 'firstPerson'];
 
-/** Returns the avatar without surfaces and pictures, which no bone depends on and only a browser can decode. */
+/** Returns the description without materials and images, which only a browser can decode. */
 function bonesAlone(description: AvatarDescription): AvatarDescription {
   const bare = structuredClone(description);
   for (const field of ['images', 'textures', 'samplers', 'materials']) delete bare[field];
@@ -60,13 +60,13 @@ function bonesAlone(description: AvatarDescription): AvatarDescription {
   return bare;
 }
 
-/** A bone of the rig that a bone of the motion turns. */
+/** A bone of the rig and the bone of the motion that drives it. */
 interface DrivenBone {
-  /** The index among the motion's bones of the nearest bone above that the rig has; −1: there is none. */
+  /** The index among the motion's bones of the nearest ancestor that the rig has; −1: there is none. */
   readonly bone: number;
   readonly above: number;
   readonly node: number;
-  /** A rotation of the node is before · (how the bone has turned against the one above) · after. */
+  /** The node's rotation is before · (the bone's rotation relative to its ancestor) · after. */
   readonly before: Quaternion;
   readonly after: Quaternion;
 }
@@ -86,7 +86,7 @@ function drivenBones(motion: Motion, { vrm, nodeIndices }: LoadedAvatar): readon
 const turned = new Quaternion();
 const carried = new Quaternion();
 
-/** The rotation of a driven node in a posed frame, in the file's own axes. */
+/** Returns the rotation of a driven node in a frame, in the axes of the file. */
 function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }: JointPoses): Quaternion {
   const { x, y, z, w } = rotations[bone]!;
   turned.set(x, y, z, w);
@@ -97,7 +97,7 @@ function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }:
   return turned.premultiply(before).multiply(after);
 }
 
-/** Moves every node to the body's rest: avatars in other poses were brought into T-pose. */
+/** Writes the rest pose into the nodes: loading brings avatars in other poses into T-pose. */
 function writeRest(description: AvatarDescription, nodeIndices: LoadedAvatar['nodeIndices']): void {
   for (const [{ position, quaternion, scale }, index] of nodeIndices) {
     const node = description.nodes[index];
@@ -109,7 +109,10 @@ function writeRest(description: AvatarDescription, nodeIndices: LoadedAvatar['no
   }
 }
 
-/** Transforms the hips' target [m] into the frame of their node's parent; steps are scaled to the rig's height. */
+/**
+ * Returns a function that transforms the position of the hips [m] into the frame of their node's parent, scaled to the
+ * rig's height.
+ */
 function hipsPlacer(vrm: VRM, motion: Motion): (x: number, y: number, z: number) => Vector3 {
   const hips = boneNode(vrm, 'hips')!;
   const stature = hips.getWorldPosition(new Vector3()).y / motion.bones[0]!.offset.y;
@@ -118,7 +121,7 @@ function hipsPlacer(vrm: VRM, motion: Motion): (x: number, y: number, z: number)
   return (x, y, z) => place.set(x, y, z).multiplyScalar(stature).applyMatrix4(inParent);
 }
 
-/** The avatar keeps its own proportions: rotations are the motion's, steps as long as its legs are. */
+/** Returns the animation: rotations are those of the motion, positions are scaled to the avatar's legs. */
 function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, readonly NodeTrack[]> {
   const driven = drivenBones(motion, avatar);
   const count = motion.times.length;
@@ -144,11 +147,15 @@ function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, re
 }
 
 /**
- * Makes GLB files of an avatar (VRM or a humanoid of another kind) that moves: all that is in its file stays, but for
- * clips of its own; FBX is converted first. Rejects with a sentence that names the file.
+ * Returns a writer of animated GLB files of an avatar: VRM, or another humanoid. The output keeps everything in the
+ * avatar's file except its animations; FBX is converted first. Rejects with an Error that names the file.
  */
-export async function avatarClip(given: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<AvatarClip> {
-  const bytes = await glbOfFile(given, name, 'body');
+export async function createAvatarMotionWriter(
+  given: ArrayBuffer,
+  name: string,
+  options: ParseOptions = {},
+): Promise<AvatarMotionWriter> {
+  const bytes = await convertToGlb(given, name, 'body');
   const { description, binary } = read(bytes, name, options.decoders);
   const bare = await whole(packGlb(bonesAlone(description), [new Uint8Array(binary)]));
   const avatar = await parseAvatar(bare, name, options);

@@ -2,7 +2,7 @@ import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
-import type { SkinTone } from '../core/body/avatar-ref';
+import type { SkinTone } from '../core/body/built-in-bodies';
 import type { Calibration } from '../core/body/calibration';
 import { createJointPoses, forwardKinematics } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
@@ -26,7 +26,7 @@ import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import { mergeFlatParts } from './rig/flat-parts';
 import { tieLooseParts } from './rig/loose-parts';
 import { type AvatarJoint, Rig } from './rig/rig';
-import { OwnTrunk } from './rig/rig-trunk';
+import { RigTrunk } from './rig/rig-trunk';
 import { spreadLimbs } from './rig/spread-limb-weights';
 import { Springs } from './rig/springs';
 import { meshesOf } from './scene-meshes';
@@ -89,7 +89,7 @@ const longestStep = 0.25;
 const upright = recordOf(jointNames, () => identity);
 
 /** What of a body takes long to make. */
-interface MadeParts {
+interface AvatarParts {
   readonly vrm: VRM;
   readonly object: Group;
   readonly rig: Rig;
@@ -138,7 +138,7 @@ class VrmAvatar implements Avatar {
   readonly object: Group;
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
-  private readonly trunk: OwnTrunk;
+  private readonly trunk: RigTrunk;
   private readonly arms: ArmHelperJoints;
   private readonly legs: Legs;
   private readonly fingers: Readonly<Record<Side, HandFingers>>;
@@ -161,12 +161,12 @@ class VrmAvatar implements Avatar {
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
 
-  constructor({ vrm, object, rig, arms, legs, meshes }: MadeParts) {
+  constructor({ vrm, object, rig, arms, legs, meshes }: AvatarParts) {
     this.vrm = vrm;
     this.object = object;
     this.rig = rig;
     this.arms = arms;
-    this.trunk = new OwnTrunk(this.rig);
+    this.trunk = new RigTrunk(this.rig);
     this.legs = legs;
     this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
@@ -203,7 +203,7 @@ class VrmAvatar implements Avatar {
     const deltaSeconds = elapsed > 0 ? Math.min(longestStep, elapsed) : 0;
     this.lastTime = time;
     const shown = pose.body ? 'body' : 'hands';
-    if (this.meshes.show(shown)) this.rig.forgetJoints();
+    if (this.meshes.setVisibleParts(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose, pose.body, deltaSeconds);
     else this.applyHands(pose);
     for (const side of sides) {

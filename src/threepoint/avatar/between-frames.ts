@@ -1,6 +1,6 @@
 import { runInTurns, type WorkHost } from '../core/motion/work';
 
-/** Work in steps of a millisecond or so, between which other work may be done. */
+/** Work in steps of about a millisecond, between which other work can run. */
 export type Steps<Result> = Generator<undefined, Result>;
 
 const host: WorkHost = {
@@ -8,5 +8,5 @@ const host: WorkHost = {
   nextTurn: () => new Promise((resolve) => setTimeout(resolve)),
 };
 
-/** Runs the steps in turns with the page's other work, so that no frame waits for them. */
+/** Runs the steps between the page's frames. */
 export const betweenFrames = <Result>(steps: Steps<Result>): Promise<Result> => runInTurns(steps, host);

@@ -1,9 +1,9 @@
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry } from 'three';
 
-/** Opacity at a distance from the middle, 0 to 1: dark half way out, then soft. */
+/** Returns the opacity at a distance from the centre, 0 to 1. */
 const darkness = (out: number): number => (out < 0.45 ? 1 - (0.5 * out) / 0.45 : Math.max(0, (0.5 * (1 - out)) / 0.55));
 
-/** A soft dark disc under the body: the cheap shadow that says the feet are on the ground. */
+/** Creates a soft dark disc under the body, which is cheaper than a shadow map. */
 export function createBlobShadow(): Mesh<PlaneGeometry, MeshBasicMaterial> {
   const size = 128;
   const pixels = new Uint8Array(size * size * 4);

@@ -1,4 +1,4 @@
-import type { BuiltInBody } from '../core/body/avatar-ref';
+import type { BuiltInBody } from '../core/body/built-in-bodies';
 
 /** The display names of the built-in bodies, in the order in which they are offered. */
 export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: string }[] = [
@@ -9,4 +9,4 @@ export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: 
   { name: 'child', label: 'Child' },
 ];
 
-export const labelOf = (name: BuiltInBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;
+export const bodyLabelOf = (name: BuiltInBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;

@@ -17,7 +17,7 @@ export interface DebugSkeleton {
   readonly object: Object3D;
   setVisible(visible: boolean): void;
   /** Sets the joints in the floor frame [m], as returned by `Avatar.jointPositions`. */
-  show(joints: Readonly<Record<string, Vec3 | undefined>>): void;
+  setJoints(joints: Readonly<Record<string, Vec3 | undefined>>): void;
   dispose(): void;
 }
 
@@ -61,7 +61,7 @@ export function createDebugSkeleton(): DebugSkeleton {
     setVisible(visible) {
       object.visible = visible;
     },
-    show(joints) {
+    setJoints(joints) {
       if (!object.visible) return;
       let ends = 0;
       for (const [from, to] of bonesDrawn) {

@@ -34,13 +34,13 @@ const widestGaze = 11;
 /** The largest turn of the eyes of a file without VRM [degrees]. */
 const eyeRange = new VRMLookAtRangeMap(30, 30);
 
-/** The place where a mesh stores the weight of one of its shapes. */
+/** The morph target influence of one shape of a mesh. */
 interface Shape {
   readonly influences: number[];
   readonly index: number;
 }
 
-/** Returns the shapes of a body's meshes. `chosen`: picks among the shapes of a mesh. */
+/** Returns the shapes that `chosen` selects in each of a body's meshes. */
 function shapesOf(vrm: VRM, chosen: (has: (name: string) => boolean) => readonly string[]): readonly Shape[] {
   const shapes: Shape[] = [];
   vrm.scene.traverse((node) => {
@@ -53,21 +53,19 @@ function shapesOf(vrm: VRM, chosen: (has: (name: string) => boolean) => readonly
   return shapes;
 }
 
-/** The lids of a file without VRM. */
+/** Returns the lid shapes of a file that is no VRM. */
 const lidsOf = (vrm: VRM): readonly Shape[] =>
   shapesOf(vrm, (has) => {
     const named = lidShapes.filter(has);
-    // A shape for both eyes would close them twice next to one for each.
+    // With shapes for each eye, the shape for both is left out.
     const separate = named.filter((name) => name !== 'eyesClosed');
     return separate.length > 0 ? separate : named;
   });
 
-/** The lips, teeth and jaw of a file without VRM: each mesh by the first name that it has. */
+/** Returns the mouth shapes of a file that is no VRM: the first that each mesh has. */
 const mouthOf = (vrm: VRM): readonly Shape[] => shapesOf(vrm, (has) => mouthShapes.filter(has).slice(0, 1));
 
-/**
- * A part of a face that is moved by a number from 0 to 1: by VRM's expression, or by the shapes of a file without one.
- */
+/** Moves a part of a face by a weight from 0 to 1: VRM's expression, or the shapes of a file without it. */
 class Mover {
   readonly #vrm: VRM;
   readonly #expression: VRMExpressionPresetName;
@@ -95,10 +93,9 @@ class Mover {
 }
 
 /**
- * Meshes that have the shape of a mouth and no other one. They have it while the mouth is open: three.js draws a mesh
- * with shapes by a program of its own, to which it sends all lights in every frame, and keeps a texture of shapes for
- * each body. They have it until the first frame, too: what is compiled for them beforehand is compiled for both. A mesh
- * with lids keeps its shapes: they blink too often for that.
+ * Removes the morph attributes of meshes while the mouth is shut. They cost a shader program of their own, which
+ * receives all lights in every frame, and a texture for each body. They are present until the first frame, so that both
+ * programs are compiled beforehand. Meshes with lid shapes keep theirs, because lids blink often.
  */
 class MouthMeshes {
   readonly #geometries: { readonly geometry: BufferGeometry; readonly shapes: BufferGeometry['morphAttributes'] }[] =
@@ -122,7 +119,7 @@ class MouthMeshes {
   }
 }
 
-/** The eyes of a rig that has bones for them. */
+/** Returns the look-at of a rig with eye bones; null: it has none. */
 function gazeOf(vrm: VRM): VRMLookAt | null {
   if (vrm.lookAt) return vrm.lookAt;
   if (!boneNode(vrm, 'leftEye') || !boneNode(vrm, 'rightEye')) return null;
@@ -133,7 +130,7 @@ function gazeOf(vrm: VRM): VRMLookAt | null {
 const inverse = quat(0, 0, 0, 1);
 const ahead = vec3(0, 0, 0);
 
-/** Animates the face of an avatar: lids blink, eyes look where the head faces, the mouth opens by `setMouth`. */
+/** Animates the face of an avatar: blinking, the direction of the eyes, and the mouth. */
 export class Face {
   readonly #lids: Mover;
   readonly #mouth: Mover;
@@ -149,7 +146,7 @@ export class Face {
   #open = 0;
   #opening = 0;
 
-  /** `seed`: faces of different seeds blink at different times. */
+  /** `seed`: faces with different seeds blink at different times. */
   constructor(vrm: VRM, seed: number) {
     this.#random = { seed };
     this.#gaze = gazeOf(vrm);
@@ -194,7 +191,7 @@ export class Face {
   }
 
   #look(gaze: VRMLookAt, head: Quat, deltaSeconds: number): void {
-    // The target as seen from the turned head: on the way back from the turn, never ahead of it.
+    // The target in the frame of the head: opposite to its rotation, never ahead of it.
     rotate(multiply(conjugate(head, inverse), this.#held, inverse), forward, ahead);
     const yaw = (Math.atan2(-ahead.x, -ahead.z) * 180) / Math.PI;
     const pitch = (Math.asin(clamp(-ahead.y, -1, 1)) * 180) / Math.PI;

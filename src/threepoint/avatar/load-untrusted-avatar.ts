@@ -1,21 +1,25 @@
 import { type Avatar, createAvatarBetweenFrames } from './avatar';
+import { untrustedAvatarLimits } from './file/avatar-limits';
 import type { AvatarCheck } from './file/check-avatar';
-import { seenAvatarLimits } from './file/inspect-avatar';
 import { type ParseOptions, parseChecked } from './load-avatar';
 
-export interface LoadSeenAvatarOptions extends ParseOptions {
+export interface LoadUntrustedAvatarOptions extends ParseOptions {
   readonly check: AvatarCheck;
 }
 
 /**
- * Loads the file of another person's avatar between frames. Rejects with a sentence that names the file, before
- * anything of it is decoded, where it exceeds `seenAvatarLimits` or is not valid glTF. The bytes are empty afterwards.
+ * Loads the file of another person's avatar between frames. If the file exceeds `untrustedAvatarLimits` or is not valid
+ * glTF, rejects with an Error that names it before anything is decoded. The given buffer is empty afterwards.
  */
-export async function loadSeenAvatar(
+export async function loadUntrustedAvatar(
   bytes: ArrayBuffer,
   name: string,
-  { check, bones, decoders = {} }: LoadSeenAvatarOptions,
+  { check, bones, decoders = {} }: LoadUntrustedAvatarOptions,
 ): Promise<Avatar> {
-  const checked = await check(bytes, { name, unpacked: Object.keys(decoders), limits: seenAvatarLimits });
+  const checked = await check(bytes, {
+    name,
+    supportedCompressions: Object.keys(decoders),
+    limits: untrustedAvatarLimits,
+  });
   return createAvatarBetweenFrames(await parseChecked(checked, name, { bones, decoders }));
 }

@@ -14,7 +14,8 @@ import {
 import { Reflector } from 'three/addons/objects/Reflector.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
-import { Pace, reflectionSize } from './reflection-size';
+import { FramePacer } from './frame-pacer';
+import { reflectionSize } from './reflection-size';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
 import { seesRectangle } from './sees-rectangle';
 
@@ -37,9 +38,9 @@ const frameDepth = 0.05;
 const gapBelow = 0.06;
 
 /**
- * The reflection is drawn with the very programs of the scene: into a texture whose colours are encoded as the canvas's
- * are (see `reflect`). Where they differed, three.js looked up the program of every material twice a frame, which left
- * 47 kB to the collector.
+ * The reflection is drawn with the shader programs of the scene, into a texture with the canvas's colour space (see
+ * `reflect`). With another colour space three.js looks up the program of every material twice a frame, which allocates
+ * 47 kB.
  */
 const { ReflectorShader } = Reflector as unknown as { readonly ReflectorShader: Record<'fragmentShader', string> };
 const shader = {
@@ -51,19 +52,17 @@ const shader = {
   ),
 };
 
-/**
- * A standing mirror that shows the room and the whole avatar, the own head included; each eye sees its own reflection.
- */
+/** A standing mirror that shows the room and the whole avatar, including its head. Each eye has its own reflection. */
 export class Mirror {
   readonly object: Object3D = new Group();
-  /** One glass for each eye of a session; on a desktop the first only. */
+  /** The reflectors, one for each eye of a session; on a desktop only the first. */
   private readonly glasses: Reflector[] = [];
   private readonly reflections: Reflector['onBeforeRender'][] = [];
   private readonly width: number;
   private readonly height: number;
   private readonly resolution: number;
   private readonly samples: number;
-  private readonly pace = new Pace();
+  private readonly pace = new FramePacer();
   /** The textures take no memory. */
   private released = true;
   private readonly frame = new Mesh<BufferGeometry, MeshStandardMaterial>(
@@ -86,14 +85,17 @@ export class Mirror {
     this.object.visible = visible;
   }
 
-  /** Moves its middle to (x, z) [m], floor frame; turned by 0 it faces +Z, positive to +X [rad]. */
+  /**
+   * Moves the mirror's centre to (x, z) [m], floor frame. `turned`: its heading [rad], 0 facing +Z, positive towards
+   * +X.
+   */
   place(x: number, z: number, turned: number): void {
     this.object.position.set(x, this.object.position.y, z);
     this.object.rotation.y = turned;
   }
 
-  /** Draws at most so many reflections in a second of a session [Hz]; null: one in each frame. */
-  setMostRate(rateHz: number | null): void {
+  /** Sets the maximum rate of reflections in a session [Hz]; null: one in each frame. */
+  setMaxRate(rateHz: number | null): void {
     this.pace.rateHz = rateHz;
   }
 
@@ -141,7 +143,7 @@ export class Mirror {
     for (const glass of this.glasses) glass.getRenderTarget().dispose();
   }
 
-  /** Gives a glass a texture for a picture of this many pixels; infinity: the largest texture. */
+  /** Sets the size of a reflector's texture for an image of this many pixels; infinity: the largest texture. */
   private fitTarget(index: number, pixels: number): void {
     const { width, height } = reflectionSize(pixels, this.height / this.width, this.resolution);
     const target = this.glasses[index]!.getRenderTarget();
@@ -158,7 +160,7 @@ export class Mirror {
     this.object.removeFromParent();
   }
 
-  /** Draws a camera's view in one of the glasses, if it sees that glass. */
+  /** Draws the reflection for a camera if it sees the reflector. */
   private reflectTo(index: number, renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
     const glass = this.glasses[index]!;
     glass.visible = true;
@@ -179,7 +181,7 @@ export class Mirror {
       glass.material as never,
       null as never,
     );
-    // All renders of a frame have one number: bones are uploaded for the first of them only.
+    // All renders of a frame have one frame number: bones are uploaded for the first only.
     render.frame = frame;
     this.object.visible = true;
   }
@@ -190,17 +192,17 @@ export class Mirror {
       textureHeight: Math.round((this.resolution * this.height) / this.width),
       clipBias: 0.003,
       multisample: this.samples,
-      // Silvered glass takes a little of the light; #bcbcbc would take none.
+      // The glass absorbs a little light; #bcbcbc would absorb none.
       color: 0xb6b9bb,
       shader,
     });
     const target = glass.getRenderTarget();
-    // three.js recognises by this property a target whose colours are encoded like a canvas's: it needs no more bits.
+    // By this property three.js encodes the colours of a render target like those of the canvas, which needs no more
+    // bits.
     Object.assign(target, { isXRRenderTarget: true });
     target.texture.type = UnsignedByteType;
-    // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of
-    // the eyes alone it does not show. The reflecting camera is a copy made on demand by a method that three's types
-    // leave out.
+    // In first person the head is on this layer alone, and the mirror shows it. Objects on the layers of the eyes are
+    // not shown. The reflecting camera is a copy made by a method that three.js's types leave out.
     const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
     const makeCamera = cameras.getReflectionCamera;
     cameras.getReflectionCamera = (camera) => {
@@ -210,8 +212,8 @@ export class Mirror {
       return reflecting;
     };
     this.reflections.push(glass.onBeforeRender);
-    // The reflection is drawn before the scene: a nested render has lights of its own, and every material would be
-    // looked up again.
+    // The reflection is drawn before the scene: a nested render has another light state, for which every material would
+    // be looked up again.
     glass.onBeforeRender = () => undefined;
     this.glasses.push(glass);
     this.object.add(glass);

@@ -1,4 +1,4 @@
-import type { SkinTone } from '../core/body/avatar-ref';
+import type { SkinTone } from '../core/body/built-in-bodies';
 
 /** Colours of the mannequin's materials (docs/avatar.md), one palette per player. CSS colours. */
 export interface Palette {

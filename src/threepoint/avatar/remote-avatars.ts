@@ -1,13 +1,7 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
-import {
-  type AvatarRef,
-  bodyOf,
-  isAvatarHash,
-  isBuiltInAvatar,
-  plainAvatar,
-  skinToneOf,
-} from '../core/body/avatar-ref';
+import { type AvatarRef, isAvatarHash } from '../core/body/avatar-ref';
+import { bodyOf, defaultAvatar, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
 import { TransientError } from '../core/errors/transient-error';
@@ -130,7 +124,7 @@ export class RemoteAvatars {
     this.#now = time;
     const plain = this.#options.plain();
     for (const person of people) {
-      const body = this.#bodyFor(person, plain ? plainAvatar : person.avatar, people);
+      const body = this.#bodyFor(person, plain ? defaultAvatar : person.avatar, people);
       if (!body) continue;
       body.drawnAt = time;
       body.avatar.setMouth(this.#options.mouthOf(person.id));
@@ -179,15 +173,15 @@ export class RemoteAvatars {
       if (own) own.id = null;
       return take(wanted, id);
     }
-    if (avatar !== plainAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
-    if (own?.of === plainAvatar) return own;
-    const plain = this.#freeBody(plainAvatar, people);
+    if (avatar !== defaultAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
+    if (own?.of === defaultAvatar) return own;
+    const plain = this.#freeBody(defaultAvatar, people);
     if (plain) {
       if (own) own.id = null;
       return take(plain, id);
     }
     if (this.#failed) throw this.#failed;
-    this.#make(plainAvatar);
+    this.#make(defaultAvatar);
     // Bodies stay unchanged until the plain one is loaded.
     return own;
   }
@@ -219,7 +213,7 @@ export class RemoteAvatars {
       else this.#add(made, avatar);
       this.#refused.delete(avatar);
     } catch (error) {
-      if (avatar === plainAvatar) this.#failed = error;
+      if (avatar === defaultAvatar) this.#failed = error;
       this.#refuse(avatar, error);
     }
   }

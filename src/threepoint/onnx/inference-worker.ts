@@ -1,10 +1,10 @@
 import { reasonOf } from '../core/errors/reasons';
 import { createSession, type InferenceSession } from './session';
-import type { Answer, Question } from './worker-messages';
+import type { WorkerRequest, WorkerResponse } from './worker-messages';
 
 let session: InferenceSession | null = null;
 
-async function answer(question: Question): Promise<Answer> {
+async function answer(question: WorkerRequest): Promise<WorkerResponse> {
   const { id } = question;
   if ('model' in question) {
     session = await createSession(question.model, question.tensors, 'wasm', { wasmPaths: question.wasmPaths });
@@ -14,7 +14,7 @@ async function answer(question: Question): Promise<Answer> {
   return { id, numbers: await session.run(question.features) };
 }
 
-self.addEventListener('message', ({ data: question }: MessageEvent<Question>) => {
+self.addEventListener('message', ({ data: question }: MessageEvent<WorkerRequest>) => {
   answer(question)
     .catch((error: unknown) => ({ id: question.id, broken: reasonOf(error) }))
     .then((answered) => self.postMessage(answered));

@@ -1,15 +1,15 @@
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import { fetchContract, fetchStated, named } from './model-files';
+import { fetchContract, fetchEntry, withFileName } from './model-files';
 
 export interface PlainLoadOptions {
-  /** Called with the share [0, 1] of the weights that has arrived. */
+  /** Called with the fraction [0, 1] of the weights that has loaded. */
   readonly onProgress?: (share: number) => void;
 }
 
 /**
- * The learned network without a runtime, ready to answer within a frame: contract and weights fetched, size and SHA-256
- * checked. Rejects with a sentence that says what is wrong with which file.
+ * Loads the learned network without a runtime: fetches contract and weights, and verifies size and SHA-256. Rejects
+ * with an Error that names the file and its fault.
  */
 export async function loadPlainRegressor(
   contractUrl: string,
@@ -17,10 +17,10 @@ export async function loadPlainRegressor(
 ): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
   const weights = weightsOf(contract);
-  const bytes = await fetchStated(contractUrl, weights, onProgress);
+  const bytes = await fetchEntry(contractUrl, weights, onProgress);
   try {
     return createPlainRegressor(contract, bytes);
   } catch (error) {
-    throw named(weights.file, error);
+    throw withFileName(weights.file, error);
   }
 }

@@ -1,7 +1,7 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { outputNumbers, tensorsOf } from './model-contract';
-import { fetchContract, fetchStated, named } from './model-files';
+import { fetchContract, fetchEntry, withFileName } from './model-files';
 import {
   createSession,
   type ExecutionProvider,
@@ -20,21 +20,21 @@ export interface LoadOptions {
    * without workers.
    */
   readonly createWorker?: () => Worker;
-  /** The address of the runtime's own files; absent: where the bundler put them. */
+  /** The URL of the runtime's files. Default: as a bundler resolves them. */
   readonly wasmPaths?: WasmPaths;
-  /** Called with the share [0, 1] of the model file that has arrived. */
+  /** Called with the fraction [0, 1] of the model file that has loaded. */
   readonly onProgress?: (share: number) => void;
   /** Called with the reason when WASM replaces WebGPU, at load or when the device fails later. */
   readonly onProviderFallback?: (reason: string) => void;
 }
 
 /**
- * A network, ready to run: contract and model fetched, size and SHA-256 checked, tensors compared with the contract,
- * one run made to warm up. Rejects with a sentence that says what is wrong with which file.
+ * Loads a network: fetches contract and model, verifies size, SHA-256 and tensors, and runs it once to warm up. Rejects
+ * with an Error that names the file and its fault.
  */
 export async function loadRegressor(contractUrl: string, options: LoadOptions = {}): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
-  return startRegressor(contract, await fetchStated(contractUrl, contract, options.onProgress), options);
+  return startRegressor(contract, await fetchEntry(contractUrl, contract, options.onProgress), options);
 }
 
 /** Starts a regressor from bytes in memory, for programs that read files themselves. */
@@ -51,7 +51,7 @@ export async function startRegressor(
       ? createWorkerSession(model, tensors, inWorker, wasmPaths)
       : createSession(model, tensors, where, { bundle, wasmPaths }));
     try {
-      await tryOut(opened, contract.file, tensors);
+      await runOnce(opened, contract.file, tensors);
       return opened;
     } catch (error) {
       await opened.release();
@@ -63,10 +63,10 @@ export async function startRegressor(
     try {
       return await open(provider);
     } catch (error) {
-      if (provider === 'wasm') throw named(contract.file, error);
+      if (provider === 'wasm') throw withFileName(contract.file, error);
       onProviderFallback?.(`WebGPU does not run ${contract.file} (${reasonOf(error)}): WebAssembly takes over.`);
       return open('wasm').catch((second) => {
-        throw named(contract.file, second);
+        throw withFileName(contract.file, second);
       });
     }
   }
@@ -78,8 +78,8 @@ export async function startRegressor(
   });
 }
 
-/** Throws a sentence where an open session does not match the contract of its file. */
-async function tryOut(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
+/** Runs an open session once; throws an Error if it does not match its contract. */
+async function runOnce(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
   if (!session.inputNames.includes(input) || !session.outputNames.includes(output)) {
     const has = `${session.inputNames.join(', ')} → ${session.outputNames.join(', ')}`;
     throw new Error(`${file}: has the tensors ${has}, its contract says ${input} → ${output}`);

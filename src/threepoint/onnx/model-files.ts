@@ -4,7 +4,7 @@ import { joinBytes, nameOfAddress } from '../core/files';
 import { parseContract } from './model-contract';
 
 /** The entry of a contract for a file beside it. */
-export type StatedFile = Pick<ModelContract, 'file' | 'bytes' | 'sha256'>;
+export type FileEntry = Pick<ModelContract, 'file' | 'bytes' | 'sha256'>;
 
 /** Loads the contract at this address; rejects with a sentence that names the file and its fault. */
 export async function fetchContract(url: string): Promise<ModelContract> {
@@ -12,12 +12,12 @@ export async function fetchContract(url: string): Promise<ModelContract> {
 }
 
 /**
- * Loads a file and checks its size and SHA-256 against its contract; rejects with a sentence. onProgress: share [0, 1]
- * that has arrived.
+ * Loads a file and checks its size and SHA-256 against its contract; rejects with a sentence. `onProgress`: called with
+ * the fraction [0, 1] that has loaded.
  */
 export async function fetchFile(
   url: string,
-  stated: StatedFile,
+  stated: FileEntry,
   onProgress?: (share: number) => void,
 ): Promise<Uint8Array> {
   const bytes = await download(url, onProgress);
@@ -26,17 +26,17 @@ export async function fetchFile(
 }
 
 /** Loads and checks a file beside its contract. */
-export const fetchStated = (
+export const fetchEntry = (
   contractUrl: string,
-  stated: StatedFile,
+  stated: FileEntry,
   onProgress?: (share: number) => void,
-): Promise<Uint8Array> => fetchFile(beside(contractUrl, stated.file), stated, onProgress);
+): Promise<Uint8Array> => fetchFile(siblingUrl(contractUrl, stated.file), stated, onProgress);
 
 /** Returns the address of a file beside another, without the other's query. */
-const beside = (url: string, file: string): string => url.replace(/[?#].*$/, '').replace(/[^/]*$/, file);
+const siblingUrl = (url: string, file: string): string => url.replace(/[?#].*$/, '').replace(/[^/]*$/, file);
 
 /** Returns the error with a message that begins with the file's name. */
-export const named = (file: string, error: unknown): Error => {
+export const withFileName = (file: string, error: unknown): Error => {
   const text = reasonOf(error);
   return new Error(text.startsWith(file) ? text : `${file}: ${text}`);
 };
@@ -85,7 +85,7 @@ async function download(url: string, onProgress?: (share: number) => void): Prom
   return joinBytes(pieces);
 }
 
-async function verify({ file, bytes, sha256 }: StatedFile, model: Uint8Array): Promise<void> {
+async function verify({ file, bytes, sha256 }: FileEntry, model: Uint8Array): Promise<void> {
   if (model.length !== bytes) throw new Error(`${file}: ${model.length} bytes long, its contract says ${bytes}`);
   // Browsers provide no digest to pages outside https: and localhost.
   const { subtle } = crypto as { readonly subtle?: SubtleCrypto };

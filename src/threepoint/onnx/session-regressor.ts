@@ -1,6 +1,6 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import { named } from './model-files';
+import { withFileName } from './model-files';
 import type { InferenceSession } from './session';
 
 /** The replacement of a session whose graphics device fails. */
@@ -71,7 +71,7 @@ export class SessionRegressor implements PoseRegressor {
   async #leave(device: InferenceSession, error: unknown): Promise<InferenceSession> {
     const { file } = this.contract;
     const opened = await this.#takeover.open().catch((second: unknown) => {
-      throw named(file, second);
+      throw withFileName(file, second);
     });
     if (this.#disposed) await opened.release();
     this.#demand();

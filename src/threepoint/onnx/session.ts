@@ -30,7 +30,7 @@ export interface InferenceSession {
   readonly outputNames: readonly string[];
   /** Resolves with the reason when the graphics device is lost; absent: there is none. */
   readonly lost?: Promise<string>;
-  /** Runs the model. features: the input tensor's numbers. Resolves to the output tensor's numbers in a new array. */
+  /** Runs the model. `features`: the input tensor's numbers. Resolves to the output tensor's numbers in a new array. */
   run(features: Float32Array): Promise<Float32Array>;
   release(): Promise<void>;
 }

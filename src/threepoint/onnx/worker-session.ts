@@ -1,9 +1,9 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { InferenceSession, ModelTensors, WasmPaths } from './session';
-import type { Answer, Question } from './worker-messages';
+import type { WorkerRequest, WorkerResponse } from './worker-messages';
 
 interface Waiting {
-  readonly resolve: (answer: Answer) => void;
+  readonly resolve: (answer: WorkerResponse) => void;
   readonly reject: (error: Error) => void;
 }
 
@@ -12,20 +12,19 @@ const astray = 'the inference worker sent an unexpected answer';
 /** The time [ms] of silence after which a worker counts as dead, at the latest after twice as long. */
 const patienceMs = 2500;
 
-function numbersOf(answer: Answer): Float32Array {
+function numbersOf(answer: WorkerResponse): Float32Array {
   if (!('numbers' in answer)) throw new Error(astray);
   return answer.numbers;
 }
 
-function namesOf(answer: Answer): Pick<InferenceSession, 'inputNames' | 'outputNames'> {
+function namesOf(answer: WorkerResponse): Pick<InferenceSession, 'inputNames' | 'outputNames'> {
   if (!('inputNames' in answer)) throw new Error(astray);
   return answer;
 }
 
 /**
- * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between
- * frames. Rejects when there is no worker or it does not take the model; a worker that breaks or falls silent rejects
- * every run from then on.
+ * Opens a model in its own worker: a frame only sends the request, and the result arrives between frames. Rejects if
+ * the worker does not start or cannot open the model. After a crash or a timeout of the worker every run rejects.
  */
 export async function createWorkerSession(
   model: Uint8Array,
@@ -54,15 +53,15 @@ export async function createWorkerSession(
     waiting.clear();
   }
 
-  function ask(question: Question): Promise<Answer> {
+  function ask(question: WorkerRequest): Promise<WorkerResponse> {
     if (broken) return Promise.reject(broken);
-    return new Promise<Answer>((resolve, reject) => {
+    return new Promise<WorkerResponse>((resolve, reject) => {
       waiting.set(question.id, { resolve, reject });
       worker.postMessage(question);
     });
   }
 
-  worker.addEventListener('message', ({ data: answer }: MessageEvent<Answer>) => {
+  worker.addEventListener('message', ({ data: answer }: MessageEvent<WorkerResponse>) => {
     const asker = waiting.get(answer.id);
     waiting.delete(answer.id);
     if ('broken' in answer) asker?.reject(new Error(answer.broken));

@@ -3,9 +3,9 @@ import {
   copyBend,
   fingerBend,
   type HandShape,
+  lerpBend,
   type MutableHandShape,
   makeHandShape,
-  mixBend,
 } from '../core/body/hand-shape';
 import { smoothingFactor } from '../core/math/damper';
 
@@ -68,15 +68,15 @@ export class ControllerFingers {
 
   #bend(trigger: number, squeeze: number): void {
     const { thumb, index, middle, ring, little } = this.#shape;
-    mixBend(heldMiddle, closedHand.middle, squeeze, middle);
-    mixBend(heldRing, closedHand.ring, squeeze, ring);
-    mixBend(heldLittle, closedHand.little, squeeze, little);
-    mixBend(indexPressed, closedHand.index, squeeze, index);
-    mixBend(indexOnTrigger, index, trigger, index);
-    mixBend(index, indexAhead, this.#pointing * (1 - trigger), index);
+    lerpBend(heldMiddle, closedHand.middle, squeeze, middle);
+    lerpBend(heldRing, closedHand.ring, squeeze, ring);
+    lerpBend(heldLittle, closedHand.little, squeeze, little);
+    lerpBend(indexPressed, closedHand.index, squeeze, index);
+    lerpBend(indexOnTrigger, index, trigger, index);
+    lerpBend(index, indexAhead, this.#pointing * (1 - trigger), index);
     copyBend(thumbOnFace, thumb);
-    mixBend(thumb, closedHand.thumb, Math.min(trigger, squeeze), thumb);
-    mixBend(thumb, thumbUp, this.#thumbAway, thumb);
+    lerpBend(thumb, closedHand.thumb, Math.min(trigger, squeeze), thumb);
+    lerpBend(thumb, thumbUp, this.#thumbAway, thumb);
     this.#shape.pinch = 0;
   }
 }

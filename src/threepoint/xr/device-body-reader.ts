@@ -84,7 +84,7 @@ export class DeviceBodyReader {
   #seen = false;
 
   /** The reason why there is no body; null: there is one. */
-  get complaint(): string | null {
+  get problem(): string | null {
     if (this.#seen) return null;
     if (this.#fault !== null) return this.#fault;
     return this.#body === null ? 'the device reports no body' : 'the device has lost the body, or not found it yet';

@@ -41,7 +41,7 @@ class Press {
   }
 }
 
-/** Reads what devices ask of the page besides pointing: to turn the user, to mute the voice, to bring the menu. */
+/** Reads the commands of devices besides pointing: to turn the user, to mute the voice, to show the menu. */
 export class DeviceCommands {
   /** Stick pressed down. */
   readonly mute = new Press();
@@ -83,7 +83,7 @@ export class DeviceCommands {
     this.menu.waitForRelease();
   }
 
-  /** Asks for a turn by another way than a device, to the left for 1. */
+  /** Requests a turn from elsewhere than a device; 1: to the left. */
   turn(direction: -1 | 1): void {
     this.#turn = direction;
   }

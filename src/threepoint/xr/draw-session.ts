@@ -1,4 +1,4 @@
-import { giveFramesToEvents } from './frameless-events';
+import { addFramesToEvents } from './frameless-events';
 import type { DrawingSpace } from './tracked-session';
 
 /** The part of a renderer that draws a session: `renderer.xr` of three.js. */
@@ -26,7 +26,7 @@ export async function drawSession<Prepared>(
     session.addEventListener('end', () => reject(new Error('the session ended before it had begun')), { once: true });
   });
   const draw = async (): Promise<Prepared> => {
-    giveFramesToEvents(session);
+    addFramesToEvents(session);
     await drawing.setSession(session);
     if (!drawing.getReferenceSpace())
       throw new Error('the headset provides no floor-level reference space (local-floor)');

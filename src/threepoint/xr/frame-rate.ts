@@ -20,15 +20,15 @@ export interface RatedSession {
   readonly updateTargetFrameRate?: ((rate: number) => Promise<void>) | undefined;
 }
 
-/** What a picture gives up so that its frames are in time. */
+/** Reductions of the image quality that save time. */
 export interface Savings {
-  /** How much coarser the edges of the eyes' pictures are drawn, 0 to 1. */
+  /** The fixed foveation, 0 to 1. */
   readonly foveation: number;
-  /** The most reflections that a mirror draws in a second [Hz]; null: one in each frame. */
+  /** The maximum rate of a mirror's reflections [Hz]; null: one in each frame. */
   readonly mirrorRateHz: number | null;
 }
 
-/** From none to all, in the order in which people miss them least. */
+/** The levels of savings from none to all, least noticeable first. */
 const levels: readonly Savings[] = [
   { foveation: 0, mirrorRateHz: null },
   { foveation: 0.5, mirrorRateHz: null },
@@ -37,8 +37,8 @@ const levels: readonly Savings[] = [
 ];
 const allSavings = levels.length - 1;
 
-/** The savings where no load is known: all that one does not see in a mirror. */
-export const unjudgedSavings: Savings = { foveation: 1, mirrorRateHz: null };
+/** The savings while the load is unknown: all that do not affect mirrors. */
+export const defaultSavings: Savings = { foveation: 1, mirrorRateHz: null };
 
 /** How often a rate was not held with some savings, and when it may be tried again [s]. */
 interface Failures {
@@ -78,12 +78,12 @@ export class FrameRateControl {
     return this.#session.frameRate ?? null;
   }
 
-  /** What the picture has to give up now. */
+  /** The savings in use. */
   get savings(): Savings {
-    return this.rate === null ? unjudgedSavings : levels[this.#level]!;
+    return this.rate === null ? defaultSavings : levels[this.#level]!;
   }
 
-  /** Starts a new window: what was counted does not compare with what follows. */
+  /** Starts a new window, because earlier counts are not comparable. */
   restart(): void {
     this.#last = Number.NaN;
     this.#windowStart = Number.NaN;

@@ -1,5 +1,5 @@
 import { FingerMemory } from '../core/body/finger-memory';
-import { type HandJoints, makeHandJoints, setHandJoint, shapeOfJoints } from '../core/body/hand-joints';
+import { type HandJoints, handShapeFromJoints, makeHandJoints, setHandJoint } from '../core/body/hand-joints';
 import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from '../core/body/hand-shape';
 import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
@@ -93,7 +93,7 @@ export class HandReader {
     }
     const deltaSeconds = this.#lastTime === null ? 0 : Math.max(0, time - this.#lastTime);
     this.#lastTime = time;
-    this.#memory.follow(shapeOfJoints(this.#joints, this.#seen), deltaSeconds);
+    this.#memory.follow(handShapeFromJoints(this.#joints, this.#seen), deltaSeconds);
     return wrist;
   }
 

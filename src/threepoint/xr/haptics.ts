@@ -1,14 +1,14 @@
 import type { Side } from '../core/math/side';
 
 /** A vibration for one hand: strength 0 to 1, duration in seconds. */
-export interface Pulse {
+export interface HapticPulse {
   readonly side: Side;
   readonly strength: number;
   readonly seconds: number;
 }
 
 /** Plays vibrations on the controllers; devices without an actuator stay silent. */
-export function buzz(session: XRSession, pulses: readonly Pulse[]): void {
+export function playPulses(session: XRSession, pulses: readonly HapticPulse[]): void {
   for (const { side, strength, seconds } of pulses) {
     for (const { handedness, gamepad } of session.inputSources) {
       if (handedness !== side) continue;

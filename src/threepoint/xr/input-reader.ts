@@ -1,4 +1,4 @@
-import { type HandShape, makeHandShape, shapeOfClosing } from '../core/body/hand-shape';
+import { type HandShape, handShapeFromClosing, makeHandShape } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
 import type { TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
@@ -183,7 +183,7 @@ export class InputReader {
   #shapeOf(source: XRInputSource, side: Side, time: number): HandShape {
     if (hasJoints(source)) return this.#handReaders[side].shape;
     if (kindOf(source) === 'controller') return this.#controllerFingers[side].read(source.gamepad, time);
-    return shapeOfClosing({ ...openHand, pinch: this.#selected(source) }, this.#plainFingers[side]);
+    return handShapeFromClosing({ ...openHand, pinch: this.#selected(source) }, this.#plainFingers[side]);
   }
 
   #deviceOf(source: XRInputSource): number {

@@ -1,4 +1,4 @@
-import { MovedPointer, type Pointer, type PointerSource } from '../core/input/pointer';
+import { MutablePointer, type Pointer, type PointerSource } from '../core/input/pointer';
 import { isFinitePose } from '../core/math/pose';
 import { rotate } from '../core/math/quat';
 import { forward, setVec3, type Vec3 } from '../core/math/vec3';
@@ -10,10 +10,10 @@ function sourceOf({ targetRayMode, hand }: XRInputSource): PointerSource {
 
 /** Reads the pointers of a session: the rays, finger tips and select events of its input sources. */
 export class PointerReader {
-  readonly #known = new WeakMap<XRInputSource, MovedPointer>();
+  readonly #known = new WeakMap<XRInputSource, MutablePointer>();
   /** The pointers of the newest frame. */
-  #now: MovedPointer[] = [];
-  #before: MovedPointer[] = [];
+  #now: MutablePointer[] = [];
+  #before: MutablePointer[] = [];
   /** The sources that select now, and those that began to since the last frame. */
   readonly #selecting = new Set<XRInputSource>();
   readonly #began = new Set<XRInputSource>();
@@ -66,11 +66,11 @@ export class PointerReader {
     this.#began.clear();
   }
 
-  #pointerOf(source: XRInputSource): MovedPointer {
+  #pointerOf(source: XRInputSource): MutablePointer {
     const known = this.#known.get(source);
     if (known) return known;
     const side = source.handedness === 'none' ? null : source.handedness;
-    const pointer = new MovedPointer(sourceOf(source), side);
+    const pointer = new MutablePointer(sourceOf(source), side);
     this.#known.set(source, pointer);
     return pointer;
   }

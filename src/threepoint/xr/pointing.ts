@@ -16,7 +16,7 @@ export interface InputFrame {
   readonly head: Pose<'floor'> | null;
 }
 
-/** What a frame shows of the hand of an input source; the next source may overwrite it. */
+/** The hand of an input source in a frame; the next source may overwrite it. */
 export interface PointingHand {
   /** Null: not seen. */
   wrist: Pose<'floor'> | null;
@@ -29,11 +29,11 @@ export interface PointingHand {
 }
 
 /**
- * Reads what the input sources of a session point at and press, what they ask of the page, and which hands belong to
- * the device. A page without a menu in the headset does without it.
+ * Reads the pointers and commands of a session's input sources, and which hands the device uses itself. A page without
+ * a menu in the headset does not need it.
  */
 export class Pointing {
-  /** What devices ask of the page besides pointing. */
+  /** The commands of devices besides pointing. */
   readonly commands = new DeviceCommands();
   /** The time of the newest frame in which a hand or a controller was seen [s]; −∞: none was. */
   handsSeenAt = Number.NEGATIVE_INFINITY;

@@ -52,7 +52,7 @@ export class TrackedSession {
   #recentred: { readonly space: XRReferenceSpace; readonly before: XRReferenceSpace | null } | null = null;
   readonly #floorPose = makePose();
   #lastHead: Pose<'floor'> | null = null;
-  /** How much higher the user stands than the device reports [m]. */
+  /** The height by which the user is raised above the reported one [m]. */
   #raised = 0;
   readonly #onReset = () => {
     this.#lastHead = null;
@@ -144,16 +144,13 @@ export class TrackedSession {
     this.#options.onDiscontinuity?.();
   }
 
-  /** How much higher the user stands than the device reports [m]. */
-  get raised(): number {
+  /** The height by which the user is raised above the reported one [m]. */
+  get heightOffset(): number {
     return this.#raised;
   }
 
-  /**
-   * Overrides the height of the user: the floor lies this far [m] below the device's own. 0: the device's height. It
-   * stays through recentring.
-   */
-  raise(height: number): void {
+  /** Sets the height offset of the user: the floor is this far [m] below the device's. Recentring keeps it. */
+  setHeightOffset(height: number): void {
     const by = height - this.#raised;
     if (!Number.isFinite(by) || by === 0) return;
     this.#raised = height;

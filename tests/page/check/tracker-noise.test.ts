@@ -1,7 +1,7 @@
 import * as fc from 'fast-check';
 import type { Pose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, multiply, type Quat } from 'threepoint/core/math/quat';
-import { normalNumbers, randomNumbers } from 'threepoint/core/math/random';
+import { createNormalRandom, createRandom } from 'threepoint/core/math/random';
 import { length, normalise, vec3 } from 'threepoint/core/math/vec3';
 import { type NoiseFigures, TrackerNoise } from 'threepoint-page/check/tracker-noise';
 import { expect, test } from 'vitest';
@@ -41,7 +41,7 @@ function poseOf(held: Held, time: number, noise: readonly number[]): Pose<'floor
 
 function figuresOf(held: Held): NoiseFigures | null {
   const { rateHz, mm, degrees, smoothing = 0, seed = 7, skip = () => false } = held;
-  const normal = normalNumbers(seed);
+  const normal = createNormalRandom(seed);
   const recorder = new TrackerNoise();
   const sizes = [mm, mm, mm]
     .map((each) => each / 1000)
@@ -101,7 +101,7 @@ test('noise that the device smooths is larger at a lag of 0.1 s than from frame 
 });
 
 test('a glance aside, dropped frames and a pause change nothing', () => {
-  const random = randomNumbers(3);
+  const random = createRandom(3);
   const held = { rateHz: 72, mm: 0.2, degrees: 0.05 };
   const disturbed = figuresOf({
     ...held,

@@ -1,4 +1,4 @@
-import type { BuiltInBody } from 'threepoint/core/body/avatar-ref';
+import type { BuiltInBody } from 'threepoint/core/body/built-in-bodies';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { Settings } from 'threepoint-page/shell/settings';

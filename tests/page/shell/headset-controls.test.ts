@@ -1,7 +1,7 @@
 import { Group, Vector3 } from 'three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { GazePointer } from 'threepoint/core/input/gaze-pointer';
-import { MovedPointer, type Pointer } from 'threepoint/core/input/pointer';
+import { MutablePointer, type Pointer } from 'threepoint/core/input/pointer';
 import { fromAxes, identity } from 'threepoint/core/math/quat';
 import type { Ray } from 'threepoint/core/math/ray';
 import { vec3 } from 'threepoint/core/math/vec3';
@@ -40,9 +40,9 @@ const turnedToFace = fromAxes(
 );
 
 /** A hand that points from before the menu at this point of the world [m], its trigger just pressed. */
-function handAt(target: Vector3, pressed = true): MovedPointer {
+function handAt(target: Vector3, pressed = true): MutablePointer {
   const origin = new Vector3(0, 1.4, 0);
-  const hand = new MovedPointer('controller', 'right');
+  const hand = new MutablePointer('controller', 'right');
   hand.setRay(origin, target.clone().sub(origin).normalize());
   hand.pressed = pressed;
   return hand;
@@ -269,7 +269,7 @@ describe('without a controller', () => {
     expect(at.distanceTo(new Vector3(0, 1.6, 0))).toBeLessThan(0.6);
     // A finger tip reaches and presses it there.
     menu.updateWorldMatrix(true, true);
-    const poke = new MovedPointer('hand', 'left');
+    const poke = new MutablePointer('hand', 'left');
     poke.setRay(vec3(0, 1, 0), vec3(0, 1, 0));
     hands.push(poke);
     for (const before of [0.1, 0.05, -0.01]) {
@@ -290,7 +290,7 @@ describe('without a controller', () => {
     const [button] = controls.objects[2].children;
     expect(button?.visible).toBe(true);
     const poke = (side: 'left' | 'right') => {
-      const finger = new MovedPointer('hand', side);
+      const finger = new MutablePointer('hand', side);
       finger.setRay(vec3(0, 1, 0), vec3(0, 1, 0));
       hands.splice(0, hands.length, finger);
       for (const before of [0.1, 0.03, -0.01]) {

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three';
-import { MovedPointer } from 'threepoint/core/input/pointer';
+import { MutablePointer } from 'threepoint/core/input/pointer';
 import { up, zero } from 'threepoint/core/math/vec3';
 import { stations } from 'threepoint-games/ball/stations';
 import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
@@ -119,13 +119,13 @@ describe('the other players in the headset', () => {
     const [x, y, w, h] = buttonsFor(ben)[0]?.at ?? [0, 0, 0, 0];
     /** Hands whose rays point away from the sheet. */
     const hand = (side: 'left' | 'right') => {
-      const pointer = new MovedPointer('hand', side);
+      const pointer = new MutablePointer('hand', side);
       pointer.setRay(zero, up);
       return pointer;
     };
     const [left, right] = [hand('left'), hand('right')];
     /** Puts a finger tip so far before the middle of the first button [m]. */
-    const put = (pointer: MovedPointer, before: number) => {
+    const put = (pointer: MutablePointer, before: number) => {
       menu.object.updateWorldMatrix(true, true);
       const tip = new Vector3((x + w / 2 - menuWidth / 2) / 1000, (menuHeight / 2 - y - h / 2) / 1000, before);
       pointer.setTip(sheet!.localToWorld(tip));

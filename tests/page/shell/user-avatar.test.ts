@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { type Color, type Mesh, MeshStandardMaterial, type Object3D, PropertyBinding, Scene, Vector3 } from 'three';
-import type { WorkerAnswer, WorkerQuestion } from 'threepoint/avatar/file/avatar-check-worker';
+import type { AvatarCheckRequest, AvatarCheckResponse } from 'threepoint/avatar/file/avatar-check-worker';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
 import { palettes, skinColors } from 'threepoint/avatar/palettes';
 import { FlatPartsMaterial } from 'threepoint/avatar/rig/flat-parts';
@@ -58,13 +58,13 @@ test('a body of ours keeps the colours of its seat when another takes its place,
 function checkFilesHere(...held: readonly string[]) {
   const waiting = new Map<string, () => void>();
   class Here extends EventTarget {
-    onmessage: ((event: MessageEvent<WorkerAnswer | 'ready'>) => void) | null = null;
+    onmessage: ((event: MessageEvent<AvatarCheckResponse | 'ready'>) => void) | null = null;
 
     constructor() {
       super();
       setImmediate(() => this.#post('ready'));
     }
-    postMessage({ bytes, ...question }: WorkerQuestion): void {
+    postMessage({ bytes, ...question }: AvatarCheckRequest): void {
       const check = () => checkAvatar(bytes, question).then((checked) => this.#post({ checked }));
       if (held.includes(question.name)) waiting.set(question.name, check);
       else void check();
@@ -72,7 +72,7 @@ function checkFilesHere(...held: readonly string[]) {
     terminate(): void {
       // It ends with its only question.
     }
-    #post(data: WorkerAnswer | 'ready'): void {
+    #post(data: AvatarCheckResponse | 'ready'): void {
       this.onmessage?.(new MessageEvent('message', { data }));
     }
   }

@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { initialPlayoutOffset, longestExtrapolation, type PlaybackReport } from 'threepoint-rooms/client/playback';
@@ -94,7 +94,7 @@ describe('playback of others', () => {
 
   test('100 ms ± 30 ms with 2 % of losses: less than one freeze over 250 ms a minute', () => {
     const minutes = isNightly ? 60 : 5;
-    const chance = randomNumbers(20261121);
+    const chance = createRandom(20261121);
     // What TCP makes of a loss: three later segments report it, and everything behind it waits for it to be sent again.
     const badWay = () => 0.1 + 0.06 * (chance() - 0.5) + (chance() < 0.02 ? 0.2 + 3 / 30 : 0);
     const measure = (name: string, transit: () => number) => {

@@ -1,7 +1,7 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { distance } from 'threepoint/core/math/vec3';
 import { maxPeerPacketBytes, peerPacketVersion } from 'threepoint-rooms/peers/peer-packet';
 import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
@@ -221,7 +221,7 @@ test('mutated and random packets never throw, and show nobody who is not finite'
 }, () => {
   const { until, sent } = sending();
   until(1000, { placement: { position: { x: 1, y: 0, z: 1 }, heading: 1 } });
-  const chance = randomNumbers(47);
+  const chance = createRandom(47);
   const below = (end: number) => Math.floor(chance() * end);
   const some = () => sent[below(sent.length)]!.bytes.slice();
   const ways: readonly (() => Uint8Array)[] = [

@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
-import { builtInAvatarOf, builtInBodies, plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { builtInAvatarOf, builtInBodies, defaultAvatar, skinTones } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import {
@@ -30,7 +30,7 @@ const join = {
   spectate: false,
   bot: false,
   seat: null,
-  avatar: plainAvatar,
+  avatar: defaultAvatar,
   voice: null,
 };
 const sdp = 'v=0\r\no=- 1 2 IN IP4 127.0.0.1\r\nm=audio 9 UDP/TLS/RTP/SAVPF 111\r\na=mid:0\r\n';
@@ -61,7 +61,7 @@ describe('control messages', () => {
       { type: 'ready', ready: true },
       { type: 'action', action: throwing },
       { type: 'sit', seat: null },
-      { type: 'wear', avatar: plainAvatar },
+      { type: 'wear', avatar: defaultAvatar },
       { type: 'wear', avatar: fileHash },
       { type: 'pause', pause: true },
       { type: 'ping', sent: 1.5 },

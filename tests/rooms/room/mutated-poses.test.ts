@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { distance } from 'threepoint/core/math/vec3';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
@@ -90,7 +90,7 @@ test('valid pose packets, changed, reach others whole or not at all, as bodies o
   timeout: 1_800_000,
 }, async () => {
   const packets = isNightly ? 1_000_000 : 50_000;
-  const chance = randomNumbers(20261126);
+  const chance = createRandom(20261126);
   const { next, below } = await mutations(chance);
   const testRoom = createTestRoom();
   testRoom.begin();

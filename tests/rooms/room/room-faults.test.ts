@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { addScaled, isFiniteVec3, vec3 } from 'threepoint/core/math/vec3';
 import { ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
 import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
@@ -22,7 +22,7 @@ const allFinite = (value: unknown): boolean => {
 
 test('fuzzed packets of every kind throw nothing and leave no NaN in any state', { tags: ['full'] }, () => {
   const packets = isNightly ? 1_000_000 : 100_000;
-  const chance = randomNumbers(20261121);
+  const chance = createRandom(20261121);
   const pick = (count: number) => Math.floor(chance() * count);
   const testRoom = createTestRoom();
   testRoom.begin();
@@ -112,7 +112,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
 
 test('actions sent twice, out of order and again later score once', { tags: ['full'] }, () => {
   const actions = 100_000;
-  const chance = randomNumbers(5);
+  const chance = createRandom(5);
   const balls = 20;
   let [sent, doubles, caught, rounds] = [0, 0, 0, 0];
   while (sent < actions) {
@@ -166,7 +166,7 @@ describe('latency', () => {
    * became of it.
    */
   function verdict(seed: number, delay: number, jitter: number): string {
-    const chance = randomNumbers(seed);
+    const chance = createRandom(seed);
     const [dx, dy, dz] = [0, 0, 0].map(() => (chance() - 0.5) * 0.8) as [number, number, number];
     const aim = vec3(opening.x + dx * 0.6, opening.y + dy * 0.3, opening.z + dz * 0.6);
     const flight = 0.8 + 0.5 * chance();
@@ -174,7 +174,7 @@ describe('latency', () => {
     const basketAt = (time: number) =>
       addScaled(opening, vec3(1, 0, 0), sway.x * Math.sin(sway.speed * time + sway.phase));
     // How late each message is must not change what the throw was.
-    const late = randomNumbers(seed + 1_000_003);
+    const late = createRandom(seed + 1_000_003);
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);

@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
@@ -21,7 +21,7 @@ export const joinRequest = (more: Partial<JoinRequest> = {}): JoinRequest => ({
   spectate: false,
   bot: false,
   seat: null,
-  avatar: plainAvatar,
+  avatar: defaultAvatar,
   voice: null,
   ...more,
 });

@@ -1,6 +1,6 @@
 import { setTimeout as after } from 'node:timers/promises';
 import fc from 'fast-check';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
@@ -27,7 +27,7 @@ const joining = JSON.stringify({
   spectate: false,
   bot: false,
   seat: null,
-  avatar: plainAvatar,
+  avatar: defaultAvatar,
   voice: { session: 'session-one', muted: false },
 });
 

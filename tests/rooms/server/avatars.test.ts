@@ -1,6 +1,6 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { request as httpRequest } from 'node:http';
-import { mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
+import { maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
@@ -126,7 +126,7 @@ const refused: readonly (readonly [string, Uint8Array, string | null, number, Re
   ['a web page', Buffer.from('<!doctype html><script>alert(1)</script>'), null, 422, /not a VRM or GLB/],
   ['half a body', file().subarray(0, 9000), null, 422, /not a VRM or GLB/],
   ['nothing', new Uint8Array(), null, 422, /not a VRM or GLB/],
-  ['more than 20 MB', new Uint8Array(mostAvatarBytes + 1), null, 413, /larger than 20971520 bytes/],
+  ['more than 20 MB', new Uint8Array(maxAvatarBytes + 1), null, 413, /larger than 20971520 bytes/],
   ['more than there is place for', new Uint8Array(9 * megabyte), null, 507, /no space/],
 ];
 

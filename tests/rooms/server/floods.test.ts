@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { lobbyNamespace } from 'threepoint-rooms/server/lobby/lobby-publisher';
@@ -72,7 +72,7 @@ test('a guest who joins a thousand times a second under other names is thrown ou
   const join = { type: 'join', version: protocolVersion, calibration: defaultCalibration, spectate: false, bot: false };
   const started = performance.now();
   for (let i = 0; i < 250; i++)
-    guest.say({ ...join, name: `<b>${i}</b>`, seat: null, avatar: plainAvatar, voice: null });
+    guest.say({ ...join, name: `<b>${i}</b>`, seat: null, avatar: defaultAvatar, voice: null });
   await until('the end of the one with many names', () => guest.closedAt !== null, 5);
   expect(performance.now() - started).toBeLessThan(1000);
   expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'misbehaved' });

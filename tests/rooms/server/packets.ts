@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { poseBytes } from './running-relay';
 
 // What a client may send over the relay's WebSocket, by a grammar of what is right and what is not: each part is right
@@ -48,7 +48,7 @@ const message = fc.oneof(
   fc.record({ type: fc.constant('away'), away: fc.boolean() }),
   fc.record({ type: fc.constant('pause'), pause: fc.boolean() }),
   fc.record({ type: fc.constant('sit'), seat: fc.option(fc.nat(20)) }),
-  fc.record({ type: fc.constant('wear'), avatar: fc.constantFrom(plainAvatar, 'woman-tan', 'A'.repeat(43), 'none') }),
+  fc.record({ type: fc.constant('wear'), avatar: fc.constantFrom(defaultAvatar, 'woman-tan', 'A'.repeat(43), 'none') }),
   fc.record({
     type: fc.constant('calibration'),
     calibration: fc.record({ eyeHeight: fc.double(), armSpan: fc.double(), forearm: fc.double() }),

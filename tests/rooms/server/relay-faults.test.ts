@@ -1,6 +1,6 @@
 // @module-tag full
 
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { nextRandom } from 'threepoint/core/math/random';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
@@ -240,7 +240,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
           spectate: false,
           bot: false,
           seat: null,
-          avatar: plainAvatar,
+          avatar: defaultAvatar,
           voice: null,
         };
         const message = { ...join, calibration: { eyeHeight: 1.6, armSpan: 1.5 } };

@@ -1,5 +1,5 @@
 import { io, type Socket } from 'socket.io-client';
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
@@ -164,7 +164,7 @@ export async function rawGuest(url: string, room: string, token?: string) {
       spectate: false,
       bot: false,
       seat: null,
-      avatar: plainAvatar,
+      avatar: defaultAvatar,
       voice: null,
     }),
   );

@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { assignedSeat } from 'threepoint-page/ball/match/ball-connections';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';
@@ -63,7 +63,7 @@ test('participants who were invited meet in the room of their trial, each on the
   for (const { room } of connections) expect(room?.seats.map((seat) => seat?.name)).toEqual(group);
   // Settings that people bring along would identify them.
   for (const { room } of connections)
-    expect(room?.seats.map((seat) => seat?.avatar)).toEqual(group.map(() => plainAvatar));
+    expect(room?.seats.map((seat) => seat?.avatar)).toEqual(group.map(() => defaultAvatar));
   expect(await (await fetch(`${origin}/api/rooms`)).json()).toMatchObject({ rooms: [] });
 });
 

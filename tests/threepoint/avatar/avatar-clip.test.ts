@@ -3,7 +3,7 @@ import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } f
 import { validateBytes } from 'gltf-validator';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
+import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
 import { turnPoint } from 'threepoint/core/motion/skeleton';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
@@ -36,7 +36,7 @@ describe.each([
   test.each(Object.entries(people))(
     'moves in three.js as pixiv’s player moves the same avatar by our VRM Animation: the %s person, within 1 mm and 0.1°',
     async (_, { motion }) => {
-      const bytes = bytesOf((await avatarClip(avatar(), 'me.vrm')).write(motion));
+      const bytes = bytesOf((await createAvatarMotionWriter(avatar(), 'me.vrm')).write(motion));
       const ours = await load(bytes.buffer, false);
       const playOurs = playerOf(ours.scene, ours.animations[0]!);
       const vrm = (await load(avatar(), true)).userData.vrm as VRM;
@@ -71,7 +71,9 @@ describe('an avatar with a clip', () => {
 
   test('that stood with its arms down, in centimetres, points them where the person’s are', async () => {
     const file = builtRig({ nameOf: (bone) => bone, armsDown: 50, unit: 100 });
-    const bytes = bytesOf((await avatarClip(file, 'person.glb', { bones: namesOf(motion) })).write(motion));
+    const bytes = bytesOf(
+      (await createAvatarMotionWriter(file, 'person.glb', { bones: namesOf(motion) })).write(motion),
+    );
     const { scene, animations } = await load(bytes.buffer, false);
     const play = playerOf(scene, animations[0]!);
     const nodes = nodesOf(scene);
@@ -89,7 +91,7 @@ describe('an avatar with a clip', () => {
   });
 
   test('keeps what is in its file, and has no fault for the validator that its file had not', async () => {
-    const bytes = bytesOf((await avatarClip(mannequin(), 'me.vrm')).write(motion));
+    const bytes = bytesOf((await createAvatarMotionWriter(mannequin(), 'me.vrm')).write(motion));
     const faults = async (file: Uint8Array) => {
       const { issues, info } = await validateBytes(file, { format: 'glb', writeTimestamp: false });
       return { info, codes: new Set(issues.messages.filter(({ severity }) => severity < 2).map(({ code }) => code)) };
@@ -102,8 +104,10 @@ describe('an avatar with a clip', () => {
   });
 
   test('is refused in a sentence where the file is no avatar', async () => {
-    await expect(avatarClip(new ArrayBuffer(40), 'me.vrm')).rejects.toThrow(/^me.vrm: not a VRM or GLB file/);
-    await expect(avatarClip(mannequin().slice(0, 90_000), 'me.vrm')).rejects.toThrow(/^me.vrm: /);
+    await expect(createAvatarMotionWriter(new ArrayBuffer(40), 'me.vrm')).rejects.toThrow(
+      /^me.vrm: not a VRM or GLB file/,
+    );
+    await expect(createAvatarMotionWriter(mannequin().slice(0, 90_000), 'me.vrm')).rejects.toThrow(/^me.vrm: /);
   });
 });
 

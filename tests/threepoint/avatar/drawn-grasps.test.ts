@@ -1,6 +1,6 @@
 import type { Vector3 } from 'three';
 import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
-import type { Holding } from 'threepoint/avatar/hands/hold-object';
+import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import { fingerBoneNames } from 'threepoint/core/body/finger-bone-names';
 import { distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
 import { type FingerName, fingerNames, type MutableHandShape } from 'threepoint/core/body/hand-shape';
@@ -28,7 +28,7 @@ const sides = ['left', 'right'] as const;
 /** A thing in one hand: how hands close round it, and how far a place is from what a finger may not go through [m]. */
 interface Thing {
   readonly wrists: Readonly<Record<Side, Pose<'floor'>>>;
-  grasp(holding: Holding, side: Side, wrist: Pose<'floor'>, target: MutableHandShape): void;
+  grasp(holding: ObjectHolds, side: Side, wrist: Pose<'floor'>, target: MutableHandShape): void;
   distance(side: Side, at: Vec3, finger: FingerName | 'palm'): number;
 }
 

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { SkinnedMesh, Vector3 } from 'three';
 import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import { Holding } from 'threepoint/avatar/hands/hold-object';
+import { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { type MutableHandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { makePose, type Pose } from 'threepoint/core/math/pose';
@@ -15,7 +15,7 @@ const steps = 4;
 
 type Wrists = Readonly<Record<Side, Pose<'floor'>>>;
 /** Closes a hand round something. */
-type Grasp = (holding: Holding, side: Side, wrist: Pose<'floor'>, target: MutableHandShape) => void;
+type Grasp = (holding: ObjectHolds, side: Side, wrist: Pose<'floor'>, target: MutableHandShape) => void;
 
 /** Loads a built-in body for that person. */
 export async function builtInBody(body: string): Promise<Avatar> {
@@ -43,7 +43,7 @@ const ofHand = /Hand$|Thumb|Index|Middle|Ring|Little/;
 
 /** The skin of both hands where they hold something. */
 export function drawnHands(avatar: Avatar, wrists: Wrists, grasp: Grasp): DrawnSkin {
-  const holding = new Holding();
+  const holding = new ObjectHolds();
   for (const side of sides) {
     const shape = makeHandShape();
     holding.fitTo(side, avatar.handGeometry(side), wearer.eyeHeight);

@@ -1,8 +1,8 @@
 import { deflateSync } from 'node:zlib';
-import { avatarClip } from 'threepoint/avatar/avatar-motion-writer';
+import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
-import { MotionWithoutBody } from 'threepoint/avatar/file/motion-only-error';
+import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
+import { MotionOnlyError } from 'threepoint/avatar/file/motion-only-error';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { builtFbx } from './built-fbx';
@@ -19,7 +19,7 @@ const forms = [
   ['binary', (nodes: readonly FbxNode[]) => fbxBinary(nodes)],
   ['packed binary', packed],
 ] as const;
-const check = (bytes: ArrayBuffer) => checkAvatar(bytes, { name, unpacked: [] });
+const check = (bytes: ArrayBuffer) => checkAvatar(bytes, { name, supportedCompressions: [] });
 const wave = {
   leftUpperArm: Array.from({ length: 40 }, (_, frame) => [0, 0, -frame] as const),
   rightLowerArm: Array.from({ length: 40 }, (_, frame) => [0, 4 * frame, 0] as const),
@@ -35,7 +35,7 @@ describe.each(forms)('FBX as %s', (_, write) => {
   });
 
   test('of bones and their motion alone is motion', async () => {
-    await expect(check(write(builtFbx({ nameOf, bare: true, turns: wave })))).rejects.toThrow(MotionWithoutBody);
+    await expect(check(write(builtFbx({ nameOf, bare: true, turns: wave })))).rejects.toThrow(MotionOnlyError);
   });
 
   test('of bones alone is refused', async () => {
@@ -43,7 +43,7 @@ describe.each(forms)('FBX as %s', (_, write) => {
   });
 
   test('keeps its motion as one clip', async () => {
-    const glb = await glbOfFile(write(builtFbx({ nameOf, turns: wave })), name, 'motion');
+    const glb = await convertToGlb(write(builtFbx({ nameOf, turns: wave })), name, 'motion');
     const { json } = partsOf(new Uint8Array(glb));
     const [clip, ...others] = json.animations as { channels: { target: { node: number; path: string } }[] }[];
     expect(others).toEqual([]);
@@ -90,7 +90,7 @@ test.each([
 });
 
 test('an FBX avatar takes motion as GLB', async () => {
-  const writer = await avatarClip(packed(builtFbx({ nameOf })), name);
+  const writer = await createAvatarMotionWriter(packed(builtFbx({ nameOf })), name);
   expect(writer.extension).toBe('glb');
 });
 

@@ -1,4 +1,4 @@
-import { Holding } from 'threepoint/avatar/hands/hold-object';
+import { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from 'threepoint/core/body/hand-geometry';
 import { fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { type Pose, transformPoint } from 'threepoint/core/math/pose';
@@ -17,7 +17,7 @@ const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
 test('both hands of a holder lie round the basket’s rim: no fingertip is in the basket but the thumbs’, which go over the rim', () => {
   const opening = basketInHands(wrists.left, wrists.right)!;
   const rim = { at: opening.position, normal: opening.normal, radius: basketRadius, tube: rimTube };
-  const holding = new Holding();
+  const holding = new ObjectHolds();
   const hand = averageHand(1.59);
   for (const side of ['left', 'right'] as const) {
     holding.fitTo(side, null, 1.59);
@@ -37,7 +37,7 @@ test('both hands of a holder lie round the basket’s rim: no fingertip is in th
 });
 
 test('a thing that does not move in its hand is held the same way, wherever the hand is', () => {
-  const holding = new Holding();
+  const holding = new ObjectHolds();
   const [first, second] = [makeHandShape(), makeHandShape()];
   for (const [shape, x] of [
     [first, 0],
@@ -60,7 +60,7 @@ test('an avatar’s own fingers close round a ball: long and short ones both lie
   const radius = 0.075;
   for (const size of [0.75, 1, 1.3]) {
     const own = scaledHand(averageHand(1.59), size);
-    const holding = new Holding();
+    const holding = new ObjectHolds();
     holding.fitTo('left', own, 1.59);
     const wrist = { position: vec3(0, 0, 0), orientation: identity };
     const shape = makeHandShape();

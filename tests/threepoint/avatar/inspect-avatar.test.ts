@@ -1,6 +1,7 @@
+import { avatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
 import { imageSize } from 'threepoint/avatar/file/image-size';
-import { avatarLimits, inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
+import { inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
 import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
 import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { afterAll, describe, expect, test } from 'vitest';
@@ -249,7 +250,7 @@ describe('a compressed body', () => {
 });
 
 /** Opens a file with the check that the page's worker runs. */
-const checked = (bytes: ArrayBuffer) => checkAvatar(bytes, { name: 'person.vrm', unpacked: [] });
+const checked = (bytes: ArrayBuffer) => checkAvatar(bytes, { name: 'person.vrm', supportedCompressions: [] });
 const opened = async (bytes: ArrayBuffer) => parseChecked(await checked(bytes), 'person.vrm');
 
 /** Well within every limit, and wrong all the same. */
@@ -297,7 +298,7 @@ describe('the Khronos validator', () => {
 
 test('the large file that the benchmark loads is taken', async () => {
   const file = largeAvatar({ pictures: 1, layers: 1, shapes: 40, mtoon: true });
-  expect((await checkAvatar(file, { name: 'measured.vrm', unpacked: [] })).packed).toEqual([]);
+  expect((await checkAvatar(file, { name: 'measured.vrm', supportedCompressions: [] })).usedCompressions).toEqual([]);
 });
 
 describe('the size of a picture', () => {

@@ -1,6 +1,6 @@
 import { deflateSync } from 'node:zlib';
 import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
-import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
+import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
 import { readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import type { BoneName } from 'threepoint/core/humanoid/bones';
 import { prepareMocap, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
@@ -64,7 +64,7 @@ test.each([
 });
 
 test('so is the clip of a GLB, the longest of several', async () => {
-  const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   await expectTruth(glb, 'wave.glb');
   const { json, binary } = partsOf(new Uint8Array(glb));
   json.buffers[0]!.uri = `data:application/octet-stream;base64,${Buffer.from(binary).toString('base64')}`;
@@ -87,7 +87,7 @@ test('so is the clip of a GLB, the longest of several', async () => {
 });
 
 test('a skin that was bound in T-pose counts as rest where the file shows another pose', async () => {
-  const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   const posed = changed(
     (json) => {
       const arm = json.nodes.find(({ name }) => name === 'mixamorig:LeftArm') as { rotation?: number[] };
@@ -100,7 +100,7 @@ test('a skin that was bound in T-pose counts as rest where the file shows anothe
 });
 
 test('a skin that was bound to ends of chains that lie a hundredfold off is read all the same', async () => {
-  const glb = await glbOfFile(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   const { json, binary } = partsOf(new Uint8Array(glb));
   const skin = json.skins[0]! as { joints: number[]; inverseBindMatrices: number };
   const { byteOffset = 0 } = json.bufferViews[json.accessors[skin.inverseBindMatrices]!.bufferView!]!;
@@ -123,7 +123,7 @@ test('numbers in another file are refused in a sentence', async () => {
 
 test('a file without a clip is refused in a sentence', async () => {
   const glb = await readGltfMotion(
-    await glbOfFile(fbxBinary(builtFbx({ nameOf: options.nameOf })), 'a.fbx', 'motion'),
+    await convertToGlb(fbxBinary(builtFbx({ nameOf: options.nameOf })), 'a.fbx', 'motion'),
     'a.glb',
   );
   expect(() => finishWork(prepareMocap({ name: 'a.glb', ...glb }))).toThrow('a.glb: there is no animation in it');

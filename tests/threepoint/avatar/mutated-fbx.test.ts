@@ -1,7 +1,7 @@
 import { deflateSync } from 'node:zlib';
-import { glbOfFile } from 'threepoint/avatar/file/convert-to-glb';
+import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { releaseMemory } from '../../collect-garbage';
 import { reportFigures } from '../../reliability/report-figures';
@@ -78,7 +78,7 @@ test('what is held of a file of several MB with packed arrays is a few times its
     const { heapUsed, arrayBuffers } = process.memoryUsage();
     return heapUsed + arrayBuffers;
   };
-  const chance = randomNumbers(48);
+  const chance = createRandom(48);
   const turned = Array.from({ length: 30_000 }, () => [chance(), chance(), chance()] as const);
   const large = fbxBinary(
     builtFbx({
@@ -88,9 +88,9 @@ test('what is held of a file of several MB with packed arrays is a few times its
     deflateSync,
   );
   expect(large.byteLength).toBeGreaterThan(3e6);
-  await glbOfFile(whole[0]!, name, 'motion');
+  await convertToGlb(whole[0]!, name, 'motion');
   const before = held();
-  const read = await glbOfFile(large, name, 'motion');
+  const read = await convertToGlb(large, name, 'motion');
   expect(held() - before).toBeLessThan(6 * large.byteLength);
   expect(read.byteLength).toBeGreaterThan(1e6);
 });
@@ -104,15 +104,15 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   vi.spyOn(console, 'error').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
-  const spoil = spoilers(randomNumbers(20261127));
+  const spoil = spoilers(createRandom(20261127));
   const counts = { 'FBX refused': 0, 'FBX read': 0 };
   // What the reader holds once it has been loaded is no multiple of a file.
-  await glbOfFile(whole[0]!, name, 'body');
+  await convertToGlb(whole[0]!, name, 'body');
   const costs = new ReadingCosts(releaseMemory);
   for (let i = 0; i < files; i++) {
     const file = spoil();
     const parts: SceneParts = i % 2 === 0 ? 'body' : 'motion';
-    const read = await costs.measure(file.byteLength, () => glbOfFile(file, name, parts));
+    const read = await costs.measure(file.byteLength, () => convertToGlb(file, name, parts));
     if (read instanceof Error) {
       expect(read.message, `file ${i}`).toMatch(/^person\.fbx: cannot be read as FBX \(.+\)$/s);
       counts['FBX refused'] += 1;

@@ -1,8 +1,8 @@
 import type { Object3D } from 'three';
+import { untrustedAvatarLimits } from 'threepoint/avatar/file/avatar-limits';
 import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { seenAvatarLimits } from 'threepoint/avatar/file/inspect-avatar';
 import { parseChecked } from 'threepoint/avatar/load-avatar';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';
@@ -94,7 +94,7 @@ test.each([
   ['VRM 1.0', smallVrm],
   ['VRM 0.x', smallOldVrm],
 ])('a small %s is read', async (_, file) => {
-  const { vrm } = await parseChecked(await checkAvatar(file, { name, unpacked: [] }), name);
+  const { vrm } = await parseChecked(await checkAvatar(file, { name, supportedCompressions: [] }), name);
   expect(vrm.humanoid.getRawBoneNode('head')).not.toBeNull();
 });
 
@@ -105,13 +105,13 @@ test('files of avatars, spoiled, are refused in a sentence or read as a body of 
   // The reader warns of what it passes over.
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
-  const spoil = spoilers(randomNumbers(20261126));
+  const spoil = spoilers(createRandom(20261126));
   const counts = { refused: 0, 'refused by the reader': 0, read: 0 };
   const [checking, building] = [new ReadingCosts(), new ReadingCosts()];
   for (let i = 0; i < files; i++) {
     const bytes = spoil();
     const size = bytes.byteLength;
-    const options = { name, unpacked: [], limits: seenAvatarLimits };
+    const options = { name, supportedCompressions: [], limits: untrustedAvatarLimits };
     const checked = await checking.measure(size, () => checkAvatar(bytes, options));
     if (checked instanceof Error) {
       expect(checked.message, `file ${i}`).toMatch(/^person\.vrm: /);

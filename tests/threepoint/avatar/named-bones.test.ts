@@ -6,7 +6,7 @@ import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
-import { UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import { UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { BoneChoices } from 'threepoint-page/bones/bone-choices';
@@ -48,12 +48,12 @@ const expectSame = (a: Vec3 | undefined, b: Vec3 | undefined) =>
   expect(a && b ? distance(a, b) : 'one of them is not drawn').toBeLessThan(1e-9);
 
 /** How a file's names are refused. */
-async function refusalOf(file: ArrayBuffer): Promise<UnknownBones> {
+async function refusalOf(file: ArrayBuffer): Promise<UnknownBonesError> {
   const error = await parseAvatar(file, 'person.glb').then(
     () => null,
     (reason: unknown) => reason,
   );
-  if (!(error instanceof UnknownBones)) throw new Error(`expected names that tell nothing, not ${error}`);
+  if (!(error instanceof UnknownBonesError)) throw new Error(`expected names that tell nothing, not ${error}`);
   return error;
 }
 

@@ -152,7 +152,7 @@ describe('a body of rigid parts', () => {
 describe('a file with what no one reads is taken', () => {
   const taken = async (change: (json: GltfJson) => void) => {
     const file = changed(change, new Uint8Array(), new Uint8Array(builtRig({ nameOf })));
-    const checked = await checkAvatar(file, { name: 'person.glb', unpacked: [] });
+    const checked = await checkAvatar(file, { name: 'person.glb', supportedCompressions: [] });
     expectBody(wear(await parseChecked(checked, 'person.glb')));
   };
 

@@ -1,4 +1,5 @@
-import { Pace, reflectionSize } from 'threepoint/avatar/reflection-size';
+import { FramePacer } from 'threepoint/avatar/frame-pacer';
+import { reflectionSize } from 'threepoint/avatar/reflection-size';
 import { describe, expect, test } from 'vitest';
 
 /** Height to width of the page's mirror. */
@@ -25,7 +26,7 @@ describe('the reflection of a mirror', () => {
 
 describe('the pace of reflections', () => {
   /** Returns how many frames of ten seconds at a rate are due, and the longest wait between two of them [s]. */
-  function tenSeconds(pace: Pace, frameHz: number): { readonly due: number; readonly longest: number } {
+  function tenSeconds(pace: FramePacer, frameHz: number): { readonly due: number; readonly longest: number } {
     let due = 0;
     let last = 0;
     let longest = 0;
@@ -41,7 +42,7 @@ describe('the pace of reflections', () => {
   }
 
   test.each([72, 80, 90, 120])('is 36 a second in frames of %i Hz', (frameHz) => {
-    const pace = new Pace();
+    const pace = new FramePacer();
     pace.rateHz = 36;
     const { due, longest } = tenSeconds(pace, frameHz);
     expect(due).toBeGreaterThanOrEqual(355);
@@ -50,14 +51,14 @@ describe('the pace of reflections', () => {
   });
 
   test('is that of the frames where they are slower, or where it has no bound', () => {
-    const pace = new Pace();
+    const pace = new FramePacer();
     expect(tenSeconds(pace, 72).due).toBe(720);
     pace.rateHz = 36;
     expect(tenSeconds(pace, 30).due).toBe(300);
   });
 
   test('starts at once after a pause, a restart and a clock that was set back', () => {
-    const pace = new Pace();
+    const pace = new FramePacer();
     pace.rateHz = 36;
     expect(pace.isDue(100)).toBe(true);
     expect(pace.isDue(100.01)).toBe(false);

@@ -4,15 +4,14 @@ import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
 import { FlatPartsMaterial } from 'threepoint/avatar/rig/flat-parts';
+import type { AvatarHash, AvatarRef } from 'threepoint/core/body/avatar-ref';
 import {
-  type AvatarHash,
-  type AvatarRef,
   type BuiltInBody,
   bodyOf,
   builtInAvatarOf,
+  defaultAvatar,
   isBuiltInAvatar,
-  plainAvatar,
-} from 'threepoint/core/body/avatar-ref';
+} from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
@@ -36,7 +35,7 @@ const estimator = createIk(defaultCalibration);
 const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
   id,
   calibration: defaultCalibration,
-  avatar: plainAvatar,
+  avatar: defaultAvatar,
   palette: 'ember',
   pose: poseOf(estimator, actorFrame(9.5, defaultCalibration)),
   placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
@@ -164,9 +163,9 @@ describe('an avatar that could not be had', () => {
 
   test('for a fault that passes is shown once it has loaded, and no mannequin is reported', async () => {
     const { others, told, show, asked } = wearing([new TransientError('the server answers 404'), null]);
-    await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
+    await show(0, () => asked() === 1 && others.drawnAs(1) === defaultAvatar);
     await show(4, () => asked() > 1, 100);
-    expect([asked(), others.drawnAs(1)]).toEqual([1, plainAvatar]);
+    expect([asked(), others.drawnAs(1)]).toEqual([1, defaultAvatar]);
     await show(6, () => others.drawnAs(1) === file);
     expect([asked(), others.drawnAs(1)]).toEqual([2, file]);
     expect(told).toEqual([]);
@@ -181,7 +180,7 @@ describe('an avatar that could not be had', () => {
 
   test('for its own faults is reported at once and not requested again', async () => {
     const { others, told, show, asked } = wearing([new Error('no humanoid')]);
-    await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
+    await show(0, () => asked() === 1 && others.drawnAs(1) === defaultAvatar);
     await show(60, () => asked() > 1, 100);
     expect([asked(), told]).toEqual([1, ['no humanoid']]);
   });

@@ -1,7 +1,7 @@
 import { type Mesh, type MeshStandardMaterial, Texture } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { viewsOfFile } from 'threepoint/avatar/file/blob-buffer-views';
-import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { blobBufferViews } from 'threepoint/avatar/file/blob-buffer-views';
+import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
 import { describe, expect, test, vi } from 'vitest';
 import { glbOf, padded } from './glb';
 
@@ -80,9 +80,9 @@ function readPicture(
 async function loaded(file: ArrayBuffer) {
   // The loader asks the window for addresses of blobs.
   vi.stubGlobal('self', globalThis);
-  const { json, binary } = chunksOf(new Uint8Array(file))!;
+  const { json, binary } = readGlbChunks(new Uint8Array(file))!;
   const loader = new GLTFLoader();
-  loader.register(viewsOfFile(binary, new Blob([file])));
+  loader.register(blobBufferViews(binary, new Blob([file])));
   loader.register((parser) => {
     parser.textureLoader = { load: readPicture } as never;
     vi.spyOn(parser, 'loadBuffer');
@@ -112,6 +112,6 @@ describe('a file that is read in views', () => {
     const { parser } = await loaded(file);
     expect(parser.loadBuffer).not.toHaveBeenCalled();
     const whole: ArrayBuffer = await parser.getDependency('buffer', 0);
-    expect(new Uint8Array(whole)).toEqual(chunksOf(new Uint8Array(file))!.binary);
+    expect(new Uint8Array(whole)).toEqual(readGlbChunks(new Uint8Array(file))!.binary);
   });
 });

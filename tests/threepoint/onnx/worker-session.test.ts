@@ -1,5 +1,5 @@
 import { startRegressor } from 'threepoint/onnx/load-regressor';
-import type { Answer, Question } from 'threepoint/onnx/worker-messages';
+import type { WorkerRequest, WorkerResponse } from 'threepoint/onnx/worker-messages';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import { readShipped } from '../core/estimation/shipped-models';
 
@@ -12,16 +12,16 @@ afterEach(() => {
 
 /** A browser's worker with scripted answers; it records whether it still runs. */
 class ToldWorker extends EventTarget {
-  readonly #answer: (question: Question) => object;
+  readonly #answer: (question: WorkerRequest) => object;
   lives = true;
 
-  constructor(answer: (question: Question) => object) {
+  constructor(answer: (question: WorkerRequest) => object) {
     super();
     this.#answer = answer;
   }
 
-  postMessage(question: Question): void {
-    const data = { id: question.id, ...this.#answer(question) } as Answer;
+  postMessage(question: WorkerRequest): void {
+    const data = { id: question.id, ...this.#answer(question) } as WorkerResponse;
     queueMicrotask(() => this.dispatchEvent(new MessageEvent('message', { data })));
   }
 
@@ -41,12 +41,12 @@ describe('a worker for inference is not left running', () => {
     ['has other tensors', () => ({ ...names, inputNames: ['other'] }), /^learned\.onnx: has the tensors other/],
     [
       'fails at the run that warms it up',
-      (question: Question) => ('model' in question ? names : { broken: 'out of memory' }),
+      (question: WorkerRequest) => ('model' in question ? names : { broken: 'out of memory' }),
       'learned.onnx: out of memory',
     ],
     [
       'answers the run that warms it up with no numbers',
-      (question: Question) => ('model' in question ? names : { numbers: noNumbers }),
+      (question: WorkerRequest) => ('model' in question ? names : { numbers: noNumbers }),
       /^learned\.onnx: the first run gave/,
     ],
   ])('where it %s', async (_, answer, sentence) => {

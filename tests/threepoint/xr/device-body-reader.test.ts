@@ -75,7 +75,7 @@ describe('the body that a device reports', () => {
     change(headset);
     const reader = new DeviceBodyReader();
     const body = read(reader, headset);
-    expect(reader.complaint).toBeNull();
+    expect(reader.problem).toBeNull();
     for (const [index, name] of deviceJointNames.entries())
       expect([...(body ?? []).slice(3 * index, 3 * index + 3)]).toEqual([
         expect.closeTo(placeOf(name).x, 6),
@@ -112,11 +112,11 @@ describe('the body that a device reports', () => {
     const { fillPoses } = headset.frame;
     spoil(headset);
     expect(read(reader, headset)).toBeNull();
-    expect(reader.complaint).toMatch(sentence);
+    expect(reader.problem).toMatch(sentence);
     const well = headsetWithBody();
     Object.assign(headset.frame, { body: well.joints, fillPoses, getPose: ask });
     expect(read(reader, headset)).not.toBeNull();
-    expect(reader.complaint).toBeNull();
+    expect(reader.problem).toBeNull();
   });
 
   test.each<[string, (headset: ReturnType<typeof headsetWithBody>) => void]>([
@@ -144,7 +144,7 @@ describe('the body that a device reports', () => {
     change(headset);
     const reader = new DeviceBodyReader();
     const body = read(reader, headset);
-    expect(reader.complaint).toBeNull();
+    expect(reader.problem).toBeNull();
     const placeRead = (name: string) => body?.[3 * deviceJointNames.indexOf(name)];
     for (const name of Object.values(pico)) expect(placeRead(name)).toBeCloseTo(placeOf(name).x, 6);
     expect(placeRead('left-scapula')).toBeCloseTo(placeOf('left-shoulder').x, 6);
@@ -159,10 +159,10 @@ describe('the body that a device reports', () => {
       throw new DOMException('the frame is over', 'InvalidStateError');
     };
     expect(read(reader, headset)).toBeNull();
-    expect(reader.complaint).toMatch(/cannot be read/);
+    expect(reader.problem).toMatch(/cannot be read/);
     headset.frame.fillPoses = fillPoses;
     expect(read(reader, headset)).not.toBeNull();
-    expect(reader.complaint).toBeNull();
+    expect(reader.problem).toBeNull();
   });
 
   test('is in the tracked frame of a tracker that reads it, and in no other', () => {

@@ -1,5 +1,5 @@
 import { WebXRController } from 'three/src/renderers/webxr/WebXRController.js';
-import { giveFramesToEvents } from 'threepoint/xr/frameless-events';
+import { addFramesToEvents } from 'threepoint/xr/frameless-events';
 import { expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 
@@ -39,7 +39,7 @@ function headset() {
 
 test('a button event without its frame reaches three with the next one, once, in order', () => {
   const { session, listen, tell, draw, frame } = headset();
-  giveFramesToEvents(session);
+  addFramesToEvents(session);
   const heard: string[] = [];
   for (const type of ['selectstart', 'selectend', 'squeezestart']) listen(type, heard);
   expect(() => tell('selectstart', null)).not.toThrow();

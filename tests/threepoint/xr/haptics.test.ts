@@ -1,4 +1,4 @@
-import { buzz } from 'threepoint/xr/haptics';
+import { playPulses } from 'threepoint/xr/haptics';
 import { expect, test } from 'vitest';
 import { controller, fakeHeadset } from './fake-headset';
 
@@ -15,7 +15,7 @@ function buzzing(pulse: (strength: number, milliseconds: number) => Promise<bool
 test('a pulse reaches the hand that it is for, within the strength that there is', () => {
   const felt: number[][] = [];
   const session = buzzing(async (strength, milliseconds) => felt.push([strength, milliseconds]) > 0);
-  buzz(session, [
+  playPulses(session, [
     { side: 'right', strength: 1.5, seconds: 0.04 },
     { side: 'left', strength: 1, seconds: 1 },
   ]);
@@ -36,7 +36,7 @@ test.each<[string, () => Promise<boolean>]>([
   const unseen: unknown[] = [];
   const listen = (reason: unknown) => unseen.push(reason);
   process.on('unhandledRejection', listen);
-  buzz(buzzing(pulse), [{ side: 'right', strength: 1, seconds: 0.1 }]);
+  playPulses(buzzing(pulse), [{ side: 'right', strength: 1, seconds: 0.1 }]);
   await new Promise((resolve) => setTimeout(resolve, 0));
   process.off('unhandledRejection', listen);
   expect(unseen).toEqual([]);

@@ -1,4 +1,5 @@
-import { describeXrSupport, requestVrSession } from 'threepoint/xr/session';
+import { requestVrSession } from 'threepoint/xr/request-session';
+import { describeXrSupport } from 'threepoint/xr/session-support';
 import { describe, expect, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 

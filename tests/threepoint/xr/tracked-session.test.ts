@@ -299,7 +299,7 @@ describe('where the floor is', () => {
     setHead(at(0.2, 1.15, 0));
     setInputs(controller('right', at(0.3, 0.8, -0.3)));
     const before = read()!;
-    tracker.raise(0.45);
+    tracker.setHeightOffset(0.45);
     const seen = () => {
       const { head, rightHand } = read()!;
       return [head.position.y, rightHand!.position.y - head.position.y];
@@ -316,10 +316,10 @@ describe('where the floor is', () => {
     expect(read()?.head.position.x).toBeCloseTo(0, 9);
     reset({ position: vec3(0, 0, 1), orientation: identity });
     expectRaised(seen(), 0.45);
-    tracker.raise(0.5);
-    tracker.raise(Number.NaN);
-    expect(tracker.raised).toBe(0.5);
-    tracker.raise(0);
+    tracker.setHeightOffset(0.5);
+    tracker.setHeightOffset(Number.NaN);
+    expect(tracker.heightOffset).toBe(0.5);
+    tracker.setHeightOffset(0);
     expectRaised(seen(), 0);
   });
 

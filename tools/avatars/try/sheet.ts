@@ -113,7 +113,7 @@ function shootAlone(scene: Scene): string {
 async function draw(sheet: CanvasRenderingContext2D, address: string, name: string) {
   const bytes = await (await fetch(address)).arrayBuffer();
   const began = performance.now();
-  const checked = await checkInWorker(bytes, { name, unpacked: Object.keys(decoders) });
+  const checked = await checkInWorker(bytes, { name, supportedCompressions: Object.keys(decoders) });
   const avatar = createAvatar(await parseChecked(checked, name, { decoders }));
   const loadMs = performance.now() - began;
   const scene = createScene();

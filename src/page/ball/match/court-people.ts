@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import {
   makePose,
@@ -143,7 +143,7 @@ const makeSeatView = (seat: number): SeatView => ({
     id: seat,
     calibration: { eyeHeight: Number.NaN, armSpan: Number.NaN },
     station: seat,
-    avatar: plainAvatar,
+    avatar: defaultAvatar,
     palette: '',
     pose: { head: { ...makePose<'floor'>(), tracking: 'emulated' }, leftHand: null, rightHand: null, body: null },
     placement: makeTransform(),

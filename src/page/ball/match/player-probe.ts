@@ -1,4 +1,4 @@
-import { plainAvatar } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { PlayerProbe } from '../../activity/activity';
@@ -17,7 +17,7 @@ export function playerProbes(
     const { name, bot, presence } = player;
     const drawn = Object.entries(others.jointsOf(id) ?? {});
     const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
-    const { avatar = plainAvatar } = room?.seats[id] ?? {};
+    const { avatar = defaultAvatar } = room?.seats[id] ?? {};
     return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: others.drawnAs(id), joints }];
   });
 }

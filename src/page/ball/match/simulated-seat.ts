@@ -1,4 +1,4 @@
-import { fingersOfButtons } from 'threepoint/avatar/hands/button-fingers';
+import { fingersFromButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
@@ -117,6 +117,6 @@ export function stepSimulated(
   if (!seen?.match || seen.mySeat === null) return null;
   const { frame, buttons } = simulatedInput(player, moment, seen.match, seen.mySeat, sight);
   const { pose } = estimator.update(frame);
-  connection.sendPose(moment, { jump: false, pose, fingers: fingersOfButtons(buttons) });
+  connection.sendPose(moment, { jump: false, pose, fingers: fingersFromButtons(buttons) });
   return playFrame(connection, gestures, frame, buttons);
 }

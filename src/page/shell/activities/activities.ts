@@ -1,5 +1,5 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import { Holding } from 'threepoint/avatar/hands/hold-object';
+import { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import type { HandGeometry } from 'threepoint/core/body/hand-geometry';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -7,7 +7,7 @@ import type { Buttons } from 'threepoint/core/input/button-presses';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Pulse } from 'threepoint/xr/haptics';
+import type { HapticPulse } from 'threepoint/xr/haptics';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Activity, OpenActivity } from '../../activity/activity';
@@ -35,7 +35,7 @@ export interface ActivitiesOptions extends StagingOptions {
 /** The activity that the user is in, and the way from one to another. Knows activities by their interface only. */
 export class Activities {
   readonly #options: ActivitiesOptions;
-  readonly #holding = new Holding();
+  readonly #holding = new ObjectHolds();
   readonly #layout: { seed: number };
   readonly #staging: ActivityStaging;
   #name = home as string;
@@ -148,7 +148,7 @@ export class Activities {
   }
 
   /** Advances the activity by a tracked frame; returns haptic pulses. */
-  play(frame: TrackingFrame, buttons: Buttons): readonly Pulse[] {
+  play(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] {
     const pulses = this.#current?.update(frame, buttons) ?? null;
     if (pulses === null) return [];
     this.#options.study.runnerOf(this.#name)?.played();

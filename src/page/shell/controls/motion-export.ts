@@ -77,8 +77,8 @@ export class MotionExport {
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
     const { avatar } = this.#options;
-    const { avatarClip } = await import('threepoint/avatar/avatar-motion-writer');
-    return avatarClip(await avatar.file(), avatar.name, { decoders });
+    const { createAvatarMotionWriter } = await import('threepoint/avatar/avatar-motion-writer');
+    return createAvatarMotionWriter(await avatar.file(), avatar.name, { decoders });
   }
 
   #setState(state: ExportState | null): void {

@@ -1,6 +1,6 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
 import { ReplayedBody, type ReplayState } from 'threepoint/api/replayed-body';
-import { shapeOfButtons } from 'threepoint/avatar/hands/button-fingers';
+import { handShapeFromButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
@@ -8,7 +8,7 @@ import type { Side } from 'threepoint/core/math/side';
 import type { Mutable } from 'threepoint/core/records';
 import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { unjudgedSavings } from 'threepoint/xr/frame-rate';
+import { defaultSavings } from 'threepoint/xr/frame-rate';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';
@@ -148,7 +148,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     const wrist = side === 'left' ? leftHand : rightHand;
     const hand = avatar.current?.handGeometry(side) ?? null;
     const held = wrist && activities.grasp(side, wrist, hand, target) ? target : null;
-    const shape = held ?? (fingers ? fingers[side] : shapeOfButtons(source.buttons[side], target));
+    const shape = held ?? (fingers ? fingers[side] : handShapeFromButtons(source.buttons[side], target));
     this.#fingers[side] = shape;
   }
 
@@ -189,7 +189,7 @@ export class PageFrame implements FrameParts<XRFrame> {
       watched: activities.current?.watched ?? null,
       mirror: this.#mirror(),
       // All pictures of a study are alike.
-      savings: study.run ? unjudgedSavings : headset.savings,
+      savings: study.run ? defaultSavings : headset.savings,
     };
   }
 

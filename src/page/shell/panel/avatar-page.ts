@@ -1,6 +1,6 @@
 import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
 import { skinColors } from 'threepoint/avatar/palettes';
-import { plainAvatar, skinTones } from 'threepoint/core/body/avatar-ref';
+import { defaultAvatar, skinTones } from 'threepoint/core/body/built-in-bodies';
 import { button, element } from 'threepoint-ui/element';
 import { fileButton } from 'threepoint-ui/file-button';
 import { createStatusLine } from 'threepoint-ui/status-line';
@@ -75,7 +75,7 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions,
       }
       for (const { tone, node } of tones) {
         node.setAttribute('aria-pressed', String(tone === skinTone));
-        node.disabled = builtInBody === null || builtInBody === plainAvatar;
+        node.disabled = builtInBody === null || builtInBody === defaultAvatar;
       }
     },
   };

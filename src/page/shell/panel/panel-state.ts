@@ -1,4 +1,4 @@
-import type { BuiltInBody, SkinTone } from 'threepoint/core/body/avatar-ref';
+import type { BuiltInBody, SkinTone } from 'threepoint/core/body/built-in-bodies';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';

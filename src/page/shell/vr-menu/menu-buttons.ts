@@ -1,11 +1,11 @@
-import { labelOf } from 'threepoint/avatar/built-in-body-labels';
+import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
 import {
   type BuiltInBody,
   builtInBodies,
-  plainAvatar,
+  defaultAvatar,
   type SkinTone,
   skinTones,
-} from 'threepoint/core/body/avatar-ref';
+} from 'threepoint/core/body/built-in-bodies';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import {
@@ -109,9 +109,9 @@ function placeEntries(state: VrMenuState, actions: VrMenuActions): readonly Menu
     const label = nextPassthrough ? 'Next session: AR' : 'Next session: VR';
     entries.push({ id: 'passthrough', label, act: () => actions.setPassthrough(!nextPassthrough) });
   }
-  const body = `Body: ${labelOf(builtInBody)}`;
+  const body = `Body: ${bodyLabelOf(builtInBody)}`;
   entries.push({ id: 'body', label: body, act: () => actions.chooseBuiltInBody(after(builtInBodies, builtInBody)) });
-  if (builtInBody === plainAvatar) return entries;
+  if (builtInBody === defaultAvatar) return entries;
   const skin = `Skin: ${skinTone ?? 'own'}`;
   return [...entries, { id: 'skin', label: skin, act: () => actions.chooseSkinTone(after(skinTones, skinTone)) }];
 }

@@ -2,7 +2,7 @@ import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
 import { clientAddressOf } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/response';
+import { HttpError } from 'threepoint-http/http-error';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayMetrics } from '../settings/relay-metrics';
 

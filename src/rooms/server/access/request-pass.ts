@@ -1,4 +1,4 @@
-import { HttpError } from 'threepoint-http/response';
+import { HttpError } from 'threepoint-http/http-error';
 import type { Call } from 'threepoint-http/router';
 import type { RoomPass, RoomTokens } from './room-tokens';
 

@@ -1,10 +1,11 @@
 import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
-import { avatarHash, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
+import { avatarHashPattern, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { clientAddressOf } from 'threepoint-http/client-address';
+import { HttpError } from 'threepoint-http/http-error';
 import { readBody } from 'threepoint-http/request-body';
-import { HttpError, type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
+import { type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
 import type { Call, Route } from 'threepoint-http/router';
 import { requirePass } from '../access/request-pass';
 import type { RoomTokens } from '../access/room-tokens';
@@ -71,7 +72,7 @@ export class AvatarRoutes {
   async #terms(call: Call): Promise<HttpResponse> {
     const { configuration, store } = this.#options;
     const { room, identity } = await requirePass(call, this.#options.tokens);
-    const taken = Math.min(mostAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
+    const taken = Math.min(maxAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
     return jsonResponse({
       mostBytes: taken,
       elsewhere: configuration.avatarsFrom,
@@ -151,7 +152,7 @@ export class AvatarRoutes {
 
 function hashIn({ names }: Call): string {
   const hash = names.hash ?? '';
-  if (!avatarHash.test(hash))
+  if (!avatarHashPattern.test(hash))
     throw new HttpError(400, 'the name of an avatar must be its SHA-256 as base64url, 43 characters');
   return hash;
 }
@@ -163,6 +164,6 @@ function lengthOf({ headers }: IncomingMessage): number {
     throw new HttpError(411, 'the upload needs a Content-Length');
   }
   const length = Number(text);
-  if (length > mostAvatarBytes) throw new HttpError(413, `the avatar is larger than ${mostAvatarBytes} bytes`);
+  if (length > maxAvatarBytes) throw new HttpError(413, `the avatar is larger than ${maxAvatarBytes} bytes`);
   return length;
 }

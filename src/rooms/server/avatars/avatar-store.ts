@@ -1,4 +1,4 @@
-import { type AvatarHash, type AvatarRef, mostAvatarBytes } from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, type AvatarRef, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
 
 export interface AvatarStoreOptions {
   /** The most bytes of all files, uploads under way included; 0: no file is accepted. */
@@ -86,7 +86,7 @@ export class AvatarStore {
     const freed = before?.bytes.length ?? 0;
     if (this.bytes - freed + length > maxBytes) return 'full';
     const freedHere = before?.address === address ? freed : 0;
-    const mostHere = Math.max(mostAvatarBytes, shareOfAddress * maxBytes);
+    const mostHere = Math.max(maxAvatarBytes, shareOfAddress * maxBytes);
     if (this.#bytesFrom(address) - freedHere + length > mostHere) return 'crowded';
     this.#uploads.set(owner, { address, length });
     return {

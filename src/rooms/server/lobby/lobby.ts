@@ -1,4 +1,4 @@
-import { Redis } from 'ioredis';
+import type { Redis } from 'ioredis';
 import type { Logger } from 'pino';
 import type { RoomListing } from '../hosting/room-registry';
 
@@ -26,44 +26,6 @@ export function createOwnLobby(): Lobby {
 const prefix = 'threepoint:lobby:';
 /** The entry of a process expires after this time [s], so that a killed process disappears. */
 const entrySeconds = 5;
-const commandTimeoutMs = 1000;
-
-const retryStrategy = (attempt: number): number => Math.min(200 * attempt, 2000);
-
-/**
- * Opens a connection whose commands fail at once while Redis is down, so that no request waits; it reconnects by
- * itself.
- */
-export function connectRedis(url: string, log: Logger): Redis {
-  return watched(
-    new Redis(url, {
-      enableOfflineQueue: false,
-      maxRetriesPerRequest: 1,
-      commandTimeout: commandTimeoutMs,
-      retryStrategy,
-    }),
-    log,
-  );
-}
-
-/** Opens a connection whose commands wait until Redis is back and never fail, as socket.io's adapter requires. */
-export function connectRedisPatiently(url: string, log: Logger): Redis {
-  return watched(new Redis(url, { maxRetriesPerRequest: null, retryStrategy }), log);
-}
-
-function watched(redis: Redis, log: Logger): Redis {
-  let down = false;
-  redis.on('error', (error: Error) => {
-    if (!down)
-      log.warn({ error: error.message }, 'Redis is unreachable: the lobby lists only the rooms of this process');
-    down = true;
-  });
-  redis.on('ready', () => {
-    if (down) log.warn('Redis is reachable again');
-    down = false;
-  });
-  return redis;
-}
 
 /** Creates a lobby that several processes share: each stores its rooms under its own name, and the entry expires. */
 export function createRedisLobby(redis: Redis, node: string, log: Logger): Lobby {

@@ -2,7 +2,7 @@ import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
 import { clientAddressOf } from 'threepoint-http/client-address';
 import { createSlotCounter } from 'threepoint-http/connection-limiter';
-import { HttpError } from 'threepoint-http/response';
+import { HttpError } from 'threepoint-http/http-error';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayMetrics } from '../settings/relay-metrics';

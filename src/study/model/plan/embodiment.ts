@@ -1,6 +1,6 @@
-import { builtInBodies } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
 import { type ThreePointName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
+import { maxLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 
@@ -20,7 +20,7 @@ export const embodimentFields = {
   /** Whether the body ends at the hips. */
   upperBodyOnly: v.exactOptional(trueOrFalse),
   /** The additional latency of the body [ms]. */
-  latencyMs: v.exactOptional(numberBetween(0, mostLatencyMs)),
+  latencyMs: v.exactOptional(numberBetween(0, maxLatencyMs)),
   /** Noise on head and hands in every frame: standard deviation along and about each axis. */
   trackerNoise: v.exactOptional(
     v.strictObject({ positionMm: numberBetween(0, 100), rotationDegrees: numberBetween(0, 30) }),

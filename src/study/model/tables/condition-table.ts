@@ -1,6 +1,6 @@
-import { builtInBodies } from 'threepoint/core/body/avatar-ref';
+import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
 import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { mostLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
+import { maxLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import type { StudyPlan } from '../plan/plan';
 import { boolean, number, rowFrom, type Table, text } from './tidy-csv';
 
@@ -19,7 +19,7 @@ const columns = [
   text('avatar', builtInBodies.join(', '), from('avatar'), 'Avatar.'),
   boolean('mirror', from('mirror'), 'Whether there is a mirror.'),
   boolean('upper_body_only', from('upperBodyOnly'), 'Whether the body ends at the hips.'),
-  number('latency', 'ms', `0 to ${mostLatencyMs}`, from('latencyMs'), 'Additional latency of the body.'),
+  number('latency', 'ms', `0 to ${maxLatencyMs}`, from('latencyMs'), 'Additional latency of the body.'),
   number(
     'noise_position',
     'mm',

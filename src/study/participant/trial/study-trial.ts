@@ -1,6 +1,6 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { cutRecording } from 'threepoint/core/tracking/recording';
+import { writeRecordingWithin } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
 import { mostMotionBytes } from '../../model/progress/study-api';
@@ -188,7 +188,7 @@ export class PlayedTrial {
     const frames = this.#frames ?? [];
     if (frames.length === 0) return null;
     const { name: device, refreshRateHz } = this.#device;
-    return cutRecording(
+    return writeRecordingWithin(
       { device, rateHz: refreshRateHz ?? 60, calibration: this.#calibration, frames },
       mostMotionBytes,
     );

@@ -7,7 +7,7 @@ import {
   TooManyAttempts,
 } from 'threepoint-http/auth-throttle';
 import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/response';
+import { HttpError } from 'threepoint-http/http-error';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/store';
 

@@ -1,6 +1,7 @@
 import { parseRecording } from 'threepoint/core/tracking/recording';
 import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
-import { HttpError, jsonResponse, noContent } from 'threepoint-http/response';
+import { HttpError } from 'threepoint-http/http-error';
+import { jsonResponse, noContent } from 'threepoint-http/response';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';

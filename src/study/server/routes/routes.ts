@@ -1,5 +1,6 @@
 import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
-import { HttpError, type HttpResponse } from 'threepoint-http/response';
+import { HttpError } from 'threepoint-http/http-error';
+import type { HttpResponse } from 'threepoint-http/response';
 import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
 import { StoreRefusal } from '../storage/store-refusal';
 import { type Concerned, createStudyGuard, type StudyGuardOptions } from './guard';

@@ -1,15 +1,15 @@
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { avatarLimits } from '../file/inspect-avatar';
+import { avatarLimits } from '../file/avatar-limits';
 import type { Decoders } from '../load-avatar';
-import type { DracoAnswer, DracoQuestion } from './draco-worker';
+import type { DracoRequest, DracoResponse } from './draco-worker';
 import { WorkerClient } from './worker-client';
 
 const mostNumbers = avatarLimits.triangles * 3;
 
-type DracoWorker = WorkerClient<DracoQuestion, DracoAnswer>;
+type DracoWorker = WorkerClient<DracoRequest, DracoResponse>;
 
-async function geometryOf(worker: DracoWorker, question: DracoQuestion): Promise<BufferGeometry> {
+async function geometryOf(worker: DracoWorker, question: DracoRequest): Promise<BufferGeometry> {
   const answer = await worker.request(question);
   if ('broken' in answer) throw new Error(answer.broken);
   const geometry = new BufferGeometry();
@@ -20,7 +20,7 @@ async function geometryOf(worker: DracoWorker, question: DracoQuestion): Promise
   return geometry;
 }
 
-/** How GLTFLoader asks a Draco loader for a mesh. */
+/** The arguments with which GLTFLoader calls a Draco loader. */
 type DracoCall = [
   packed: ArrayBuffer,
   onLoad: (geometry: BufferGeometry) => void,
@@ -31,8 +31,8 @@ type DracoCall = [
 ];
 
 /**
- * What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address,
- * which our policy forbids.
+ * Returns a Draco loader for GLTFLoader that decodes in a worker. The one of three.js starts its worker from a blob:
+ * URL, which the content security policy forbids.
  */
 function dracoInWorker() {
   const worker: DracoWorker = new WorkerClient(
@@ -42,7 +42,7 @@ function dracoInWorker() {
   return {
     preload: () => undefined,
     decodeDracoFile(...[packed, onLoad, ids, types, , onError]: DracoCall): void {
-      geometryOf(worker, { packed, ids, types, mostNumbers }).then(onLoad, onError);
+      geometryOf(worker, { packed, ids, types, maxNumbers: mostNumbers }).then(onLoad, onError);
     },
   };
 }
@@ -52,10 +52,7 @@ async function meshopt(loader: GLTFLoader): Promise<void> {
   loader.setMeshoptDecoder(MeshoptDecoder);
 }
 
-/**
- * Compressions that a page unpacks, by the name of their extension: what gives a loader the means, fetched when a file
- * needs it.
- */
+/** The decoders of compressed files by the name of their extension, loaded when a file needs them. */
 export const decoders: Decoders = {
   EXT_meshopt_compression: meshopt,
   KHR_meshopt_compression: meshopt,

@@ -1,4 +1,4 @@
-/** Draco's decoder as emscripten wraps it, as far as this project calls it; pointers are numbers. */
+/** The part of Draco's decoder, as Emscripten wraps it, that this project calls. Pointers are numbers. */
 declare module 'three/addons/libs/draco/gltf/draco_wasm_wrapper.js' {
   interface Attribute {
     num_components(): number;

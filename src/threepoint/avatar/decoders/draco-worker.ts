@@ -3,13 +3,13 @@ import wasmAddress from 'three/addons/libs/draco/gltf/draco_decoder.wasm?url';
 import makeDraco from 'three/addons/libs/draco/gltf/draco_wasm_wrapper.js';
 import { reasonOf } from '../../core/errors/reasons';
 
-/** One mesh to be unpacked: Draco's numbers of its attributes, and which kind of array each is to be. */
-export interface DracoQuestion {
+/** A request to decode a mesh: Draco's ids of its attributes, and the array type of each. */
+export interface DracoRequest {
   readonly packed: ArrayBuffer;
   readonly ids: Readonly<Record<string, number>>;
   readonly types: Readonly<Record<string, string>>;
-  /** The largest number of corners or triangles of a mesh, whatever its file declares. */
-  readonly mostNumbers: number;
+  /** The maximum number of vertices or indices of a mesh. */
+  readonly maxNumbers: number;
 }
 
 interface UnpackedMesh {
@@ -17,9 +17,9 @@ interface UnpackedMesh {
   readonly attributes: Readonly<Record<string, UnpackedAttribute>>;
 }
 
-export type DracoAnswer = UnpackedMesh | { readonly broken: string };
+export type DracoResponse = UnpackedMesh | { readonly broken: string };
 
-/** The kinds of numbers that glTF has, by three.js's names of their arrays, and Draco's names of them. */
+/** The component types of glTF: the name of the array, and Draco's name. */
 const kinds = {
   Float32Array: [Float32Array, 'DT_FLOAT32'],
   Int8Array: [Int8Array, 'DT_INT8'],
@@ -40,8 +40,8 @@ const draco = fetch(wasmAddress)
 
 type Draco = Awaited<typeof draco>;
 
-/** What `write` puts into so many bytes of Draco's memory. */
-function taken(module: Draco, bytes: number, write: (at: number) => void): ArrayBuffer {
+/** Allocates bytes of Draco's memory, calls `write` and returns a copy of the bytes. */
+function readFromMemory(module: Draco, bytes: number, write: (at: number) => void): ArrayBuffer {
   const at = module._malloc(bytes);
   write(at);
   const memory = module.HEAPF32.buffer.slice(at, at + bytes);
@@ -49,22 +49,22 @@ function taken(module: Draco, bytes: number, write: (at: number) => void): Array
   return memory;
 }
 
-function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestion): UnpackedMesh {
+function unpack(module: Draco, { packed, ids, types, maxNumbers }: DracoRequest): UnpackedMesh {
   const decoder = new module.Decoder();
   const mesh = new module.Mesh();
   try {
     const status = decoder.DecodeArrayToMesh(new Int8Array(packed), packed.byteLength, mesh);
     if (!status.ok() || mesh.ptr === 0) throw new Error(`Draco: ${status.error_msg()}`);
     const [points, corners] = [mesh.num_points(), mesh.num_faces() * 3];
-    if (Math.max(points, corners) > mostNumbers) throw new Error('Draco: it unpacks to more than an avatar may have');
-    const index = taken(module, corners * 4, (at) => decoder.GetTrianglesUInt32Array(mesh, corners * 4, at));
+    if (Math.max(points, corners) > maxNumbers) throw new Error('Draco: it unpacks to more than an avatar may have');
+    const index = readFromMemory(module, corners * 4, (at) => decoder.GetTrianglesUInt32Array(mesh, corners * 4, at));
     const attributes = Object.fromEntries(
       Object.entries(ids).map(([name, id]) => {
         const [Kind, dracoKind] = kinds[(types[name] ?? 'Float32Array') as keyof typeof kinds] ?? kinds.Float32Array;
         const attribute = decoder.GetAttributeByUniqueId(mesh, id);
         const itemSize = attribute.num_components();
         const bytes = points * itemSize * Kind.BYTES_PER_ELEMENT;
-        const memory = taken(module, bytes, (at) =>
+        const memory = readFromMemory(module, bytes, (at) =>
           decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module[dracoKind], bytes, at),
         );
         return [name, { array: new Kind(memory), itemSize }];
@@ -78,20 +78,20 @@ function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestio
 }
 
 function refuse(error: unknown): void {
-  self.postMessage({ broken: reasonOf(error) } satisfies DracoAnswer);
+  self.postMessage({ broken: reasonOf(error) } satisfies DracoResponse);
 }
 
-function answer(module: Draco, question: DracoQuestion): void {
+function answer(module: Draco, question: DracoRequest): void {
   try {
     const { index, attributes } = unpack(module, question);
     const buffers = [index, ...Object.values(attributes).map(({ array }) => array)].map(({ buffer }) => buffer);
-    self.postMessage({ index, attributes } satisfies DracoAnswer, { transfer: buffers });
+    self.postMessage({ index, attributes } satisfies DracoResponse, { transfer: buffers });
   } catch (error) {
     refuse(error);
   }
 }
 
-// One answer for each question, in their order.
-self.addEventListener('message', ({ data }: MessageEvent<DracoQuestion>) => {
+// Requests are answered in order.
+self.addEventListener('message', ({ data }: MessageEvent<DracoRequest>) => {
   draco.then((module) => answer(module, data), refuse);
 });

@@ -1,5 +1,5 @@
-/** A decoder that is silent for longer [ms] is not worth the wait. */
-const patienceMs = 20_000;
+/** The timeout of a request [ms]. */
+const timeoutMs = 20_000;
 
 interface Waiting<Answer> {
   resolve(answer: Answer): void;
@@ -7,8 +7,8 @@ interface Waiting<Answer> {
 }
 
 /**
- * A worker that answers in the order in which it is asked. It begins with the first question and ends when none is
- * left.
+ * Sends requests to a worker that answers them in order. The worker is started with the first request and terminated
+ * when none is pending.
  */
 export class WorkerClient<Question, Answer> {
   readonly #name: string;
@@ -17,7 +17,7 @@ export class WorkerClient<Question, Answer> {
   #worker: Worker | null = null;
   #patience: ReturnType<typeof setTimeout> | undefined;
 
-  /** `name`: what sentences call it. */
+  /** `name`: the name for messages. */
   constructor(name: string, begin: () => Worker) {
     this.#name = name;
     this.#begin = begin;
@@ -47,7 +47,7 @@ export class WorkerClient<Question, Answer> {
 
   #wait(): void {
     clearTimeout(this.#patience);
-    this.#patience = setTimeout(() => this.#fail(`${this.#name}: unpacking it takes too long`), patienceMs);
+    this.#patience = setTimeout(() => this.#fail(`${this.#name}: unpacking it takes too long`), timeoutMs);
   }
 
   #fail(reason: string): void {

@@ -1,13 +1,13 @@
-import type { WorkerAnswer, WorkerQuestion } from './avatar-check-worker';
+import type { AvatarCheckRequest, AvatarCheckResponse } from './avatar-check-worker';
 import type { AvatarCheck, CheckedAvatar } from './check-avatar';
-import { MotionWithoutBody } from './motion-only-error';
+import { MotionOnlyError } from './motion-only-error';
 
 /** The longest time [ms] that the start of a worker, and its check, may take. */
 const patienceMs = 20_000;
 
 /** Resolves when a worker of avatar-check-worker.ts has reported that it runs, or to null where it does not start. */
 async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Worker | null> {
-  // Node has no workers of pages: onnxruntime-web sets this name to the workers of node:worker_threads there.
+  // Node has no web workers, but onnxruntime-web sets this global to the workers of node:worker_threads.
   if (!(globalThis.Worker?.prototype instanceof EventTarget)) return null;
   // reason: a page without workers, or whose policy forbids them, throws or emits an error; both mean that none starts.
   const worker = await Promise.resolve()
@@ -29,11 +29,10 @@ async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Wor
 }
 
 /**
- * Returns a check in workers that live for one file: neither a slow file nor one that breaks the validator delays a
- * frame. The bytes are passed without a copy: those given are empty afterwards. `instead`: the check where no worker
- * starts.
+ * Returns a check that starts a worker for each file, so that a slow check delays no frame. The bytes are transferred:
+ * the given buffer is empty afterwards. `instead`: the check if no worker starts.
  */
-export const workerCheck =
+export const createWorkerCheck =
   (start: () => Worker | Promise<Worker>, instead: AvatarCheck): AvatarCheck =>
   async (bytes, question) => {
     const worker = await startedWorker(start);
@@ -43,21 +42,21 @@ export const workerCheck =
 function checkedBy(
   worker: Worker,
   bytes: ArrayBuffer,
-  { name, unpacked, limits }: Parameters<AvatarCheck>[1],
+  { name, supportedCompressions, limits }: Parameters<AvatarCheck>[1],
 ): Promise<CheckedAvatar> {
   return new Promise<CheckedAvatar>((resolve, reject) => {
     const timer = setTimeout(() => reject(new Error(`${name}: the check took too long`)), patienceMs);
-    worker.onmessage = ({ data: answer }: MessageEvent<WorkerAnswer>) => {
+    worker.onmessage = ({ data: answer }: MessageEvent<AvatarCheckResponse>) => {
       clearTimeout(timer);
       if ('checked' in answer) resolve(answer.checked);
-      else if ('motion' in answer) reject(new MotionWithoutBody(name));
+      else if ('motion' in answer) reject(new MotionOnlyError(name));
       else reject(new Error(answer.refused));
     };
     worker.onerror = ({ message }) => {
       clearTimeout(timer);
       reject(new Error(`${name}: could not be checked (${message || 'the validator stopped'})`));
     };
-    const question: WorkerQuestion = { bytes, name, unpacked, ...(limits && { limits }) };
+    const question: AvatarCheckRequest = { bytes, name, supportedCompressions, ...(limits && { limits }) };
     worker.postMessage(question, [bytes]);
   }).finally(() => worker.terminate());
 }

@@ -1,25 +1,25 @@
 import { reasonOf } from '../../core/errors/reasons';
-import { type AvatarQuestion, type CheckedAvatar, checkAvatar } from './check-avatar';
-import { MotionWithoutBody } from './motion-only-error';
+import { type AvatarCheckOptions, type CheckedAvatar, checkAvatar } from './check-avatar';
+import { MotionOnlyError } from './motion-only-error';
 
-export interface WorkerQuestion extends AvatarQuestion {
+export interface AvatarCheckRequest extends AvatarCheckOptions {
   readonly bytes: ArrayBuffer;
 }
 
-/**
- * What comes back for a file: its bytes and what is known of them, the sentence that refuses it, or that it is motion.
- */
-export type WorkerAnswer =
+/** The response to a check: the checked file, the reason for refusing it, or that it contains only motion. */
+export type AvatarCheckResponse =
   | { readonly checked: CheckedAvatar }
   | { readonly refused: string }
   | { readonly motion: true };
 
-self.addEventListener('message', ({ data: { bytes, ...question } }: MessageEvent<WorkerQuestion>) => {
+self.addEventListener('message', ({ data: { bytes, ...question } }: MessageEvent<AvatarCheckRequest>) => {
   checkAvatar(bytes, question).then(
-    (checked) => self.postMessage({ checked } satisfies WorkerAnswer, { transfer: [checked.bytes] }),
+    (checked) => self.postMessage({ checked } satisfies AvatarCheckResponse, { transfer: [checked.bytes] }),
     (error: unknown) =>
       self.postMessage(
-        (error instanceof MotionWithoutBody ? { motion: true } : { refused: reasonOf(error) }) satisfies WorkerAnswer,
+        (error instanceof MotionOnlyError
+          ? { motion: true }
+          : { refused: reasonOf(error) }) satisfies AvatarCheckResponse,
       ),
   );
 });

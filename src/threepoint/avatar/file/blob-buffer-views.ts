@@ -1,6 +1,6 @@
 import type { GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 
-/** What of a GLB file's description says where its bytes are. */
+/** The parts of a GLB file's JSON that locate its bytes. */
 interface Description {
   readonly bufferViews?: readonly {
     readonly byteOffset?: number;
@@ -13,11 +13,11 @@ interface Description {
 const isPacked = (extension: string): boolean => extension.endsWith('meshopt_compression');
 
 /**
- * Reads a GLB's parts from where they lie: meshes are cut out one by one, pictures are parts of a blob of the file,
- * which the browser reads and decodes elsewhere. The loader itself copies the file's binary as a whole and each picture
- * twice, on the page's thread.
+ * Reads the buffer views of a GLB from a Blob of the file: meshes are copied one by one, images are slices of the Blob,
+ * which the browser decodes on another thread. GLTFLoader copies the whole binary chunk, and each image twice, on the
+ * page's thread.
  */
-export const viewsOfFile =
+export const blobBufferViews =
   (binary: Uint8Array, file: Blob) =>
   (parser: GLTFParser): GLTFLoaderPlugin => {
     const { bufferViews = [], images = [] } = parser.json as Description;
@@ -25,7 +25,7 @@ export const viewsOfFile =
     return {
       name: 'threepoint_views',
       beforeRoot() {
-        // Meshopt reads from the whole, which is copied when it asks.
+        // Meshopt reads the whole chunk, which is copied on demand.
         Object.assign(parser.extensions, {
           KHR_binary_glTF: {
             get body() {

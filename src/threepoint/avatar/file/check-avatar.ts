@@ -1,44 +1,42 @@
 import { reasonOf } from '../../core/errors/reasons';
-import { glbOfFile } from './convert-to-glb';
-import { hashOf } from './file-hash';
-import { type AvatarLimits, avatarLimits, inspectAvatar } from './inspect-avatar';
+import { type AvatarLimits, avatarLimits } from './avatar-limits';
+import { convertToGlb } from './convert-to-glb';
+import { sha256Base64Url } from './file-hash';
+import { inspectAvatar } from './inspect-avatar';
 import { gltfFaults } from './validate-gltf';
 
-/** What a file is looked at for. */
-export interface AvatarQuestion {
-  /** What sentences call it. */
+/** The options of a check. */
+export interface AvatarCheckOptions {
+  /** The name of the file for messages. */
   readonly name: string;
-  /** Extensions of compression that can be unpacked. */
-  readonly unpacked: readonly string[];
+  /** The extensions of compression that can be decoded. */
+  readonly supportedCompressions: readonly string[];
   /** Absent: `avatarLimits`. */
   readonly limits?: AvatarLimits;
 }
 
-/** A file that may be read: VRM or GLB, or what FBX was converted to. */
+/** A file that has passed the check: VRM or GLB, or a converted FBX. */
 export interface CheckedAvatar {
   readonly bytes: ArrayBuffer;
   /** The file as a Blob, of which parts can be read without a copy. */
   readonly file: Blob;
-  /** Which of the extensions asked about it uses. */
-  readonly packed: readonly string[];
-  /** SHA-256 of the file as base64url; null: this page has no secure context, in which alone browsers hash. */
+  /** The supported compressions that the file uses. */
+  readonly usedCompressions: readonly string[];
+  /** SHA-256 of the file as base64url; null: the page is no secure context, in which browsers hash. */
   readonly hash: string | null;
 }
 
-/**
- * Looks at a file without drawing anything of it, and may take its bytes along. Rejects with a sentence that names the
- * file.
- */
-export type AvatarCheck = (bytes: ArrayBuffer, question: AvatarQuestion) => Promise<CheckedAvatar>;
+/** Checks a file without decoding it; the bytes may be transferred. Rejects with an Error that names the file. */
+export type AvatarCheck = (bytes: ArrayBuffer, question: AvatarCheckOptions) => Promise<CheckedAvatar>;
 
-/** The check itself, on the thread that calls it. */
-export const checkAvatar: AvatarCheck = async (given, { name, unpacked, limits = avatarLimits }) => {
-  const bytes = await glbOfFile(given, name, 'body');
+/** Checks a file on the calling thread. */
+export const checkAvatar: AvatarCheck = async (given, { name, supportedCompressions, limits = avatarLimits }) => {
+  const bytes = await convertToGlb(given, name, 'body');
   const file = new Uint8Array(bytes);
-  const packed = inspectAvatar(file, name, unpacked, limits);
+  const usedCompressions = inspectAvatar(file, name, supportedCompressions, limits);
   const faults = await gltfFaults(file).catch((error: unknown) => {
     throw new Error(`${name}: could not be checked (${reasonOf(error)})`);
   });
   if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
-  return { bytes, file: new Blob([bytes]), packed, hash: await hashOf(bytes) };
+  return { bytes, file: new Blob([bytes]), usedCompressions, hash: await sha256Base64Url(bytes) };
 };

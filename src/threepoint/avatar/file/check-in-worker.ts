@@ -1,8 +1,8 @@
-import { workerCheck } from './avatar-check-client';
+import { createWorkerCheck } from './avatar-check-client';
 import type { AvatarCheck } from './check-avatar';
 
-/** Checks a file in a worker of this page; where none starts, the file is refused. */
-export const checkInWorker: AvatarCheck = workerCheck(
+/** Checks a file in a worker of this page; if none starts, the file is refused. */
+export const checkInWorker: AvatarCheck = createWorkerCheck(
   () => new Worker(new URL('./avatar-check-worker.ts', import.meta.url), { type: 'module' }),
   async (_, { name }) => {
     throw new Error(`${name}: could not be checked (the validator did not start)`);

@@ -8,7 +8,7 @@ const mostMegabytes = 60;
  * Returns a file as GLB: FBX converted, any other as it is. Rejects with a sentence that names the file. `parts`: a
  * body, or the motion of its bones.
  */
-export async function glbOfFile(bytes: ArrayBuffer, name: string, parts: SceneParts): Promise<ArrayBuffer> {
+export async function convertToGlb(bytes: ArrayBuffer, name: string, parts: SceneParts): Promise<ArrayBuffer> {
   const file = new Uint8Array(bytes);
   if (!isFbx(file, name)) return bytes;
   const megabytes = file.length / 2 ** 20;

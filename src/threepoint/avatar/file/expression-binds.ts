@@ -20,7 +20,7 @@ const objectsIn = (value: unknown): Record<string, unknown>[] =>
     ? Object.values(value).filter((inner) => typeof inner === 'object' && inner !== null)
     : [];
 
-/** Keeps of each list of an expression what is as its schema says. */
+/** Removes the items of an expression's lists that do not match their schema. */
 function keepValid(expressions: unknown, schemas: Readonly<Record<string, v.GenericSchema>>): void {
   for (const expression of objectsIn(expressions)) {
     for (const [list, schema] of Object.entries(schemas)) {
@@ -31,10 +31,10 @@ function keepValid(expressions: unknown, schemas: Readonly<Record<string, v.Gene
 }
 
 /**
- * Removes what the expressions of a VRM 0.x or 1.0 bind that is not there or has another form. three-vrm reads binds in
- * promises that nothing waits for: a broken one would be a fault of the page instead of the file.
+ * Removes invalid binds from the expressions of a VRM 0.x or 1.0. three-vrm reads binds in promises that it does not
+ * await: an invalid one would cause an unhandled rejection.
  */
-export const validExpressionBinds = (parser: GLTFParser): GLTFLoaderPlugin => ({
+export const removeInvalidExpressionBinds = (parser: GLTFParser): GLTFLoaderPlugin => ({
   name: 'threepoint_expressions',
   beforeRoot() {
     const { nodes = [], extensions } = parser.json as Description;

@@ -1,10 +1,7 @@
 import { binaryChunk, glbMagic, jsonChunk } from '../../core/motion/gltf';
 
-/**
- * The two chunks of a GLB file; null: it is none, or cut short: it or one of them says that it is longer than what is
- * there.
- */
-export function chunksOf(bytes: Uint8Array): { readonly json: string; readonly binary: Uint8Array } | null {
+/** Returns the two chunks of a GLB file; null: it is no GLB file, or it is truncated. */
+export function readGlbChunks(bytes: Uint8Array): { readonly json: string; readonly binary: Uint8Array } | null {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (bytes.length < 20 || view.getUint32(0, true) !== glbMagic || view.getUint32(4, true) !== 2) return null;
   const at = 20 + view.getUint32(12, true);

@@ -1,4 +1,4 @@
-/** The part of the Khronos validator's interface that we use; the package carries no types. */
+/** The part of the Khronos validator's interface that this project uses; the package has no types. */
 declare module 'gltf-validator' {
   export function validateBytes(
     bytes: Uint8Array,

@@ -4,45 +4,45 @@ export interface ImageSize {
   readonly height: number;
 }
 
-const letters = (bytes: Uint8Array, at: number, text: string): boolean =>
+const hasAscii = (bytes: Uint8Array, at: number, text: string): boolean =>
   [...text].every((letter, i) => bytes[at + i] === letter.charCodeAt(0));
 
-export const isKtx2 = (bytes: Uint8Array): boolean => letters(bytes, 1, 'KTX 20');
+export const isKtx2 = (bytes: Uint8Array): boolean => hasAscii(bytes, 1, 'KTX 20');
 
-/** The size that a PNG, JPEG or WebP file says it has, before anything of it is decoded; null: it is none of them. */
+/** Returns the size of a PNG, JPEG or WebP file by its header; null: it is none of them. */
 export function imageSize(bytes: Uint8Array): ImageSize | null {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   try {
-    if (letters(bytes, 1, 'PNG')) return { width: view.getUint32(16), height: view.getUint32(20) };
-    if (letters(bytes, 0, 'RIFF') && letters(bytes, 8, 'WEBP')) return webpSize(bytes, view);
+    if (hasAscii(bytes, 1, 'PNG')) return { width: view.getUint32(16), height: view.getUint32(20) };
+    if (hasAscii(bytes, 0, 'RIFF') && hasAscii(bytes, 8, 'WEBP')) return webpSize(bytes, view);
     if (view.getUint16(0) === 0xffd8) return jpegSize(view);
   } catch (error) {
-    // Cut short: no picture.
+    // Truncated: no image.
     if (!(error instanceof RangeError)) throw error;
   }
   return null;
 }
 
 function webpSize(bytes: Uint8Array, view: DataView): ImageSize | null {
-  if (letters(bytes, 12, 'VP8X')) {
+  if (hasAscii(bytes, 12, 'VP8X')) {
     const three = (at: number) => view.getUint16(at, true) + 65536 * view.getUint8(at + 2);
     return { width: 1 + three(24), height: 1 + three(27) };
   }
-  if (letters(bytes, 12, 'VP8L')) {
+  if (hasAscii(bytes, 12, 'VP8L')) {
     const packed = view.getUint32(21, true);
     return { width: 1 + (packed & 0x3fff), height: 1 + ((packed >>> 14) & 0x3fff) };
   }
-  if (letters(bytes, 12, 'VP8 '))
+  if (hasAscii(bytes, 12, 'VP8 '))
     return { width: view.getUint16(26, true) & 0x3fff, height: view.getUint16(28, true) & 0x3fff };
   return null;
 }
 
-/** From the frame header, which follows any number of other segments. */
+/** Returns the size in the frame header, which follows any number of other segments. */
 function jpegSize(view: DataView): ImageSize | null {
   let at = 2;
   while (view.getUint8(at) === 0xff) {
     const marker = view.getUint8(at + 1);
-    // C0 to CF begin a frame, but for the tables C4 and CC and the reserved C8.
+    // C0 to CF start a frame, except the tables C4 and CC and the reserved C8.
     if (marker >= 0xc0 && marker <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(marker))
       return { width: view.getUint16(at + 7), height: view.getUint16(at + 5) };
     at += 2 + view.getUint16(at + 2);

@@ -1,38 +1,9 @@
 import * as v from 'valibot';
 import { reasonOf } from '../../core/errors/reasons';
-import { chunksOf } from './glb-chunks';
+import { type AvatarLimits, avatarLimits } from './avatar-limits';
+import { readGlbChunks } from './glb-chunks';
 import { imageSize, isKtx2 } from './image-size';
-import { MotionWithoutBody } from './motion-only-error';
-
-/** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
-export const avatarLimits = {
-  megabytes: 60,
-  triangles: 250_000,
-  /** Pictures, the length of their longer side, and all their pixels together. */
-  textures: 64,
-  texturePixels: 4096,
-  millionPixels: 96,
-  bones: 600,
-  nodes: 4000,
-  /** Morph targets of all primitives together. */
-  morphTargets: 4000,
-  /** Numbers in all accessors together, unpacked. */
-  millionNumbers: 40,
-} as const;
-export type AvatarLimits = Readonly<Record<keyof typeof avatarLimits, number>>;
-
-/** What a body may cost that another person has on: there are several of them, and no one here has chosen them. */
-export const seenAvatarLimits: AvatarLimits = {
-  megabytes: 20,
-  triangles: 100_000,
-  textures: 48,
-  texturePixels: 4096,
-  millionPixels: 64,
-  bones: 400,
-  nodes: 2000,
-  morphTargets: 1000,
-  millionNumbers: 12,
-};
+import { MotionOnlyError } from './motion-only-error';
 
 const index = v.pipe(v.number(), v.integer(), v.minValue(0));
 const list = <Item extends v.GenericSchema>(item: Item) => v.optional(v.array(item), []);
@@ -80,18 +51,18 @@ const numbersOf: Readonly<Record<string, number>> = {
   MAT3: 9,
   MAT4: 16,
 };
-/** The largest share of JSON in a file's bytes. */
+/** The largest fraction of JSON in a file's bytes. */
 const mostJson = 0.25;
 
 const ktx2Advice =
   'has KTX2 textures, which this page does not read. Convert them to PNG, JPEG or WebP and save it again.';
 
-/** No description of a body is nested this deep; a reader that follows one that is runs out of stack. */
+/** The deepest nesting of the JSON, because readers are recursive. */
 const deepestNesting = 64;
 
 /**
- * Every address in the file that a reader may follow: each value that is called `uri`, at any depth, extensions
- * included. What stands in `extras` is a note for other programs. Throws where there is no end to the depth.
+ * Returns the URLs in the file: each value with the key `uri`, at any depth, extensions included. `extras` are left
+ * out, because no reader follows them. Throws if the nesting is too deep.
  */
 function urisIn(json: unknown): string[] {
   const uris: string[] = [];
@@ -109,9 +80,9 @@ function urisIn(json: unknown): string[] {
 }
 
 /**
- * Throws a sentence that names the file and the limit where a body would cost too much or reach outside itself. Looks
- * at headers alone: nothing is decoded, allocated or fetched. `unpacked`: extensions of compression that are read all
- * the same. Returns those that the file uses.
+ * Throws an Error that names the file and the limit if the avatar exceeds a limit or refers to another file. Reads
+ * headers alone: nothing is decoded, allocated or fetched. `unpacked`: the supported extensions of compression. Returns
+ * those that the file uses.
  */
 export function inspectAvatar(
   bytes: Uint8Array,
@@ -124,7 +95,7 @@ export function inspectAvatar(
       throw new Error(`${name}: ${shownNumber(has)} ${what}; an avatar may have ${shownNumber(may)} at most`);
   };
   limit('MB', bytes.length / 2 ** 20, limits.megabytes);
-  const chunks = chunksOf(bytes);
+  const chunks = readGlbChunks(bytes);
   if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * mostJson);
   let json: unknown;
@@ -146,7 +117,7 @@ export function inspectAvatar(
   }
   const { extensionsRequired, extensionsUsed, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
   if (meshes.length === 0) {
-    if (parsed.output.animations.length > 0) throw new MotionWithoutBody(name);
+    if (parsed.output.animations.length > 0) throw new MotionOnlyError(name);
     throw new Error(`${name}: holds nothing that could be seen: it has no meshes`);
   }
   const foreign = extensionsRequired.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
@@ -165,7 +136,7 @@ export function inspectAvatar(
   limit('morph targets', targets, limits.morphTargets);
   const numbers = accessors.reduce((sum, { count, type }) => sum + count * (numbersOf[type] ?? 16), 0);
   limit('million numbers', numbers / 1e6, limits.millionNumbers);
-  // A number takes at least one byte: the views' unpacked size is bounded as the accessors' is.
+  // A number has at least one byte: the decoded size of the views is limited as that of the accessors.
   const bytesUnpacked = bufferViews.reduce((sum, { extensions }) => {
     const packed = extensions.EXT_meshopt_compression ?? extensions.KHR_meshopt_compression;
     return sum + (packed ? packed.count * packed.byteStride : 0);
@@ -177,7 +148,7 @@ export function inspectAvatar(
       // Strips and fans have a triangle for each corner but two, lists for each three.
       return sum + (mode === 4 ? count / 3 : count);
     }, 0);
-  // A mesh that hangs from many nodes is drawn as often.
+  // A mesh is drawn once for each node that refers to it.
   const triangles = nodes.reduce((sum, { mesh }) => sum + (mesh === undefined ? 0 : corners(mesh)), 0);
   limit('triangles', triangles, limits.triangles);
 

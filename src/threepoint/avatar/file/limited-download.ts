@@ -2,14 +2,14 @@ import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { TransientError } from '../../core/errors/transient-error';
 import { joinBytes, nameOfAddress } from '../../core/files';
 
-/** What a file is to be, with its article, and how much of it this page reads. */
+/** The expected kind of file, with its article, and the size limit. */
 export interface FileKind {
   readonly what: string;
   readonly megabytes: number;
 }
 
 export interface DownloadOptions {
-  /** Called with the share [0, 1] that has arrived. */
+  /** Called with the fraction [0, 1] that has loaded. */
   readonly onProgress?: (share: number) => void;
   /** Cancels a download. */
   readonly signal?: AbortSignal;
@@ -18,10 +18,10 @@ export interface DownloadOptions {
 }
 
 /** Returns the error for a file that is larger than its kind may be. */
-export const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
+export const fileTooLargeError = (name: string, { what, megabytes }: FileKind): Error =>
   new Error(`${name}: larger than ${megabytes} MB, the limit for ${what}`);
 
-/** Browsers do not say which of the two refused: the policy of the page's own server, or the other server. */
+/** Browsers do not report whether the page's content security policy or the other server refused. */
 const otherServerHint =
   '. Files on another server need its permission (CORS) and that of this page (THREEPOINT_FILES_FROM). Save the file and open it from this device';
 
@@ -29,8 +29,8 @@ const isOfOtherServer = (url: string): boolean =>
   URL.canParse(url) && new URL(url).origin !== globalThis.location?.origin;
 
 /**
- * Downloads a file. One that is larger than its kind may be is refused before it is read, or as soon as that shows.
- * Rejects with a sentence that names the file; with a TransientError where the network or the server is to blame.
+ * Downloads a file. A file that is too large is refused before or while it is read. Rejects with an Error that names
+ * the file; with a TransientError if the network or the server failed.
  */
 export async function downloadLimited(
   url: string,
@@ -45,7 +45,7 @@ export async function downloadLimited(
     const why = isOfOtherServer(url) ? otherServerHint : '';
     throw new TransientError(`${name}: could not be downloaded (${firstLine(reasonOf(error))})${why}`);
   });
-  /** Ends the answer, so that nothing more of it comes. */
+  /** Cancels the response, then throws. */
   const refuse = (error: Error): never => {
     aborting.abort();
     throw error;
@@ -55,7 +55,7 @@ export async function downloadLimited(
   if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
     return refuse(new Error(`${name}: the server sent a web page instead of ${kind.what}`));
   const total = Number(response.headers.get('content-length')) || 0;
-  if (total > most) return refuse(tooLarge(name, kind));
+  if (total > most) return refuse(fileTooLargeError(name, kind));
   const pieces: Uint8Array[] = [];
   let received = 0;
   const reader = response.body.getReader();
@@ -66,7 +66,7 @@ export async function downloadLimited(
     if (done) break;
     pieces.push(value);
     received += value.length;
-    if (received > most) return refuse(tooLarge(name, kind));
+    if (received > most) return refuse(fileTooLargeError(name, kind));
     if (total > 0) onProgress?.(Math.min(1, received / total));
   }
   return joinBytes(pieces).buffer;

@@ -4,8 +4,8 @@ import { meshesOf } from '../scene-meshes';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
-/** Returns the numbers of an interleaved attribute in an array of its own. */
-function unravelled(attribute: InterleavedBufferAttribute): BufferAttribute {
+/** Returns a copy of an interleaved attribute in a separate array. */
+function deinterleaved(attribute: InterleavedBufferAttribute): BufferAttribute {
   const { count, itemSize, normalized, offset } = attribute;
   const { array, stride } = attribute.data;
   const plain = new (array.constructor as new (length: number) => TypedArray)(count * itemSize);
@@ -17,15 +17,14 @@ function unravelled(attribute: InterleavedBufferAttribute): BufferAttribute {
 }
 
 /**
- * Gives each attribute of a scene's meshes an array of its own, and each geometry an index: files may interleave
- * attributes in one buffer and leave indices out, and what cuts meshes into parts reads plain arrays. Meshes that
- * shared an attribute still do.
+ * Replaces interleaved attributes by separate arrays and adds missing indices to a scene's geometries, as the code that
+ * cuts meshes into parts requires. Meshes that shared an attribute still share it.
  */
 export function* makeGeometryPlain(scene: Object3D): Steps<void> {
   const known = new Map<Attribute, BufferAttribute>();
   const plain = (attribute: Attribute): BufferAttribute => {
     if (!('isInterleavedBufferAttribute' in attribute)) return attribute;
-    const made = known.get(attribute) ?? unravelled(attribute);
+    const made = known.get(attribute) ?? deinterleaved(attribute);
     known.set(attribute, made);
     return made;
   };

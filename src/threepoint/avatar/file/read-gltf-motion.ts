@@ -1,15 +1,15 @@
 import { reasonOf } from '../../core/errors/reasons';
-import { glbOfFile } from './convert-to-glb';
-import { chunksOf } from './glb-chunks';
+import { convertToGlb } from './convert-to-glb';
+import { readGlbChunks } from './glb-chunks';
 
-/** The parts of a file of glTF that holds motion. */
+/** The parts of a glTF file with motion. */
 export interface GltfMotion {
   readonly format: 'gltf';
   readonly description: unknown;
   readonly binary: Uint8Array;
 }
 
-/** Whether a file of this name holds motion as glTF, or as FBX, which becomes that. */
+/** Returns whether a file with this name is glTF, or FBX, which is converted to glTF. */
 export const isGltfMotion = (name: string): boolean => /\.(vrma|glb|gltf|fbx)$/i.test(name);
 
 function parsed(text: string, name: string): unknown {
@@ -38,7 +38,7 @@ export async function readGltfMotion(bytes: ArrayBuffer, name: string): Promise<
     const description = parsed(new TextDecoder().decode(bytes), name);
     return { format: 'gltf', description, binary: await embeddedNumbers(description, name) };
   }
-  const chunks = chunksOf(new Uint8Array(await glbOfFile(bytes, name, 'motion')));
+  const chunks = readGlbChunks(new Uint8Array(await convertToGlb(bytes, name, 'motion')));
   if (!chunks) throw new Error(`${name}: not a GLB file, or truncated`);
   return { format: 'gltf', description: parsed(chunks.json, name), binary: chunks.binary };
 }

@@ -15,13 +15,16 @@ const pardoned = [
   'ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE',
   'UNSUPPORTED_EXTENSION',
 ];
-/** Bodies are moved by poses: animations are not read. */
+/** Animations are not read, because poses move the avatar. */
 const unread = /^\/animations(\/|$)/;
-/** A node without children may say so by an empty list. */
+/** A node may have an empty list of children. */
 const mayBeEmpty = /^\/nodes\/\d+\/children$/;
 const information = 2;
 
-/** What the Khronos validator finds wrong with a GLB file, a sentence each, at most twenty; nothing: it is valid. */
+/**
+ * Returns the faults that the Khronos validator finds in a GLB file, a sentence each, at most twenty; empty: it is
+ * valid.
+ */
 export async function gltfFaults(bytes: Uint8Array): Promise<readonly string[]> {
   const { issues } = await validateBytes(bytes, {
     format: 'glb',

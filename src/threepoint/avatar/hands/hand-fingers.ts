@@ -7,7 +7,7 @@ import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '.
 import { conjugate, multiply, quat } from '../../core/math/quat';
 import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
-import { ofSide, type RigFinger, type RigHand, readHand } from './rig-hand';
+import { ofSide, type RigFinger, type RigHand, readRigHand } from './rig-hand';
 
 const frames = makeFingerFrames();
 /** The rotations of a finger's bones since the rest pose. */
@@ -15,14 +15,14 @@ const turned = makeFingerFrames();
 const against = quat(0, 0, 0, 1);
 const carried = quat(0, 0, 0, 1);
 
-/** One hand's fingers on a rig, at ease at first. */
+/** Draws one hand's fingers on a rig; they are relaxed at first. */
 export class HandFingers {
   readonly #side: Side;
   readonly #rig: RigHand;
   readonly #memory = new FingerMemory();
   readonly #seen = makeHandShape();
   #isSeen = false;
-  /** The drawn shape: on a rig of other proportions a pinch takes other angles. */
+  /** The drawn shape, in which a pinch is adapted to the rig's proportions. */
   readonly #shown = makeHandShape();
   /** The shape that the bones were bent to last. */
   readonly #bent = makeHandShape();
@@ -30,9 +30,9 @@ export class HandFingers {
 
   constructor(vrm: VRM, side: Side) {
     this.#side = side;
-    this.#rig = readHand(vrm, side);
-    // Thirty matrices would be composed in every frame although fingers mostly rest; the constraints of a file write
-    // rotations only.
+    this.#rig = readRigHand(vrm, side);
+    // Fingers rarely move: thirty matrices need not be composed in every frame. Constraints of a file write rotations
+    // only.
     const constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
     for (const { bones } of this.#rig.fingers) for (const { node } of bones) node.matrixAutoUpdate = constrained;
     this.update(0);
@@ -68,7 +68,7 @@ export class HandFingers {
     if (shape) copyHandShape(shape, this.#seen);
   }
 
-  /** Bends the bones. deltaSeconds: since the last call. */
+  /** Bends the bones. `deltaSeconds`: the time since the last call. */
   update(deltaSeconds: number): void {
     copyHandShape(this.#memory.follow(this.#isSeen ? this.#seen : null, deltaSeconds), this.#shown);
     if (this.#rig.geometry) closePinch(this.#shown, this.#rig.geometry);

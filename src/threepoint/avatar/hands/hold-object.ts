@@ -8,20 +8,20 @@ import { copyVec3, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } 
 
 type Kind = 'nothing' | 'rod' | 'ball' | 'rim';
 
-/** An object in one hand, frame of a left wrist; the fingers close again when it has moved there. */
-interface Held {
+/** An object in one hand, in the frame of a left wrist; the fingers close again when it has moved. */
+interface HeldObject {
   kind: Kind;
   readonly middle: MutableVec3;
   readonly axis: MutableVec3;
   radius: number;
   tube: number;
   readonly shape: MutableHandShape;
-  /** The distance [m] of a point from the object. */
+  /** Returns the distance [m] of a point from the object's surface. */
   readonly surface: Surface;
 }
 
-function makeHeld(): Held {
-  const held: Held = {
+function makeHeld(): HeldObject {
+  const held: HeldObject = {
     kind: 'nothing',
     middle: vec3(0, 0, 0),
     axis: vec3(0, 0, 0),
@@ -51,8 +51,8 @@ interface Rim extends Ball {
   readonly tube: number;
 }
 
-/** Closes hands round the objects that they hold. All poses are in one frame. */
-export class Holding {
+/** Closes hands around the objects that they hold. All poses are in one frame. */
+export class ObjectHolds {
   readonly #held = { left: makeHeld(), right: makeHeld() };
   readonly #middle = vec3(0, 0, 0);
   readonly #axis = vec3(0, 0, 0);
@@ -60,7 +60,10 @@ export class Holding {
   #eyeHeight = 1.59;
   readonly #hands: Record<Side, HandGeometry> = { left: this.#average, right: this.#average };
 
-  /** Sets the drawn hand [m]; null: a rig without fingers, which uses the average hand of this eye height. */
+  /**
+   * Sets the geometry of the drawn hand [m]; null: a rig without fingers, for which the average hand of this eye height
+   * is used.
+   */
   fitTo(side: Side, hand: HandGeometry | null, eyeHeight: number): void {
     if (eyeHeight !== this.#eyeHeight) {
       this.#eyeHeight = eyeHeight;
@@ -72,7 +75,7 @@ export class Holding {
     this.#held[side].kind = 'nothing';
   }
 
-  /** A round rod along a unit axis. */
+  /** Writes the shape of a hand around a rod along a unit axis. */
   rod(side: Side, wrist: Pose<'floor'>, { at, axis, radius }: Rod, target: MutableHandShape): void {
     this.#put(side, wrist, at, axis);
     this.#close(side, 'rod', radius, 0, target);
@@ -84,8 +87,8 @@ export class Holding {
   }
 
   /**
-   * The rim of a round wall that hangs from a tube: the fingers lie on the wall from outside, the thumb goes over the
-   * tube.
+   * Writes the shape of a hand at the rim of a basket: the fingers lie on the wall from outside, the thumb lies over
+   * the tube.
    */
   rim(side: Side, wrist: Pose<'floor'>, { at, normal, radius, tube }: Rim, target: MutableHandShape): void {
     this.#put(side, wrist, at, normal);
@@ -120,7 +123,7 @@ const noAxis = vec3(0, 0, 0);
 const fromMiddle = vec3(0, 0, 0);
 
 /** Returns the distance [m] of a point on a finger from a held object. */
-function distanceTo({ kind, middle, axis, radius, tube }: Held, point: Vec3, finger: FingerName): number {
+function distanceTo({ kind, middle, axis, radius, tube }: HeldObject, point: Vec3, finger: FingerName): number {
   if (kind === 'rod') return distanceToRod(point, middle, axis, radius);
   if (kind === 'ball') return distanceToBall(point, middle, radius);
   const fromWall = distanceToRod(point, middle, axis, radius);

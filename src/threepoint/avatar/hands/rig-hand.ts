@@ -2,7 +2,7 @@ import type { VRM } from '@pixiv/three-vrm';
 import { type Bone, type Object3D, Quaternion, Vector3 } from 'three';
 import { fingerBoneNames } from '../../core/body/finger-bone-names';
 import {
-  bendOfPoints,
+  bendFromPoints,
   type FingerGeometry,
   type FingerPoints,
   fingerFrames,
@@ -35,14 +35,13 @@ import { skinnedMeshesOf } from '../scene-meshes';
 export type BoneIndex = 0 | 1 | 2;
 
 /**
- * A bone of a finger. Its node's rotation for a bend is before · turned · after, where turned is how the bone before it
- * in the rig (none: the hand) and this one have turned against each other since the rest pose, in the frame of the own
- * wrist.
+ * A bone of a finger. Its node's rotation is before · turned · after, where turned is the rotation since the rest pose
+ * relative to the carrying bone, in the frame of the wrist.
  */
 export interface FingerBone {
   readonly node: Object3D;
   readonly index: BoneIndex;
-  /** The bone of the finger that carries it; null: the hand. */
+  /** The bone of the finger that is its parent; null: the hand. */
   readonly carrier: BoneIndex | null;
   readonly before: Quat;
   readonly after: Quat;
@@ -64,27 +63,27 @@ export interface RigHand {
 }
 
 /**
- * A finger's three nodes from the palm on; three-vrm gives the bones of VRM 0.x's thumbs the names of 1.0. null: the
- * rig lacks one.
+ * Returns a finger's three nodes from the palm outwards; null: the rig lacks the bone. three-vrm gives thumbs of VRM
+ * 0.x the bone names of 1.0.
  */
 const nodesOf = (vrm: VRM, side: Side, finger: FingerName): (Object3D | null)[] =>
   fingerBoneNames(side, finger).map((bone) => boneNode(vrm, bone as BoneName));
 
-/** A wrist at rest in the rig's frame, which faces +Z, arms spread, palms down. */
+/** The orientation of a wrist at rest in the rig's frame, which faces +Z, with arms spread and palms down. */
 const rigFromWrist: Readonly<Record<Side, Quat>> = {
   left: fromAxes(backward, up, vec3(-1, 0, 0)),
   right: fromAxes(forward, up, right),
 };
 
-/** The length of the last bone of a finger without an end, as a share of the one before. */
+/** The length of a finger's last bone relative to the one before, if the rig has no end bone. */
 const lastBone = 0.8;
-/** The radius of a finger without skin, as a share of the length of its first bone. */
+/** The radius of a finger without skin relative to the length of its first bone. */
 const thickness = 0.22;
-/** A finger's radius at its root against that at its tip. */
+/** The ratio of a finger's radius at its root to that at its tip. */
 const taper = 1.3;
 
-/** The fingers of one hand of a rig at rest, world matrices up to date. */
-export function readHand(vrm: VRM, side: Side): RigHand {
+/** Returns the fingers of one hand of a rig at rest. World matrices must be up to date. */
+export function readRigHand(vrm: VRM, side: Side): RigHand {
   const hand = boneNode(vrm, `${side}Hand`);
   const found = hand ? fingerNames.map((name) => readFinger(vrm, side, name, hand)) : [];
   const fingers = found.flatMap(({ finger }) => finger ?? []);
@@ -107,7 +106,7 @@ function readFinger(vrm: VRM, side: Side, name: FingerName, hand: Object3D): Fou
   restPoints(nodes, hand, side, points);
   const radius = skin ? endAtSkin(skin, hand, side, points) : null;
   const rest = makeFingerFrames();
-  fingerFrames(name, bendOfPoints(name, points, makeHandShape()[name]), rest);
+  fingerFrames(name, bendFromPoints(name, points, makeHandShape()[name]), rest);
   const fromRest = [conjugate(rest[0]), conjugate(rest[1]), conjugate(rest[2])] as const;
   const [root, second, third, tip] = points;
   const lengths = [distance(root, second), distance(second, third), distance(third, tip)] as const;
@@ -129,14 +128,14 @@ function placeIn(at: Vector3, hand: Object3D, side: Side, target: FingerPoints[n
   setVec3(target, at.z, at.y, side === 'left' ? -at.x : at.x);
 }
 
-/** The end of a finger in the frame of its last bone that the rig has. */
+/** Returns the fingertip in the frame of the last bone that the rig has. */
 function tipOf([, , , tip]: FingerPoints, nodes: readonly (Object3D | null)[], hand: Object3D, side: Side): Vector3 {
   const { x, y, z } = tip;
   const inWorld = new Vector3(side === 'left' ? -z : z, y, x).add(hand.getWorldPosition(handAt));
   return nodes.findLast((node) => node !== null)?.worldToLocal(inWorld) ?? inWorld;
 }
 
-/** Returns joints and tip by the bones alone; a missing bone lies at the end of the one before. */
+/** Writes joints and tip by the bones alone; a missing bone lies at the end of the one before. */
 function restPoints(nodes: readonly (Object3D | null)[], hand: Object3D, side: Side, points: FingerPoints): void {
   const along = vec3(0, 0, -1);
   let last = 0.03;
@@ -174,7 +173,7 @@ function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | nu
   return found.length >= 4 ? found : null;
 }
 
-/** Moves a finger's tip to the centre of the skin's roundness there, and returns its radius [m]. */
+/** Moves a finger's tip to the centre of the skin's curvature there, and returns its radius [m]. */
 function endAtSkin(skin: readonly Vector3[], hand: Object3D, side: Side, points: FingerPoints): number {
   const [, , joint, tip] = points;
   const along = normalise(subtract(tip, joint));
@@ -216,7 +215,7 @@ function bonesOf(nodes: readonly (Object3D | null)[], side: Side): readonly Fing
   });
 }
 
-/** The nearest bone of the same finger above a node. */
+/** Returns the nearest ancestor of a node in the same finger. */
 function carrierOf(node: Object3D, nodes: readonly (Object3D | null)[], index: number): BoneIndex | null {
   for (let above = index - 1; above >= 0; above--) {
     const candidate = nodes[above];
@@ -225,7 +224,7 @@ function carrierOf(node: Object3D, nodes: readonly (Object3D | null)[], index: n
   return null;
 }
 
-/** A rotation of the left hand's frame in the frame of this side's wrist. */
+/** Transforms a rotation from the left hand's frame to the frame of this side's wrist. */
 export const ofSide = (side: Side, q: MutableQuat, target: MutableQuat): MutableQuat => {
   copyQuat(q, target);
   return side === 'right' ? mirrorRotation(target) : target;

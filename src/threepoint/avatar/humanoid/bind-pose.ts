@@ -2,11 +2,11 @@ import { Matrix4, type Object3D } from 'three';
 import { skinnedMeshesOf } from '../scene-meshes';
 
 /**
- * A posed bone lies further than this from where its skin was bound to it [share of the body's size, and of a turn].
+ * A bone counts as posed if it lies further than this from its bind pose [fraction of the body's size, and of a turn].
  */
 const posed = 1e-3;
 
-/** Returns each bone's matrix when its skin was bound to it, in one space for all skins. */
+/** Returns the bind matrix of each bone, in one space for all skins. */
 function bindMatrices(scene: Object3D): Map<Object3D, Matrix4> {
   const bound = new Map<Object3D, Matrix4>();
   for (const { skeleton } of skinnedMeshesOf(scene)) {
@@ -28,14 +28,13 @@ const difference = (a: Matrix4, b: Matrix4): number => {
 };
 
 /**
- * Puts the bones of a scene back to where they were when the skin was bound to them, where the file shows another pose
- * (the first picture of an animation): the bind pose is a T or an A, the other can be any. A file whose bones stand as
- * bound is left as it is.
+ * Restores the bind pose of a scene's bones if the file shows another pose, such as the first frame of an animation.
+ * The bind pose is a T-pose or an A-pose; the other can be any.
  */
 export function restoreBindPose(scene: Object3D): void {
   scene.updateMatrixWorld(true);
   const bound = bindMatrices(scene);
-  // From the space of the binding to the scene: the same for all bones of a body that stands as bound.
+  // The transform from bind space to the scene, which is the same for all bones of a body in its bind pose.
   const spaces = [...bound].map(([bone, matrix]) => bone.matrixWorld.clone().multiply(matrix.clone().invert()));
   const [first] = spaces;
   if (!first) return;

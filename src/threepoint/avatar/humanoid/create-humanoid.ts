@@ -3,15 +3,15 @@ import { type Group, type Object3D, Vector3 } from 'three';
 import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
-import { fileBones, UnknownBones } from '../../core/humanoid/unknown-bones-error';
+import { fileBones, UnknownBonesError } from '../../core/humanoid/unknown-bones-error';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
-import { demandBones } from './needed-bones';
+import { assertNeededBones } from './needed-bones';
 
-/** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
+/** Returns the name of a node in the file. three.js rewrites names and keeps the original in userData. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);
 
-/** Nodes by the file's own names; of several of one name the uppermost. `among`: which nodes count. */
+/** Returns the nodes by their names in the file; of several with one name the topmost. `among`: filters the nodes. */
 function nodesByName(scene: Group, among: (node: Object3D) => boolean): Map<string, Object3D> {
   const nodes = new Map<string, Object3D>();
   scene.traverse((node) => {
@@ -25,8 +25,8 @@ const skinBones = (scene: Group): Set<Object3D> =>
   new Set(skinnedMeshesOf(scene).flatMap(({ skeleton }) => skeleton.bones));
 
 /**
- * The nodes that may be bones: those that move skin, with what lies between them; of a file without skins all.
- * `known`: nodes that are bones in any case.
+ * Returns the nodes that may be bones: those that move skin and the nodes between them; all nodes if the file has no
+ * skin. `known`: nodes that are bones in any case.
  */
 function candidatesOf(scene: Group, known: Iterable<Object3D>): readonly Object3D[] {
   const skinned = skinBones(scene);
@@ -44,7 +44,7 @@ function candidatesOf(scene: Group, known: Iterable<Object3D>): readonly Object3
   return all.filter((node) => under.has(node) && !outside.has(node));
 }
 
-/** The sums of the skin weights by bone; empty: no mesh has a skin. */
+/** Returns the sum of the skin weights of each bone; empty: no mesh has a skin. */
 function skinWeights(scene: Group): Map<Object3D, number> {
   const sums = new Map<Object3D, number>();
   for (const { geometry, skeleton } of skinnedMeshesOf(scene)) {
@@ -60,7 +60,10 @@ function skinWeights(scene: Group): Map<Object3D, number> {
   return sums;
 }
 
-/** Returns the bones of a scene at rest, and their nodes. Throws where they have no places. */
+/**
+ * Returns the bones of a scene at rest, and their nodes. Throws if joints have no finite positions, or all the same
+ * one.
+ */
 export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D> = []) {
   const nodes = candidatesOf(scene, known);
   const indices = new Map(nodes.map((node, i) => [node, i]));
@@ -82,7 +85,8 @@ export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D>
 }
 
 /**
- * Finds the bones of a scene. Throws UnknownBones with what was found and what is missing where they are no humanoid's.
+ * Matches the bones of a scene to a humanoid. Throws an UnknownBonesError with the matched and the missing bones if
+ * that fails.
  */
 function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
   const { nodes, joints } = skeletonOf(scene, name);
@@ -92,16 +96,16 @@ function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D>
     return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
   if (joints.every((joint) => joint.name === '')) throw new Error(`${name}: no humanoid in the file: it has no bones`);
   const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
-  throw new UnknownBones(`${name}: ${complaint}. ${advice}`, fileBones(joints, match.map));
+  throw new UnknownBonesError(`${name}: ${complaint}. ${advice}`, fileBones(joints, match.map));
 }
 
-/** The nodes that a map names, of several of one name one that carries skin. Throws where one is not in the file. */
+/** Returns the nodes that a map names; of several with one name, one that moves skin. Throws if a node is missing. */
 function mappedBones(scene: Group, bones: BoneMap, name: string): ReadonlyMap<BoneName, Object3D> {
   const skinned = skinBones(scene);
-  // A mesh may be called as the bone that moves it.
+  // A mesh may have the name of the bone that moves it.
   const nodes = nodesByName(scene, (node) => skinned.has(node));
   for (const [called, node] of nodesByName(scene, () => true)) if (!nodes.has(called)) nodes.set(called, node);
-  // What three.js made of a name counts as well: it is what pages print.
+  // The names that three.js has rewritten are accepted too, because pages print them.
   scene.traverse((node) => {
     if (!nodes.has(node.name)) nodes.set(node.name, node);
   });
@@ -115,13 +119,13 @@ function mappedBones(scene: Group, bones: BoneMap, name: string): ReadonlyMap<Bo
 }
 
 /**
- * Makes a VRM of a scene that is none. Its bones are those of `bones`, or those that are found. Throws a sentence that
- * names the file and the missing bone, or what was found.
+ * Creates a VRM from a scene that is none. Its bones are those of `bones`, or matched ones. Throws an Error that names
+ * the file and the missing bone.
  */
-export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
+export function createHumanoid(scene: Group, name: string, given?: BoneMap): VRM {
   scene.updateMatrixWorld(true);
   const bones = given ? mappedBones(scene, given, name) : foundBones(scene, name);
-  demandBones(name, (bone) => bones.has(bone));
+  assertNeededBones(name, (bone) => bones.has(bone));
   const humanBones = Object.fromEntries([...bones].map(([bone, node]) => [bone, { node }])) as unknown as VRMHumanBones;
   const humanoid = new VRMHumanoid(humanBones);
   scene.add(humanoid.normalizedHumanBonesRoot);

@@ -5,16 +5,16 @@ import { type FileBones, fileBones } from '../../core/humanoid/unknown-bones-err
 import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
 import { skeletonOf } from './create-humanoid';
 
-/** The bones of a file, and whether it is worn without a map of them. */
+/** The bones of a file, and whether it can be used without a bone map. */
 export interface ReadBones extends FileBones {
   readonly accepted: boolean;
 }
 
 /**
- * Reads the bones of a checked file and what they are without a map: those that a VRM states, and those that are found
- * in another file. Rejects with a sentence that names the file.
+ * Reads the bones of a checked file and matches them: by a VRM's humanoid, else by the matcher. Rejects with an Error
+ * that names the file.
  */
-export async function bonesOfFile(checked: ReadableAvatar, name: string, decoders: Decoders): Promise<ReadBones> {
+export async function readFileBones(checked: ReadableAvatar, name: string, decoders: Decoders): Promise<ReadBones> {
   const { gltf, own } = await readScene(checked, name, { decoders });
   const { scene } = gltf;
   try {

@@ -4,23 +4,21 @@ import { type BoneName, handFingerBones, neededBones } from '../../core/humanoid
 import { type Side, sides } from '../../core/math/side';
 import { boneNode } from './needed-bones';
 
-// From here on a body at rest faces +Z, as a VRM does: its left is +X.
+// In this file a body at rest faces +Z, as a VRM does: its left is +X.
 const left = new Vector3(1, 0, 0);
 const right = new Vector3(-1, 0, 0);
 const up = new Vector3(0, 1, 0);
 const down = new Vector3(0, -1, 0);
 
-/** A body leans or slouches less than this when it rests [rad]: more is a scene that was turned. */
+/** The largest lean of a body at rest [rad]; a larger one is a rotated scene. */
 const mostLean = 0.6;
-/**
- * Bodies that are smaller or larger [m] than any are taken for bodies in another unit, and made as tall as this one.
- */
+/** The range of plausible heights [m]; other bodies are in another unit and are scaled to the default height. */
 const smallest = 0.4;
 const largest = 4;
 const usual = 1.6;
-/** The ankle above the sole [share of the height to the head joint]. */
+/** The height of the ankle above the sole [fraction of the height of the head joint]. */
 const ankleShare = 0.065;
-/** From this on a limb counts as not straight [rad]. */
+/** The angle from which a limb counts as bent [rad]. */
 const armBend = 0.03;
 const handBend = 0.1;
 const legBend = 0.05;
@@ -28,7 +26,7 @@ const handRoll = 0.15;
 
 const at = (node: Object3D): Vector3 => new Vector3().setFromMatrixPosition(node.matrixWorld);
 
-/** All rotations that take axes to axes. */
+/** Returns the rotations that map axes to axes. */
 function axisRotations(): Matrix4[] {
   const units = [left, right, up, down, new Vector3(0, 0, 1), new Vector3(0, 0, -1)];
   return units.flatMap((x) =>
@@ -36,13 +34,13 @@ function axisRotations(): Matrix4[] {
   );
 }
 
-/** How far two rotations lie apart [rad]. */
+/** Returns the angle between two rotations [rad]. */
 const between = (a: Matrix4, b: Matrix4): number =>
   new Quaternion().setFromRotationMatrix(a).angleTo(new Quaternion().setFromRotationMatrix(b));
 
 /**
- * The rotation that stands a body up and turns it to +Z: by right angles where that will do, because bodies lean a
- * little.
+ * Returns the rotation that brings a body upright and facing +Z: by right angles if that suffices, because bodies lean
+ * a little.
  */
 function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
   const y = head.clone().sub(hips).normalize();
@@ -53,10 +51,10 @@ function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
 }
 
 /**
- * A body's bones while its rest is settled: turned and moved in the world frame, across nodes between them that are no
- * bones.
+ * The bones of a body while its rest pose is settled. They are rotated and moved in the world frame, whatever nodes lie
+ * between them.
  */
-class Resting {
+class RestingBody {
   constructor(
     readonly vrm: VRM,
     readonly name: string,
@@ -72,7 +70,7 @@ class Resting {
     return node && at(node);
   }
 
-  /** Turns a bone, and what hangs from it, about its own joint; bones of the list that hang elsewhere move along. */
+  /** Rotates a bone and its descendants about its joint; further bones of the list move with it. */
   turn(bones: readonly BoneName[], rotation: Quaternion): void {
     const nodes = bones.flatMap((bone) => this.node(bone) ?? []);
     const [pivot] = nodes;
@@ -98,7 +96,7 @@ function setWorld(node: Object3D, world: Matrix4): void {
   node.updateWorldMatrix(false, true);
 }
 
-function demandFinite(body: Resting): void {
+function assertFiniteJoints(body: RestingBody): void {
   for (const bone of neededBones) {
     const node = body.node(bone);
     if (node && !node.matrixWorld.elements.every(Number.isFinite))
@@ -106,8 +104,8 @@ function demandFinite(body: Resting): void {
   }
 }
 
-/** Throws where joints lie as no body's do: on top of one another, or an arm longer than the body. */
-function demandBody(body: Resting): void {
+/** Throws if the joints have implausible distances, such as an arm longer than the body. */
+function assertBodyProportions(body: RestingBody): void {
   const head = body.at('head')!;
   const hips = body.at('hips')!;
   const trunk = head.distanceTo(hips);
@@ -125,13 +123,13 @@ function demandBody(body: Resting): void {
   }
 }
 
-/** Whether the skin is drawn as in a mirror, by a scale below zero. */
-function mirrored(body: Resting): boolean {
+/** Returns whether a negative scale mirrors the skin. */
+function mirrored(body: RestingBody): boolean {
   return body.node('hips')!.matrixWorld.determinant() < 0;
 }
 
-/** Moves, turns and scales the whole scene so that the body stands on the floor, faces +Z, and is of a body's size. */
-function stand(body: Resting): void {
+/** Transforms the scene so that the body stands on the floor, faces +Z and has a plausible size. */
+function standUpright(body: RestingBody): void {
   const { scene } = body.vrm;
   const apply = (matrix: Matrix4) => setWorld(scene, matrix.multiply(scene.matrixWorld));
   if (mirrored(body)) apply(new Matrix4().makeScale(-1, 1, 1));
@@ -147,11 +145,8 @@ function stand(body: Resting): void {
   if (!(size > smallest && size < largest)) apply(new Matrix4().makeScale(usual / size, usual / size, usual / size));
 }
 
-/**
- * Returns the height [m] of the soles as far as bones show it; a body without legs has its floor where average legs
- * would end.
- */
-function lowest(body: Resting): number {
+/** Returns the height [m] of the soles, estimated from the bones; for a body without legs that of average legs. */
+function lowest(body: RestingBody): number {
   const head = body.at('head')!.y;
   const feet = [body.at('leftFoot'), body.at('rightFoot')].flatMap((foot) => foot?.y ?? []);
   if (feet.length === 0) return head - 2.6 * (head - body.at('hips')!.y);
@@ -160,9 +155,9 @@ function lowest(body: Resting): number {
 }
 
 /**
- * Puts the soles on the floor where they are off it by more than shoes are thick, and the pelvis over the middle of it.
+ * Moves the soles to the floor if they are off by more than the thickness of shoes, and the pelvis above the origin.
  */
-function putOnFloor(body: Resting): void {
+function putOnFloor(body: RestingBody): void {
   const floor = lowest(body);
   const hips = body.at('hips')!;
   const near = (body.at('head')!.y - floor) * 0.06;
@@ -174,8 +169,8 @@ function putOnFloor(body: Resting): void {
 const sideBones = (side: Side, names: readonly string[]): BoneName[] =>
   names.map((name) => `${side}${name}` as BoneName);
 
-/** Turns the first of `bones` so that it points along `way`, if it is off by more than `least` [rad]. */
-function point(body: Resting, bones: readonly BoneName[], to: Vector3 | null, way: Vector3, least: number): void {
+/** Rotates the first of `bones` so that it points along `way`, if it is off by more than `least` [rad]. */
+function point(body: RestingBody, bones: readonly BoneName[], to: Vector3 | null, way: Vector3, least: number): void {
   const from = body.at(bones[0]!);
   if (!from || !to) return;
   const direction = to.clone().sub(from).normalize();
@@ -183,16 +178,16 @@ function point(body: Resting, bones: readonly BoneName[], to: Vector3 | null, wa
   body.turn(bones, new Quaternion().setFromUnitVectors(direction, way));
 }
 
-/** The middle of where the fingers begin; null: the hand has none. */
-function knuckles(body: Resting, side: Side): Vector3 | null {
+/** Returns the mean position of the finger roots; null: the hand has no fingers. */
+function knuckles(body: RestingBody, side: Side): Vector3 | null {
   const roots = sideBones(side, ['IndexProximal', 'MiddleProximal', 'RingProximal', 'LittleProximal']);
   const found = roots.flatMap((root) => body.at(root) ?? []);
   if (found.length === 0) return null;
   return found.reduce((sum, root) => sum.add(root), new Vector3()).divideScalar(found.length);
 }
 
-/** Straight out to the side, palms down: what every rotation of a pose is counted from. */
-function straightenArm(body: Resting, side: Side): void {
+/** Straightens an arm to the side with the palm down: the rest pose to which rotations of a pose are relative. */
+function straightenArm(body: RestingBody, side: Side): void {
   const out = side === 'left' ? left : right;
   const hand = sideBones(side, ['Hand', ...handFingerBones]);
   const lowerArm = sideBones(side, ['LowerArm']).concat(hand);
@@ -203,14 +198,14 @@ function straightenArm(body: Resting, side: Side): void {
   const index = body.at(`${side}IndexProximal`);
   const little = body.at(`${side}LittleProximal`) ?? body.at(`${side}RingProximal`);
   if (!index || !little) return;
-  // Palm down, the index finger lies ahead of the others.
+  // With the palm down, the index finger is in front of the others.
   const across = index.sub(little);
   const roll = Math.atan2(across.y, across.z);
   if (Math.abs(roll) > handRoll) body.turn(hand, new Quaternion().setFromAxisAngle(left, roll));
 }
 
-/** Straight down, the feet as they stood. */
-function straightenLeg(body: Resting, side: Side): void {
+/** Straightens a leg downwards; the feet keep their orientation. */
+function straightenLeg(body: RestingBody, side: Side): void {
   const foot = sideBones(side, ['Foot', 'Toes']);
   const lowerLeg = sideBones(side, ['LowerLeg']).concat(foot);
   const upperLeg = sideBones(side, ['UpperLeg']).concat(lowerLeg);
@@ -224,17 +219,17 @@ function straightenLeg(body: Resting, side: Side): void {
 }
 
 /**
- * Brings a body from a file to the rest that a rig is read from: upright on the floor, of a body's size, facing +Z,
- * arms straight out to the sides with palms down, legs straight down, under a scene of any scale and rotation. Throws a
- * sentence that names the file where the joints are no body's.
+ * Brings a body from a file into the rest pose: upright on the floor, of plausible size, facing +Z, arms straight to
+ * the sides with palms down, legs straight down. The scene may have any scale and rotation. Throws an Error that names
+ * the file if the joints are implausible.
  */
 export function settleRest(vrm: VRM, name: string): void {
-  const body = new Resting(vrm, name);
+  const body = new RestingBody(vrm, name);
   vrm.scene.updateMatrixWorld(true);
-  demandFinite(body);
-  stand(body);
-  demandFinite(body);
-  demandBody(body);
+  assertFiniteJoints(body);
+  standUpright(body);
+  assertFiniteJoints(body);
+  assertBodyProportions(body);
   for (const side of sides) {
     straightenArm(body, side);
     straightenLeg(body, side);

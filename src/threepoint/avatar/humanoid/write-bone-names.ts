@@ -1,6 +1,6 @@
 import { type BoneMap, boneNames } from '../../core/humanoid/bones';
 import { packGlb } from '../../core/motion/gltf';
-import { chunksOf } from '../file/glb-chunks';
+import { readGlbChunks } from '../file/glb-chunks';
 
 interface MappedGltf {
   [field: string]: unknown;
@@ -22,7 +22,7 @@ const oldName = (bone: string): string =>
 /** VRM requires the bones of both legs. */
 const vrmLegs = ['left', 'right'].flatMap((side) => ['UpperLeg', 'LowerLeg', 'Foot'].map((part) => side + part));
 
-/** Returns the index of the node of every bone in a map, of several of one name one that carries skin. */
+/** Returns the index of the node of each bone in a map; of several nodes with one name, one that moves skin. */
 function mappedNodes({ nodes = [], skins }: MappedGltf, bones: BoneMap) {
   const joints = new Set(skins?.flatMap((skin) => skin.joints));
   return Object.entries(bones).map(([bone, called]) => {
@@ -57,18 +57,18 @@ export function setVrmBones(json: MappedGltf, bones: BoneMap): boolean {
 }
 
 /**
- * Returns the GLB file with its bones named by this map, so that a page needs no map to read it: in the humanoid of a
- * VRM, and else as VRM's names of the nodes. Rejects where the map names a missing node, or the file is not a GLB.
+ * Returns the GLB file with the bones of this map, so that it can be read without the map: in the humanoid of a VRM,
+ * else as the names of the nodes. Rejects if the map names a missing node, or the file is not a GLB.
  */
 export async function withNamedBones(bytes: ArrayBuffer, bones: BoneMap): Promise<ArrayBuffer> {
-  const chunks = chunksOf(new Uint8Array(bytes));
+  const chunks = readGlbChunks(new Uint8Array(bytes));
   if (!chunks) throw new Error('no GLB file');
   const json = JSON.parse(chunks.json) as MappedGltf;
   if (!setVrmBones(json, bones)) {
     const nodes = json.nodes ?? [];
     const mapped = mappedNodes(json, bones);
     for (const node of nodes) {
-      // What is called as a bone and is none of them would be taken for one.
+      // Other nodes with the name of a bone are renamed.
       if (node.name !== undefined && plainBones.has(plain(node.name))) node.name = `not ${node.name} here`;
     }
     for (const { bone, node } of mapped) nodes[node]!.name = bone;

@@ -12,7 +12,7 @@ const bonesOf = {
   right: { thigh: 'rightUpperLeg', shank: 'rightLowerLeg', foot: 'rightFoot' },
 } as const satisfies Record<Side, Record<string, AvatarJoint>>;
 
-/** The legs of a rig that has none. */
+/** The proportions for a rig without legs. */
 const averageLegs: LegProportions = {
   hipOffset: vec3(0.09, -0.06, 0),
   upper: 0.42,

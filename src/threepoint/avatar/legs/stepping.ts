@@ -5,7 +5,7 @@ import type { Side } from '../../core/math/side';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
 import type { Mutable } from '../../core/records';
 
-/** A foot as drawn. All in the floor frame. */
+/** A drawn foot, floor frame. */
 export interface Foot {
   /** Ankle [m]; its height includes the ankle's own above the sole. */
   readonly position: Vec3;
@@ -32,7 +32,7 @@ interface FootState extends Mutable<Foot> {
   standing: number;
   /** The time since it was lifted or put down [s]. */
   seconds: number;
-  /** Whether it was left behind, and takes one step in any case. */
+  /** Whether the foot was left behind and must take a step. */
   leftBehind: boolean;
   goalX: number;
   goalZ: number;
@@ -63,7 +63,7 @@ const ownStep = 0.22;
 const lead = 0.1;
 const followHalfLife = 0.06;
 const standingHalfLife = 0.01;
-/** The largest lift of the sole [leg lengths]. */
+/** The largest height of the sole [leg lengths]. */
 const liftShare = 0.09;
 
 /** The time [s] in which a lifted foot reaches its full speed. */
@@ -94,10 +94,7 @@ const makeFoot = (): FootState => ({
   velocityZ: 0,
 });
 
-/**
- * Feet stand where they were put until they are expected to lift, or are left behind; in the air they follow their
- * goals.
- */
+/** Feet stand still until they are expected to lift or are left behind; in the air they follow their goals. */
 export class Stepping {
   private readonly feet: Readonly<Record<Side, FootState>> = { left: makeFoot(), right: makeFoot() };
   private standing = false;
@@ -130,7 +127,7 @@ function advance(foot: FootState, goal: ExpectedFoot, stance: Stance, deltaSecon
   foot.height = damp(before, foot.planted ? 0 : liftOf(foot, stance), liftHalfLife, deltaSeconds);
   if (!foot.planted) swing(foot, goal, deltaSeconds);
   foot.position.y = stance.ankleHeight + foot.height;
-  // Toes hang while the foot rises and are drawn up before it lands.
+  // Toes point down while the foot rises and up before it lands.
   const tilt = clamp((foot.height - before) / deltaSeconds, -0.4, 0.8) * 0.6;
   const free = (0.5 * foot.height) / (ballAhead * stance.ankleHeight);
   foot.pitch = Math.min(damp(foot.pitch, clamp(tilt, -mostTilt, mostTilt), velocityHalfLife, deltaSeconds), free);

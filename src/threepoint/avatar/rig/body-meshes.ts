@@ -9,7 +9,7 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
-import type { SkinTone } from '../../core/body/avatar-ref';
+import type { SkinTone } from '../../core/body/built-in-bodies';
 import { recordOf } from '../../core/records';
 import type { Steps } from '../between-frames';
 import { palettes, skinColors } from '../palettes';
@@ -18,18 +18,18 @@ import { FlatPartsMaterial } from './flat-parts';
 import type { Rig } from './rig';
 import { type SkinPart, skinParts, sortByPart } from './skin-parts';
 
-/** The layer of what only others and mirrors see: the own head. VRM's own number for it. */
+/** VRM's layer of third-person-only meshes, such as the user's head. */
 export const thirdPersonOnlyLayer = 10;
 const firstPersonOnlyLayer = 9;
 
 export interface AvatarMesh {
   readonly mesh: Mesh;
-  readonly audience: 'both' | 'others' | 'self';
-  /** Index count up to and including each part; a mesh without a skin belongs to one part as a whole. */
+  readonly visibleTo: 'both' | 'others' | 'self';
+  /** The number of indices up to and including each part; a mesh without a skin is one part as a whole. */
   readonly ends: Readonly<Record<SkinPart, number>>;
 }
 
-/** The meshes of a body, those with a skin sorted by its parts, once. */
+/** Returns the meshes of a body, and sorts the indices of skinned ones by part; called once. */
 export function* readMeshes(
   vrm: VRM,
   { bones, helpers }: Pick<Rig, 'bones' | 'helpers'>,
@@ -50,7 +50,7 @@ export function* readMeshes(
     partByNode.set(node, part);
   }
   const partOfBone = (node: Object3D): SkinPart | 'hips' => {
-    // The skin of a joint that helps a bone to bend lies before that bone: a wrist's on the sleeve.
+    // The skin of a helper joint belongs to the part before its bone: that of a wrist to the sleeve.
     const from = helpers.has(node) ? (node.parent?.parent ?? null) : node;
     for (let above = from; above; above = above.parent) {
       const part = partByNode.get(above);
@@ -60,32 +60,32 @@ export function* readMeshes(
   };
   const result: AvatarMesh[] = [];
   for (const mesh of meshesOf(vrm.scene)) {
-    // Bones carry the skin far from where it lay at rest: its own bounds say nothing.
+    // Bones move the skin far from its rest position, so that the bounds of the geometry do not apply.
     mesh.frustumCulled = false;
     mesh.castShadow = true;
-    const audience = mesh.layers.isEnabled(0)
+    const visibleTo = mesh.layers.isEnabled(0)
       ? 'both'
       : mesh.layers.isEnabled(firstPersonOnlyLayer)
         ? 'self'
         : 'others';
     const ends =
       mesh instanceof SkinnedMesh ? yield* sortByPart(mesh, partOfBone, hipLine) : endsOfPart(mesh, partOfBone(mesh));
-    result.push({ mesh, audience, ends });
+    result.push({ mesh, visibleTo, ends });
   }
   return result;
 }
 
-/** Returns where the parts of a mesh end that is one part as a whole. */
+/** Returns the index counts of a mesh that is one part as a whole. */
 function endsOfPart({ geometry }: Mesh, part: SkinPart | 'hips'): Readonly<Record<SkinPart, number>> {
   const first = skinParts.indexOf(part === 'hips' ? 'trunk' : part);
   const count = geometry.index?.count ?? 0;
   return recordOf(skinParts, (_, index) => (index < first ? 0 : count));
 }
 
-/** The largest number of vertices that are used for a head's height: hair has many. */
+/** The maximum number of vertices that are read for a head's height; hair has many. */
 const mostCorners = 1500;
 
-/** How high the head's skin and what hangs on it reach at rest [m], in the rig's own frame. */
+/** Returns the height of the head's skin and its descendants at rest [m], in the rig's frame. */
 function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): number {
   let top = 0;
   const place = new Vector3();
@@ -101,7 +101,7 @@ function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): numbe
   return top;
 }
 
-/** Whether a node is another one or hangs from it. */
+/** Returns whether a node is `above` or a descendant of it. */
 export const isBelow = (node: Object3D | null, above: Object3D): boolean =>
   node !== null && (node === above || isBelow(node.parent, above));
 
@@ -109,16 +109,16 @@ function materialsOf(mesh: Mesh): Material[] {
   return Array.isArray(mesh.material) ? mesh.material : [mesh.material];
 }
 
-/** What a body shows of itself: all of it, head and hands, or nothing before its first pose. */
-export type Shown = 'body' | 'hands' | 'nothing';
+/** The visible parts of a body: all, head and hands, or nothing before its first pose. */
+export type VisibleParts = 'body' | 'hands' | 'nothing';
 
-/** The skin of an avatar: which of it is drawn, for which eyes, in which colours. */
+/** Controls the meshes of an avatar: which parts are drawn, for which cameras, in which colours. */
 export class BodyMeshes {
-  /** The top of the head at rest [m], in the rig's own frame. */
+  /** The height of the top of the head at rest [m], in the rig's frame. */
   readonly top: number;
   private readonly meshes: readonly AvatarMesh[];
   private readonly looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
-  private shown: Shown = 'nothing';
+  private shown: VisibleParts = 'nothing';
   private upperBodyOnly = false;
   private firstPerson = false;
   private opacity = 1;
@@ -130,8 +130,8 @@ export class BodyMeshes {
     this.showLayers();
   }
 
-  /** Whether that is something else than before. */
-  show(shown: Shown): boolean {
+  /** Sets the visible parts; returns whether they have changed. */
+  setVisibleParts(shown: VisibleParts): boolean {
     if (shown === this.shown) return false;
     this.shown = shown;
     this.showParts();
@@ -149,7 +149,7 @@ export class BodyMeshes {
     this.showLayers();
   }
 
-  /** Recolours the materials that a palette names; a palette that is not known changes nothing. */
+  /** Recolours the materials that a palette names; an unknown palette changes nothing. */
   setPalette(name: string): void {
     const palette = palettes.find((candidate) => candidate.name === name);
     if (!palette) return;
@@ -163,7 +163,7 @@ export class BodyMeshes {
     });
   }
 
-  /** Recolours the skin of our people; null: it stays as it is. */
+  /** Recolours the skin of this project's bodies; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void {
     if (tone) this.recolour({ Skin: skinColors[tone] });
   }
@@ -183,7 +183,7 @@ export class BodyMeshes {
     this.opacity = opacity;
     for (const { mesh } of this.meshes) {
       for (const material of materialsOf(mesh)) {
-        const solid = this.ownLook(material);
+        const solid = this.originalLook(material);
         const transparent = solid.transparent || opacity < 1;
         if (material.transparent !== transparent) {
           material.transparent = transparent;
@@ -195,8 +195,8 @@ export class BodyMeshes {
     }
   }
 
-  /** Restores the file's own material: hair and glasses are transparent by themselves. */
-  private ownLook(material: Material) {
+  /** Returns a material's original transparency and opacity: hair and glasses may be transparent. */
+  private originalLook(material: Material) {
     const { transparent, opacity } = material;
     const look = this.looks.get(material) ?? { transparent, opacity };
     this.looks.set(material, look);
@@ -208,15 +208,15 @@ export class BodyMeshes {
     for (const { mesh, ends } of this.meshes) {
       const end = ends[last];
       mesh.visible = this.shown !== 'nothing' && end > 0;
-      // Meshes without a skin may share their geometry; the range of each that is drawn is the whole.
+      // Meshes without a skin may share their geometry, and are drawn as a whole.
       if (end > 0) mesh.geometry.setDrawRange(0, end);
     }
   }
 
   private showLayers(): void {
-    for (const { mesh, audience } of this.meshes) {
-      if (audience === 'both') mesh.layers.set(0);
-      else if (audience === 'others') mesh.layers.set(this.firstPerson ? thirdPersonOnlyLayer : 0);
+    for (const { mesh, visibleTo } of this.meshes) {
+      if (visibleTo === 'both') mesh.layers.set(0);
+      else if (visibleTo === 'others') mesh.layers.set(this.firstPerson ? thirdPersonOnlyLayer : 0);
       else mesh.layers.set(this.firstPerson ? 0 : firstPersonOnlyLayer);
     }
   }

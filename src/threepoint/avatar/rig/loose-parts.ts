@@ -13,7 +13,7 @@ import type { Steps } from '../between-frames';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import type { Rig, RigBone } from './rig';
 
-/** The share of a bone's length that counts as the bone's own; its end belongs to the next bone. */
+/** The fraction of a bone's length that belongs to the bone; its end belongs to the next bone. */
 const ownShare = 0.98;
 /** The number of vertices that one step processes. */
 const verticesAStep = 2048;
@@ -23,7 +23,7 @@ type Bones = Iterable<RigBone>;
 const segment = new Line3();
 const nearest = new Vector3();
 
-/** Returns the bone of a rig at rest whose line to the next bone, or whose joint, is nearest to a place. */
+/** Returns the bone of a rig at rest whose segment or joint is nearest to a point. */
 function nearestBone(bones: Bones, place: Vector3): RigBone {
   let best: RigBone | null = null;
   let least = Number.POSITIVE_INFINITY;
@@ -42,13 +42,13 @@ function nearestBone(bones: Bones, place: Vector3): RigBone {
   return best;
 }
 
-/** The weighted sum of the places of the vertices that a joint moves, and of their weights. */
+/** The weighted sum of the positions of the vertices that a joint moves, and the sum of their weights. */
 interface Moved {
   readonly sum: Vector3;
   weight: number;
 }
 
-/** Sums, for the joints that no bone carries, the places of their vertices in the world at rest. */
+/** Returns, for each joint without a mapped ancestor, the sum of the positions of its vertices at rest, world frame. */
 function* movedVertices(meshes: readonly SkinnedMesh[], isLoose: (joint: Object3D) => boolean) {
   const moved = new Map<Object3D, Moved>();
   const place = new Vector3();
@@ -75,8 +75,8 @@ function* movedVertices(meshes: readonly SkinnedMesh[], isLoose: (joint: Object3
 }
 
 /**
- * Ties the parts of a body that no bone of its rig carries to the nearest bone: meshes beside the skeleton, and joints
- * of a skin outside the mapped bones. The rig must be at rest, its world matrices up to date.
+ * Attaches the parts of a body that are not descendants of a mapped bone to the nearest one: meshes outside the
+ * skeleton, and joints outside the mapped bones. The rig must be at rest, with its world matrices up to date.
  */
 export function* tieLooseParts({ scene, springBoneManager, nodeConstraintManager }: VRM, rig: Rig): Steps<void> {
   const bones = [...rig.bones.values()];
@@ -104,14 +104,14 @@ export function* tieLooseParts({ scene, springBoneManager, nodeConstraintManager
 
 const middleOf = ({ sum, weight }: Moved): Vector3 => sum.clone().divideScalar(weight);
 
-/** Returns the first joint of the chain of a joint that swings. */
+/** Returns the topmost joint of a joint's spring chain. */
 function topOf(joint: Object3D, roots: ReadonlySet<Object3D>): Object3D {
   let top = joint;
   while (top.parent && 'isBone' in top.parent && !roots.has(top.parent)) top = top.parent;
   return top;
 }
 
-/** Lets a bone move what a joint moves: it stands in for the joint in the skins. */
+/** Replaces a joint by a bone in the skins. */
 function tieJoint(skeletons: Iterable<Skeleton>, joint: Object3D, bone: Object3D): void {
   const between = bone.matrixWorld.clone().invert().multiply(joint.matrixWorld);
   for (const { bones, boneInverses } of skeletons) {
@@ -123,7 +123,7 @@ function tieJoint(skeletons: Iterable<Skeleton>, joint: Object3D, bone: Object3D
   }
 }
 
-/** Hangs a mesh without skin on the nearest bone. One from which bones hang leaves its shape to a copy. */
+/** Attaches a mesh without a skin to the nearest bone. A mesh with bones below it is replaced by a copy. */
 function tieMesh(mesh: Mesh, roots: ReadonlySet<Object3D>, bones: Bones): void {
   mesh.geometry.computeBoundingBox();
   const middle = mesh.geometry.boundingBox!.getCenter(new Vector3()).applyMatrix4(mesh.matrixWorld);

@@ -19,21 +19,19 @@ import {
 } from '../../core/math/vec3';
 import type { Rig } from './rig';
 
-/** An upper arm gets no longer or shorter than this [share of its length] before the shoulder gives. */
+/** The largest change of an upper arm's length [fraction] before the shoulder joint moves. */
 const armGives = 0.06;
-/** The base of a missing neck bone, from between the shoulders up to the head [share]. */
+/** The base of a missing neck bone, from the middle of the shoulders to the head [fraction]. */
 const neckShare = 0.3;
-/** The base of a missing clavicle bone, from the neck out to the shoulder [share]. */
+/** The base of a missing clavicle bone, from the neck to the shoulder [fraction]. */
 const clavicleShare = 0.2;
 
-/**
- * A vertebra of the rig: from the one below it, which is next in the rig, at rest and as long as the body wants it [m].
- */
+/** A vertebra of the rig, with its offset from the one below at rest, scaled to the body [m]. */
 interface Link {
   readonly name: JointName;
   readonly below: JointName;
   readonly offset: MutableVec3;
-  /** How much of what the chain misses this joint takes over: 1 at the neck. */
+  /** The fraction of the chain's error that is added to this joint: 1 at the neck. */
   share: number;
 }
 
@@ -41,7 +39,10 @@ interface Shoulder {
   readonly clavicle: 'leftShoulder' | 'rightShoulder';
   readonly upperArm: 'leftUpperArm' | 'rightUpperArm';
   readonly lowerArm: 'leftLowerArm' | 'rightLowerArm';
-  /** From the neck joint to where the clavicle begins, chest's frame, and along the clavicle, its own frame [m]. */
+  /**
+   * The offset from the neck joint to the base of the clavicle in the chest's frame, and along the clavicle in its own
+   * frame [m].
+   */
   readonly root: MutableVec3;
   readonly along: MutableVec3;
 }
@@ -54,7 +55,7 @@ const makeShoulder = (side: Side): Shoulder => ({
   along: vec3(0, 0, 0),
 });
 
-// Scratch of one call; nothing of it is kept.
+// Scratch variables of one call.
 const neck = vec3(0, 0, 0);
 const missed = vec3(0, 0, 0);
 const root = vec3(0, 0, 0);
@@ -65,10 +66,10 @@ const after = vec3(0, 0, 0);
 const swing = quat(0, 0, 0, 1);
 
 /**
- * How far from the rig's own shoulder joint to the estimated one it must go until the elbow is `least` to `most` [m]
- * away [share].
+ * Returns how far the shoulder joint must move from the rig's position to the estimated one, until its distance from
+ * the elbow is within `least` to `most` [m]; a fraction.
  */
-function yielding(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number): number {
+function shoulderShift(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number): number {
   const far = distance(from, elbow);
   if (far >= least && far <= most) return 0;
   const bound = far > most ? most : least;
@@ -81,15 +82,15 @@ function yielding(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number
 }
 
 /**
- * The trunk of a rig that is proportioned otherwise than the estimated body: it keeps its own neck, shoulders and the
- * proportions of its spine. Pelvis, head, elbows and hands stay where they were estimated; where an arm reaches further
- * than the rig's own shoulder lets it, the shoulder gives, as shoulders do.
+ * Adapts the trunk of a pose to a rig with other proportions than the estimated body: the rig keeps its neck, its
+ * shoulders and the proportions of its spine. Pelvis, head, elbows and hands stay where they were estimated. If an arm
+ * cannot reach its elbow, the shoulder joint moves.
  */
-export class OwnTrunk {
+export class RigTrunk {
   private readonly links: Link[] = [];
   private readonly neckToHead = vec3(0, 0, 0);
   private readonly shoulders = [makeShoulder('left'), makeShoulder('right')];
-  /** The neck at the end of the chain of vertebrae. */
+  /** The position of the neck at the end of the chain of vertebrae. */
   private readonly reached = vec3(0, 0, 0);
   private readonly neckOffset = vec3(0, 0, 0);
   private topVertebra: JointName = 'hips';
@@ -104,10 +105,10 @@ export class OwnTrunk {
     this.topVertebra = below;
   }
 
-  /** Takes the rig's measures, scaled by `scale`, for a body in this T-pose. */
+  /** Measures the rig, scaled by `scale`, for a body in this T-pose. */
   fit(tPose: JointPoses, scale: number): void {
     const { rig } = this;
-    /** A joint of the rig at rest as our T-pose has it, which faces the other way [m]. */
+    /** Transforms a joint of the rig at rest (facing +Z) to the T-pose facing −Z [m]. */
     const at = ({ x, y, z }: Vector3): MutableVec3 => vec3(-x * scale, y * scale, -z * scale);
     const rest = (name: JointName): MutableVec3 | null => {
       const place = rig.rest(name);
@@ -117,7 +118,7 @@ export class OwnTrunk {
     if (!hips || !head || !left || !right) throw new Error('avatar/rig-trunk: a rig without hips, head or arms');
     const restNeck = rest('neck') ?? lerp(lerp(left, right, 0.5), head, neckShare);
     subtract(head, restNeck, this.neckToHead);
-    // The spine is as long as pelvis and head leave it; its joints keep their shares.
+    // The spine is scaled to the distance from pelvis to head; its joints keep their proportions.
     const wanted = tPose.head.position.y - this.neckToHead.y - tPose.hips.position.y;
     const share = Math.max(0.2, wanted / Math.max(1e-3, restNeck.y - hips.y));
     let below = hips;
@@ -138,7 +139,7 @@ export class OwnTrunk {
     }
   }
 
-  /** Moves the joints of a pose, floor frame, to where this rig has them. */
+  /** Moves the joints of a pose, floor frame, to the positions for this rig. */
   apply(joints: MutableJointPoses): void {
     subtract(joints.head.position, rotate(joints.neck.orientation, this.neckToHead, neck), neck);
     for (const { name, below, offset } of this.links) {
@@ -165,7 +166,7 @@ export class OwnTrunk {
     add(neck, rotate(joints.upperChest.orientation, fromNeck, root), root);
     add(root, rotate(collar.orientation, along, own), own);
     const long = distance(given, elbow);
-    const give = yielding(own, given, elbow, long * (1 - armGives), long * (1 + armGives));
+    const give = shoulderShift(own, given, elbow, long * (1 - armGives), long * (1 + armGives));
     lerp(own, given, give, arm.position);
     copyVec3(root, collar.position);
     if (give > 0) {

@@ -22,31 +22,31 @@ export interface RigBone {
   readonly restRotation: Quaternion;
   readonly restPosition: Vector3;
   /**
-   * The node's actual parent, which need not be a human bone, in the frame of the parent bone at rest (or of the rig).
+   * The matrix of the node's parent, which need not be a bone, in the frame of the parent bone at rest (or of the rig).
    */
   readonly fromParentBone: Matrix4;
-  /** What scales lie above the node in the file (centimetres, a mirror), in its own frame. */
+  /** The scale of the node's ancestors in the file (centimetres, a mirror), in the frame of the node. */
   readonly restScale: Matrix4;
-  /** Stretch along the bone, in its own frame, the uniform scale of the rig, and that of the file. */
+  /** The stretch along the bone, in its own frame, times the scales of rig and file. */
   readonly stretch: Matrix4;
-  /** The direction to the far end in the bone's own frame, unit, and its distance [m] on the scaled rig. */
+  /** The unit direction to the bone's end in its own frame, and the bone's length [m] on the scaled rig. */
   readonly direction: Vector3;
   ownLength: number;
-  /** World matrix of this frame. */
+  /** The world matrix in this frame. */
   readonly world: Matrix4;
-  /** Whether a pose has set `world`; otherwise the bone keeps its place against its parent. */
+  /** Whether a pose has set `world`; otherwise the bone keeps its pose relative to its parent. */
   placed: boolean;
   /** The drawn position in this frame, floor frame [m]. */
   readonly drawn: MutableVec3;
 }
 
-/** A joint that the file lacks, where a bone of it begins, stretched as that is and turned otherwise. */
+/** An added joint at the origin of a bone, with the bone's stretch and another rotation. */
 export interface HelperJoint {
   readonly base: RigBone;
   readonly node: Bone;
 }
 
-/** The bone whose origin marks the far end of another: what its length is measured to. */
+/** The bone whose origin is the end of another, by which its length is measured. */
 const farEnd: Partial<Record<AvatarJoint, AvatarJoint>> = {
   leftUpperLeg: 'leftLowerLeg',
   leftLowerLeg: 'leftFoot',
@@ -70,9 +70,9 @@ const trunkBones: ReadonlySet<string> = new Set([
   'rightShoulder',
 ]);
 
-/** From a VRM at rest, which faces +Z, to our T-pose, which faces −Z. */
+/** The rotation from a VRM at rest, facing +Z, to the T-pose facing −Z. */
 const ourFacing: Quat = fromAxisAngle(up, Math.PI);
-/** No bone is stretched or shortened further than this [share of its own length]. */
+/** The limits of a bone's stretch [fraction of its length]. */
 const mostStretch = 3;
 const leastStretch = 0.3;
 
@@ -84,21 +84,18 @@ const above = new Matrix4();
 const helperWorld = new Matrix4();
 const facing = quat(0, 0, 0, 1);
 
-/** The bones of a VRM that poses move. Each has its own place: the rig is no chain of rotations. */
+/** The bones of a VRM that poses move. Each bone is placed separately, not by a chain of rotations. */
 export class Rig {
   readonly bones: ReadonlyMap<AvatarJoint, RigBone>;
-  /**
-   * Nodes of joints that the file lacks: each begins where its bone does, which carries it, and shares the skin before
-   * it.
-   */
+  /** The nodes of added joints. Each is at the origin of its bone, whose child it is. */
   readonly helpers = new Set<Object3D>();
   /** The bones with ancestors first: files may hang the hips under the spine. */
   private readonly ordered: readonly RigBone[];
   /** Joints of the bones as drawn, floor frame [m]; the same object in every frame. */
   readonly joints: Partial<Record<AvatarJoint, Vec3>> = {};
-  /** Constraints read positions and rotations; drawing needs the matrices alone. */
+  /** Whether the file has constraints, which read positions and rotations; drawing needs only matrices. */
   private readonly constrained: boolean;
-  /** From the rig at rest to the body. */
+  /** The scale from the rig at rest to the body. */
   private scale = 1;
 
   constructor(vrm: VRM) {
@@ -142,13 +139,13 @@ export class Rig {
             : name.endsWith('LowerLeg')
               ? legs.lower
               : bone.ownLength;
-      // The trunk's vertebrae are short and lie differently in every rig: stretched, they would tear; moved apart, they
-      // bend.
+      // Vertebrae are short and differ between rigs: they are moved apart instead of stretched, which would tear the
+      // skin.
       this.reach(name, trunkBones.has(name) ? bone.ownLength : wanted);
     }
   }
 
-  /** Stretches a bone to this length [m] along itself, as far as skin bears it. */
+  /** Stretches a bone to this length [m], within the limits. */
   reach(name: AvatarJoint, length: number): void {
     const bone = this.bones.get(name);
     if (!bone) return;
@@ -174,7 +171,7 @@ export class Rig {
   settle(): void {
     for (let i = 0; i < this.ordered.length; i++) {
       const { node, parent, world, fromParentBone, placed } = this.ordered[i]!;
-      // What lies between the parent bone and this node (and above the topmost bones) keeps its rest pose.
+      // Nodes between the parent bone and this node, and above the topmost bones, keep their rest pose.
       if (parent) above.multiplyMatrices(parent.world, fromParentBone);
       else above.copy(fromParentBone);
       if (placed) {
@@ -185,7 +182,7 @@ export class Rig {
     }
   }
 
-  /** A new joint on a bone that the rig has. */
+  /** Adds a joint to a bone. Throws if the rig lacks the bone. */
   addHelper(name: AvatarJoint, what: string): HelperJoint {
     const base = this.bones.get(name);
     if (!base) throw new Error(`avatar/rig: a rig without ${name}`);
@@ -198,20 +195,20 @@ export class Rig {
     return { base, node };
   }
 
-  /** Puts a helper joint as `place` puts a bone; its bone must have been placed before. */
+  /** Places a helper joint as `place` does a bone; its bone must have been placed before. */
   placeHelper({ base, node }: HelperJoint, at: Vec3, rotationFromRest: Quat): void {
     setWorld(base, at, rotationFromRest, helperWorld);
     node.matrix.multiplyMatrices(above.copy(base.world).invert(), helperWorld);
     node.matrixWorldNeedsUpdate = true;
   }
 
-  /** A helper joint goes with its bone. */
+  /** Aligns a helper joint with its bone. */
   straighten({ node }: HelperJoint): void {
     node.matrix.identity();
     node.matrixWorldNeedsUpdate = true;
   }
 
-  /** Shrinks a bone to nothing: what no one sees is not drawn. */
+  /** Scales a bone to zero, so that its skin is not drawn. */
   shrink(name: AvatarJoint): void {
     const bone = this.bones.get(name);
     if (!bone) return;
@@ -220,19 +217,19 @@ export class Rig {
     delete this.joints[name];
   }
 
-  /** From now on no joint counts as drawn. */
+  /** Clears the drawn joints. */
   forgetJoints(): void {
     for (const name of this.bones.keys()) delete this.joints[name];
   }
 }
 
-/** The world matrix of a bone whose joint is there and that is turned like this. */
+/** Writes the world matrix of a bone with this position and rotation. */
 function setWorld(bone: RigBone, at: Vec3, rotationFromRest: Quat, target: Matrix4): void {
   rotation.copy(multiply(rotationFromRest, ourFacing, facing)).multiply(bone.restRotation);
   target.compose(position.copy(at), rotation, unitScale).multiply(bone.stretch);
 }
 
-/** scale·(1 + (factor − 1)·d·dᵀ): longer along a direction only. */
+/** Writes uniform·(1 + (factor − 1)·d·dᵀ), a stretch along the direction d. */
 function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number): Matrix4 {
   const k = factor - 1;
   target.set(
@@ -244,7 +241,7 @@ function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number
   return target.scale(scaling.setScalar(uniform));
 }
 
-/** The number of nodes above a bone's. */
+/** Returns the number of ancestors of a bone's node. */
 function depthOf({ node }: RigBone): number {
   let depth = 0;
   for (let above = node.parent; above; above = above.parent) depth += 1;

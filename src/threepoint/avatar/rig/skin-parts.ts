@@ -1,17 +1,16 @@
 import { BufferAttribute, type Object3D, type SkinnedMesh, Vector3 } from 'three';
 import type { Steps } from '../between-frames';
 
-/** What a triangle of skin belongs to, in the order in which parts are kept: a prefix of them can be drawn alone. */
+/** The parts of a skin, in the order of their triangles: a prefix of the parts can be drawn alone. */
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
 export type SkinPart = (typeof skinParts)[number];
 
-/** The number of corners that one step sorts. */
+/** The number of indices that one step sorts. */
 const cornersAStep = 3 * 1024;
 
 /**
- * Sorts a skinned mesh's triangles by part and returns how many indices end after each part. The skin about the hips is
- * divided at the height [m] `hipLine` of the rest pose, so that trunk and legs part along a line and not along
- * triangles.
+ * Sorts a skinned mesh's triangles by part and returns the index count up to each part. The skin around the hips is
+ * divided at the height `hipLine` [m] of the rest pose, so that the border of trunk and legs is a line.
  */
 export function* sortByPart(
   mesh: SkinnedMesh,
@@ -53,7 +52,8 @@ export function* sortByPart(
     if (i % cornersAStep === 0) yield;
     const triangle = [source.getX(i), source.getX(i + 1), source.getX(i + 2)];
     const [a = 2, b = 2, c = 2] = triangle.map(partOf);
-    // Two of three decide; three different ones: the middle part, so that borders lie on the trunk's side.
+    // The part of two of the three vertices; for three different parts the middle one, so that borders are on the
+    // trunk's side.
     let part = a === b || a === c ? a : b === c ? b : 2;
     if (part === hips || part === legs) {
       part = triangle.reduce((sum, vertex) => sum + height(vertex), 0) / 3 < hipLine ? legs : trunk;

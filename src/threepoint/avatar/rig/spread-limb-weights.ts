@@ -12,7 +12,7 @@ import type { Steps } from '../between-frames';
 import { skinnedMeshesOf } from '../scene-meshes';
 import { isBelow } from './body-meshes';
 
-/** The bones of an arm or a leg and the joints between them among which its skin is to be shared. */
+/** The bones of an arm or a leg, and the joints to which its skin weights are redistributed. */
 export interface SpreadLimb {
   /** The bones from shoulder or hip, from elbow or knee, and from wrist or ankle on. */
   readonly upper: Object3D;
@@ -20,27 +20,24 @@ export interface SpreadLimb {
   readonly end: Object3D;
   /** Their joints at rest, world frame [m]. */
   readonly places: readonly [Vector3, Vector3, Vector3];
-  /** The joints half of the way between the bones that meet where each of these bones begins. */
+  /** The joints that turn half as far as the bone that begins there. */
   readonly beforeUpper: Object3D;
   readonly beforeLower: Object3D;
   readonly beforeEnd: Object3D;
-  /** From the first joint to the second and from there to the third, at even distances. */
+  /** The joints from the first place to the second and from there to the third, at even distances. */
   readonly alongUpper: readonly Object3D[];
   readonly alongLower: readonly Object3D[];
 }
 
-/**
- * The range along a bone in which its skin is handed on to the next [shares of its length]: the ends belong to the
- * hinges.
- */
-const handedOn = { from: 0.1, to: 0.9 };
+/** The range of a bone in which its skin passes from joint to joint [fractions of its length]; the ends are hinges'. */
+const twistRange = { from: 0.1, to: 0.9 };
 /** The number of bones that move a vertex, in three.js and on the graphics device. */
 const influences = 4;
 
-/** Shares of a vertex by the bone's index in the skeleton. */
-type Shares = Map<number, number>;
+/** The weights of a vertex by the bone's index in the skeleton. */
+type VertexWeights = Map<number, number>;
 
-/** A SpreadLimb as one skeleton has it; −1: it lacks the bone. */
+/** The indices of a SpreadLimb in one skeleton; −1: the skeleton lacks the bone. */
 interface LimbIndices {
   readonly upper: ReadonlySet<number>;
   readonly lower: ReadonlySet<number>;
@@ -55,44 +52,44 @@ interface LimbIndices {
   readonly places: SpreadLimb['places'];
 }
 
-/** Twist bones that lie beside the way to the next bone, by what Unreal, Character Creator and 3ds Max call them. */
+/** The names of twist bones that do not lie between two bones: Unreal, Character Creator, 3ds Max. */
 const twistName = /twist|roll/i;
 
-/** The bones that lie along one: itself, twist bones on it, and what lies on the way to the next. */
+/** Returns the bones along one: itself, its twist bones, and the bones between it and the next. */
 function alongBone(bones: readonly Object3D[], bone: Object3D, next: Object3D): Set<number> {
   const found = new Set<number>();
   bones.forEach((candidate, index) => {
-    const onTheWay = isBelow(candidate, bone) && isBelow(next, candidate) && candidate !== next;
-    const besides = isBelow(candidate, bone) && !isBelow(candidate, next) && twistName.test(candidate.name);
-    if (onTheWay || besides) found.add(index);
+    const isBetween = isBelow(candidate, bone) && isBelow(next, candidate) && candidate !== next;
+    const isTwist = isBelow(candidate, bone) && !isBelow(candidate, next) && twistName.test(candidate.name);
+    if (isBetween || isTwist) found.add(index);
   });
   return found;
 }
 
-interface Turned {
+interface RotationScale {
   readonly rotation: Quaternion;
   readonly scale: Vector3;
 }
 
-/** What a bone at rest does to the skin: nothing, where the file was bound as it rests. */
+/** Returns the skin matrix of a bone at rest; the identity where the file rests in its bind pose. */
 function skinMatrix({ bones, boneInverses }: Skeleton, index: number): Matrix4 {
   const [bone, inverse] = [bones[index], boneInverses[index]];
   return bone && inverse ? new Matrix4().multiplyMatrices(bone.matrixWorld, inverse) : new Matrix4();
 }
 
-function turnOf(matrix: Matrix4): Turned {
+function rotationScaleOf(matrix: Matrix4): RotationScale {
   const [rotation, scale] = [new Quaternion(), new Vector3()];
   matrix.decompose(new Vector3(), rotation, scale);
   return { rotation, scale };
 }
 
 /**
- * The bind of a joint half way between the bones `before` and `after`, which begins there: of a rig that was
- * straightened (A-poses) it does half of that to the skin.
+ * Returns the inverse bind matrix of a joint between the bones `before` and `after`. In a rig that was straightened from
+ * an A-pose it rotates the skin half as far as `after` does.
  */
 function halfBind(skeleton: Skeleton, before: number, after: number): Matrix4 {
   const skinAfter = skinMatrix(skeleton, after);
-  const [a, b] = [turnOf(skinMatrix(skeleton, before)), turnOf(skinAfter)];
+  const [a, b] = [rotationScaleOf(skinMatrix(skeleton, before)), rotationScaleOf(skinAfter)];
   const world = skeleton.bones[after]?.matrixWorld ?? new Matrix4();
   const pivot = new Vector3().setFromMatrixPosition(world);
   const bound = pivot.clone().applyMatrix4(skinAfter.clone().invert());
@@ -101,8 +98,8 @@ function halfBind(skeleton: Skeleton, before: number, after: number): Matrix4 {
   return world.clone().invert().multiply(half);
 }
 
-/** Adds the joints between to a skeleton. Those along a bone are bound as it is. */
-function extend(skeleton: Skeleton, limb: SpreadLimb): LimbIndices | null {
+/** Adds the joints of a limb to a skeleton. Those along a bone have its inverse bind matrix. */
+function extendSkeleton(skeleton: Skeleton, limb: SpreadLimb): LimbIndices | null {
   const { bones, boneInverses } = skeleton;
   const upper = alongBone(bones, limb.upper, limb.lower);
   const lower = alongBone(bones, limb.lower, limb.end);
@@ -120,7 +117,7 @@ function extend(skeleton: Skeleton, limb: SpreadLimb): LimbIndices | null {
     while (above && !bones.includes(above as Bone)) above = above.parent;
     return above ? add(node, after, halfBind(skeleton, bones.indexOf(above as Bone), after)) : -1;
   };
-  const along = (nodes: readonly Object3D[], base: number): number[] => {
+  const addAll = (nodes: readonly Object3D[], base: number): number[] => {
     if (base < 0) return [];
     return nodes.map((node) => (node === bones[base] ? base : add(node, base)));
   };
@@ -132,95 +129,95 @@ function extend(skeleton: Skeleton, limb: SpreadLimb): LimbIndices | null {
     beforeUpper: between(limb.beforeUpper, first),
     beforeLower: between(limb.beforeLower, second),
     beforeEnd: between(limb.beforeEnd, third),
-    alongUpper: along(limb.alongUpper, first),
-    alongLower: along(limb.alongLower, second),
+    alongUpper: addAll(limb.alongUpper, first),
+    alongLower: addAll(limb.alongLower, second),
     places: limb.places,
   };
 }
 
-/** Sums the shares of some bones and takes them away. */
-function take(shares: Shares, bones: ReadonlySet<number>): number {
+/** Removes the weights of some bones and returns their sum. */
+function removeWeights(weights: VertexWeights, bones: ReadonlySet<number>): number {
   let sum = 0;
   for (const bone of bones) {
-    sum += shares.get(bone) ?? 0;
-    shares.delete(bone);
+    sum += weights.get(bone) ?? 0;
+    weights.delete(bone);
   }
   return sum;
 }
 
-const give = (shares: Shares, bone: number, share: number): void => {
-  if (share > 0) shares.set(bone, (shares.get(bone) ?? 0) + share);
+const addWeight = (weights: VertexWeights, bone: number, weight: number): void => {
+  if (weight > 0) weights.set(bone, (weights.get(bone) ?? 0) + weight);
 };
 
-/** What of two bones' shares the joint between them takes: all where they are alike, none where one has all. */
-const halfWay = (before: number, after: number): number => before + after - Math.abs(before - after);
+/** Returns the weight of the joint between two bones: the sum of equal weights, 0 where one bone has all. */
+const middleWeight = (before: number, after: number): number => before + after - Math.abs(before - after);
 
 const axis = new Vector3();
 const from = new Vector3();
 
-/** How far along a bone a place lies, 0 to 1, after the part that is the hinge's. */
-function shareAlong(place: Vector3, begin: Vector3, end: Vector3): number {
+/** Returns the position of a vertex in the twist range of a bone, 0 to 1. */
+function positionAlong(place: Vector3, begin: Vector3, end: Vector3): number {
   axis.subVectors(end, begin);
   const along = from.subVectors(place, begin).dot(axis) / Math.max(1e-9, axis.lengthSq());
-  return Math.min(1, Math.max(0, (along - handedOn.from) / (handedOn.to - handedOn.from)));
+  return Math.min(1, Math.max(0, (along - twistRange.from) / (twistRange.to - twistRange.from)));
 }
 
-/** Hands a share on along a row of bones. */
-function giveAlong(shares: Shares, row: readonly number[], share: number, along: number): void {
+/** Adds a weight to the two joints of a row next to the position `along`, 0 to 1. */
+function addWeightAlong(weights: VertexWeights, row: readonly number[], weight: number, along: number): void {
   const step = along * (row.length - 1);
   const index = Math.floor(step);
   const [before, after] = [row[index], row[index + 1]];
-  if (before !== undefined) give(shares, before, share * (index + 1 - step));
-  if (after !== undefined) give(shares, after, share * (step - index));
+  if (before !== undefined) addWeight(weights, before, weight * (index + 1 - step));
+  if (after !== undefined) addWeight(weights, after, weight * (step - index));
 }
 
-/** What a vertex moves with of one limb. */
-interface LimbShares {
+/** The weights that a vertex has of one limb. */
+interface LimbWeights {
   readonly limb: LimbIndices;
   readonly upper: number;
   readonly lower: number;
 }
 
-/** Takes the shares of the bones of every limb. */
-const takeLimbs = (shares: Shares, limbs: readonly LimbIndices[]): readonly LimbShares[] =>
+/** Removes the weights of all limbs' bones and returns those above 0. */
+const removeLimbs = (weights: VertexWeights, limbs: readonly LimbIndices[]): readonly LimbWeights[] =>
   limbs.flatMap((limb) => {
-    const [upper, lower] = [take(shares, limb.upper), take(shares, limb.lower)];
+    const [upper, lower] = [removeWeights(weights, limb.upper), removeWeights(weights, limb.lower)];
     return upper + lower > 0 ? [{ limb, upper, lower }] : [];
   });
 
 /**
- * Shares what the bones of limbs have of a vertex among them and the joints between. Limbs that share a vertex, as legs
- * do at the crotch, each count with a part of the trunk.
+ * Redistributes the weights that a vertex has of limbs to their joints. Where several limbs have weights, as the legs at
+ * the crotch, each is paired with a part of the trunk's weight.
  */
-function spread(shares: Shares, limbs: readonly LimbIndices[], place: Vector3): void {
-  const owned = takeLimbs(shares, limbs);
+function spread(weights: VertexWeights, limbs: readonly LimbIndices[], place: Vector3): void {
+  const owned = removeLimbs(weights, limbs);
   const total = owned.reduce((sum, { upper, lower }) => sum + upper + lower, 0);
-  const trunkBones = [...shares.keys()].filter((bone) => !owned.some(({ limb }) => limb.limb.has(bone)));
-  const trunk = trunkBones.reduce((sum, bone) => sum + shares.get(bone)!, 0);
+  const trunkBones = [...weights.keys()].filter((bone) => !owned.some(({ limb }) => limb.limb.has(bone)));
+  const trunk = trunkBones.reduce((sum, bone) => sum + weights.get(bone)!, 0);
   const atRoots = owned.map(({ limb, upper, lower }) =>
-    limb.beforeUpper < 0 ? 0 : halfWay((trunk * (upper + lower)) / total, upper),
+    limb.beforeUpper < 0 ? 0 : middleWeight((trunk * (upper + lower)) / total, upper),
   );
-  const left = trunk - atRoots.reduce((sum, share) => sum + share, 0) / 2;
-  for (const bone of trunkBones) shares.set(bone, (shares.get(bone)! * left) / trunk);
+  const left = trunk - atRoots.reduce((sum, weight) => sum + weight, 0) / 2;
+  for (const bone of trunkBones) weights.set(bone, (weights.get(bone)! * left) / trunk);
   owned.forEach((own, i) => {
-    spreadLimb(shares, own, atRoots[i]!, place);
+    spreadLimb(weights, own, atRoots[i]!, place);
   });
 }
 
-/** Shares out one limb of a vertex. atRoot: what the joint before it takes, half of it from the limb. */
-function spreadLimb(shares: Shares, { limb, upper, lower }: LimbShares, atRoot: number, place: Vector3): void {
-  give(shares, limb.beforeUpper, atRoot);
+/** Redistributes the weights of one limb. `atRoot`: the weight of its first joint, half of which is the limb's. */
+function spreadLimb(weights: VertexWeights, { limb, upper, lower }: LimbWeights, atRoot: number, place: Vector3): void {
+  addWeight(weights, limb.beforeUpper, atRoot);
   const upperLeft = upper - atRoot / 2;
-  const atMiddle = limb.beforeLower < 0 ? 0 : halfWay(upperLeft, lower);
-  give(shares, limb.beforeLower, atMiddle);
+  const atMiddle = limb.beforeLower < 0 ? 0 : middleWeight(upperLeft, lower);
+  addWeight(weights, limb.beforeLower, atMiddle);
   const lowerLeft = lower - atMiddle / 2;
-  const end = shares.get(limb.end) ?? 0;
-  const atEnd = limb.beforeEnd < 0 ? 0 : halfWay(lowerLeft, end);
-  give(shares, limb.beforeEnd, atEnd);
-  if (atEnd > 0) shares.set(limb.end, end - atEnd / 2);
+  const end = weights.get(limb.end) ?? 0;
+  const atEnd = limb.beforeEnd < 0 ? 0 : middleWeight(lowerLeft, end);
+  addWeight(weights, limb.beforeEnd, atEnd);
+  if (atEnd > 0) weights.set(limb.end, end - atEnd / 2);
   const [first, second, third] = limb.places;
-  giveAlong(shares, limb.alongUpper, upperLeft - atMiddle / 2, shareAlong(place, first, second));
-  giveAlong(shares, limb.alongLower, lowerLeft - atEnd / 2, shareAlong(place, second, third));
+  addWeightAlong(weights, limb.alongUpper, upperLeft - atMiddle / 2, positionAlong(place, first, second));
+  addWeightAlong(weights, limb.alongLower, lowerLeft - atEnd / 2, positionAlong(place, second, third));
 }
 
 interface Weights {
@@ -237,44 +234,44 @@ function* spreadMesh(mesh: SkinnedMesh, limbs: readonly LimbIndices[]): Steps<We
   const indices = new Uint16Array(skinIndex.count * influences);
   const weights = new Float32Array(skinIndex.count * influences);
   const touched = new Set(limbs.flatMap(({ upper, lower }) => [...upper, ...lower]));
-  const shares: Shares = new Map();
+  const ofVertex: VertexWeights = new Map();
   const place = new Vector3();
   for (let vertex = 0; vertex < skinIndex.count; vertex++) {
     if (vertex % verticesAStep === 0) yield;
-    shares.clear();
+    ofVertex.clear();
     let isOfLimb = false;
     for (let slot = 0; slot < influences; slot++) {
       const bone = skinIndex.getComponent(vertex, slot);
-      const share = skinWeight.getComponent(vertex, slot);
-      give(shares, bone, share);
-      isOfLimb ||= share > 0 && touched.has(bone);
+      const weight = skinWeight.getComponent(vertex, slot);
+      addWeight(ofVertex, bone, weight);
+      isOfLimb ||= weight > 0 && touched.has(bone);
     }
     if (isOfLimb) {
       mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld);
-      spread(shares, limbs, place);
+      spread(ofVertex, limbs, place);
     }
-    writeStrongest(shares, vertex * influences, indices, weights);
+    writeStrongest(ofVertex, vertex * influences, indices, weights);
   }
   return { indices: new BufferAttribute(indices, influences), weights: new BufferAttribute(weights, influences) };
 }
 
-/** The strongest four, made to sum to 1. */
-function writeStrongest(shares: Shares, at: number, indices: Uint16Array, weights: Float32Array): void {
-  const rows = [...shares]
-    .filter(([, share]) => share > 1e-4)
-    .sort(([a, share], [b, other]) => other - share || a - b)
+/** Writes the four largest weights, normalised to a sum of 1. */
+function writeStrongest(ofVertex: VertexWeights, at: number, indices: Uint16Array, weights: Float32Array): void {
+  const rows = [...ofVertex]
+    .filter(([, weight]) => weight > 1e-4)
+    .sort(([a, weight], [b, other]) => other - weight || a - b)
     .slice(0, influences);
   let sum = 0;
-  for (const [, share] of rows) sum += share;
-  rows.forEach(([bone, share], slot) => {
+  for (const [, weight] of rows) sum += weight;
+  rows.forEach(([bone, weight], slot) => {
     indices[at + slot] = bone;
-    weights[at + slot] = sum > 0 ? share / sum : 0;
+    weights[at + slot] = sum > 0 ? weight / sum : 0;
   });
 }
 
 /**
- * Shares the skin of limbs among their bones and the joints between, in every mesh under `scene`. The rig must be at
- * rest, its world matrices up to date.
+ * Redistributes the skin weights of limbs to their joints, in every mesh under `scene`. The rig must be at rest, with its
+ * world matrices up to date.
  */
 export function* spreadLimbs(scene: Object3D, limbs: readonly SpreadLimb[]): Steps<void> {
   scene.updateMatrixWorld(true);
@@ -283,13 +280,13 @@ export function* spreadLimbs(scene: Object3D, limbs: readonly SpreadLimb[]): Ste
   for (const node of skinnedMeshesOf(scene)) {
     const { skeleton, geometry } = node;
     const known = extended.get(skeleton);
-    const own = known ?? limbs.flatMap((limb) => extend(skeleton, limb) ?? []);
+    const own = known ?? limbs.flatMap((limb) => extendSkeleton(skeleton, limb) ?? []);
     if (!known) {
       extended.set(skeleton, own);
       skeleton.init();
     }
     if (own.length === 0) continue;
-    // Meshes of one file often share their vertices.
+    // Meshes of one file often weight their vertices.
     const before = geometry.attributes.skinIndex;
     const shared = done.get(skeleton) ?? new Map<unknown, Weights>();
     done.set(skeleton, shared);

@@ -3,33 +3,27 @@ import { type Object3D, Quaternion, Vector3 } from 'three';
 import type { Quat } from '../../core/math/quat';
 import type { Vec3 } from '../../core/math/vec3';
 
-/** Hair and skirts are moved so often [s]: what they hang on moves in every frame, and they with it. */
+/** The time step of hair and skirts [s]; the bones that carry them move in every frame. */
 const stepSeconds = 1 / 30;
-/**
- * In one frame so often at most, one more being left for the next: slower pages have slower hair, and after a pause it
- * falls no further.
- */
+/** The maximum number of steps in one frame: on a slow page hair moves slower, and a pause adds no motion. */
 const mostSteps = 2;
-/** VRM's drag is a share of each step, and files are made for 60 steps a second. */
+/** VRM's drag is a fraction per step, and files are made for 60 steps a second. */
 const authoredSteps = 60;
-/**
- * A head that is this far from where it was in the world a frame ago [m, rad] has been carried, not moved: recentred,
- * teleported.
- */
+/** The largest motion of a head in the world in one frame [m, rad]; a larger one is a teleport or recentring. */
 const carried = 0.35;
 const turned = 0.9;
 
-/** What a joint or a collider was made for, in the size that the file has. */
-interface Measure {
+/** A size of a joint or collider that depends on the scale of the rig. */
+interface ScaledSize {
   scale(factor: number): void;
 }
 
-/** Sizes that springs have as plain numbers; the rig's scale does not reach them by itself. */
-function measuresOf(vrm: VRM): Measure[] {
-  const measures: Measure[] = [];
+/** Returns the sizes that springs store as numbers, to which the rig's scale must be applied. */
+function scaledSizesOf(vrm: VRM): ScaledSize[] {
+  const measures: ScaledSize[] = [];
   for (const { settings } of vrm.springBoneManager?.joints ?? []) {
     const { hitRadius, stiffness, gravityPower, dragForce } = settings;
-    // Twice the time in one step: what stays of the speed is what two steps would leave.
+    // A step of double length keeps as much of the speed as two steps.
     settings.dragForce = 1 - (1 - dragForce) ** (authoredSteps * stepSeconds);
     measures.push({
       scale(factor) {
@@ -52,24 +46,24 @@ function measuresOf(vrm: VRM): Measure[] {
   return measures;
 }
 
-/** What hangs and swings on a VRM: hair, skirts, tails. */
+/** Simulates the spring bones of a VRM: hair, skirts, tails. */
 export class Springs {
   readonly #vrm: VRM;
-  readonly #measures: readonly Measure[];
-  /** Time that no step has used up yet [s]. */
+  readonly #measures: readonly ScaledSize[];
+  /** The simulated time that is due [s]. */
   #due = 0;
-  /** The next frame begins from rest: another size, or none before. */
+  /** Whether the next frame starts from rest, after a change of size or at first. */
   #rest = true;
-  /** The head in the world, a frame ago. */
+  /** The head's pose in the world in the previous frame. */
   readonly #position = new Vector3();
   readonly #orientation = new Quaternion();
 
   constructor(vrm: VRM) {
     this.#vrm = vrm;
-    this.#measures = measuresOf(vrm);
+    this.#measures = scaledSizesOf(vrm);
   }
 
-  /** The rig is so many times the size of the file from now on. */
+  /** Sets the scale of the rig relative to the file. */
   scaleTo(factor: number): void {
     for (const measure of this.#measures) measure.scale(factor);
     this.#rest = true;
@@ -97,7 +91,7 @@ export class Springs {
     }
   }
 
-  /** Whether the head went further since the last frame than heads go. */
+  /** Returns whether the head moved further since the last frame than a person can. */
   #wasCarried(root: Object3D, position: Vec3, orientation: Quat): boolean {
     root.updateWorldMatrix(true, false);
     root.matrixWorld.decompose(place, facing, scaling);

@@ -7,7 +7,7 @@ import { type Skeleton, wristFromHandBone } from './skeleton';
 /** The direction of each arm in T-pose. */
 export const alongArm: Readonly<Record<Side, Vec3>> = { left: vec3(-1, 0, 0), right: vec3(1, 0, 0) };
 
-/** The elbow's hinge in T-pose: it bends forearms forward. */
+/** The axis of the elbow's hinge in T-pose, about which forearms bend forward. */
 export const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
 
 const armAtRest = {
@@ -15,16 +15,17 @@ const armAtRest = {
   right: restDirections(alongArm.right, hingeAtRest.right),
 } as const;
 
-/** The hinge of an elbow, at right angles to shoulder, elbow and wrist: pole × axis of its circle. */
+/** Returns the hinge axis of an elbow, normal to the plane of shoulder, elbow and wrist: pole × axis of its circle. */
 export const elbowHinge = (pole: Vec3, axis: Vec3, target?: MutableVec3): MutableVec3 => cross(pole, axis, target);
 
 /**
- * The rotation of an upper arm or an untwisted forearm that points in `direction` and bends about `hinge`, floor frame.
+ * Returns the rotation of an upper arm or an untwisted forearm that points in `direction` and bends about `hinge`,
+ * floor frame.
  */
 export const armBoneRotation = (side: Side, direction: Vec3, hinge: Vec3, target?: MutableQuat): MutableQuat =>
   alignDirections(armAtRest[side], direction, hinge, target);
 
-/** The rotation of the hand's bone under a wrist that is turned like this, floor frame. */
+/** Returns the rotation of the hand bone for this wrist orientation, floor frame. */
 export const handBoneRotation = (side: Side, wrist: Quat, target?: MutableQuat): MutableQuat =>
   multiply(wrist, wristFromHandBone[side], target);
 
@@ -43,7 +44,7 @@ export function clavicleRoot(
   return add(neck, rotate(upperChest, target, target), target);
 }
 
-/** From the clavicle's root to the shoulder joint [m] on a clavicle at rest, clavicle's frame. */
+/** Returns the offset from the clavicle's root to the shoulder joint at rest [m], in the clavicle's frame. */
 export const clavicleRest = (side: Side, { restOffsets }: Skeleton): Vec3 =>
   side === 'left' ? restOffsets.leftUpperArm : restOffsets.rightUpperArm;
 

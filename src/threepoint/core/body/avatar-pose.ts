@@ -13,7 +13,7 @@ export interface UpperBodyPose {
   readonly localRotations: Readonly<Record<JointName, Quat>>;
 }
 
-/** A body's pose that its owner overwrites. */
+/** A body's pose that its owner overwrites; a buffer. */
 export interface MutableUpperBodyPose extends UpperBodyPose {
   readonly hipsPosition: MutableVec3;
   readonly localRotations: Readonly<Record<JointName, MutableQuat>>;
@@ -31,9 +31,8 @@ export interface TrackedFeet {
 }
 
 /**
- * What one frame shows: hands exactly as tracked in this frame, the head as its wearer holds it (as tracked, but for
- * how the headset sits on it), and the body between them. `body` is null for estimators that show no body (hands-only).
- * It is plain data, which JSON keeps.
+ * The pose of one frame: hands as tracked, the head as tracked and corrected for the headset's mount, and the body
+ * between them. `body` is null for estimators without a body (hands-only). Plain data that can be serialised as JSON.
  */
 export interface AvatarPose {
   readonly head: TrackedPose;
@@ -42,7 +41,7 @@ export interface AvatarPose {
   readonly body: UpperBodyPose | null;
   /**
    * The bends of each hand's fingers [rad], wrist's frame, as tracked in this frame or inferred from a controller's
-   * buttons; a hand is null while its fingers are unknown. Absent: the source of the pose knows no fingers.
+   * buttons; a hand is null while its fingers are unknown. Absent: the source of the pose has no fingers.
    */
   readonly fingers?: Fingers | undefined;
   /** Absent: no foot is tracked. */

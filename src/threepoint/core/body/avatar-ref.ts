@@ -1,42 +1,4 @@
-/**
- * The bodies that every page has a file of, by name; the first is the default, and the body of everybody in a study.
- */
-export const builtInBodies = ['mannequin', 'woman', 'man', 'stout', 'child'] as const;
-export type BuiltInBody = (typeof builtInBodies)[number];
-
-/** The skin tones, lightest first. The mannequin has none; without a tone a body keeps the one of its file. */
-export const skinTones = ['fair', 'light', 'beige', 'tan', 'brown', 'dark'] as const;
-export type SkinTone = (typeof skinTones)[number];
-
-/** The name of a built-in body, followed by a dash and its skin tone. */
-export type BuiltInAvatar = BuiltInBody | `${BuiltInBody}-${SkinTone}`;
-
-interface Look {
-  readonly body: BuiltInBody;
-  readonly tone: SkinTone | null;
-}
-
-const looks: ReadonlyMap<string, Look> = new Map(
-  builtInBodies.flatMap((body): [BuiltInAvatar, Look][] => [
-    [body, { body, tone: null }],
-    ...(body === builtInBodies[0]
-      ? []
-      : skinTones.map((tone): [BuiltInAvatar, Look] => [`${body}-${tone}`, { body, tone }])),
-  ]),
-);
-
-export const isBuiltInAvatar = (name: unknown): name is BuiltInAvatar => typeof name === 'string' && looks.has(name);
-
-/** Returns the name of this body in this tone; the body alone where it has no skin or no tone is given. */
-export function builtInAvatarOf(body: BuiltInBody, tone: SkinTone | undefined): BuiltInAvatar {
-  const name = `${body}-${tone}`;
-  return isBuiltInAvatar(name) ? name : body;
-}
-
-export const bodyOf = (avatar: BuiltInAvatar): BuiltInBody => looks.get(avatar)?.body ?? builtInBodies[0];
-
-/** Returns the skin tone; null: that of the body's file. */
-export const skinToneOf = (avatar: BuiltInAvatar): SkinTone | null => looks.get(avatar)?.tone ?? null;
+import type { BuiltInAvatar } from './built-in-bodies';
 
 /**
  * The SHA-256 of an avatar's file as base64url without padding: 43 characters, unlike any name of a built-in avatar.
@@ -46,13 +8,11 @@ export type AvatarHash = string;
 /** The avatar that others see: a built-in body by its name, or a file by its content. */
 export type AvatarRef = BuiltInAvatar | AvatarHash;
 
-export const plainAvatar: BuiltInBody = builtInBodies[0];
-
 /** The form of a file's SHA-256. */
-export const avatarHash = /^[\w-]{43}$/;
+export const avatarHashPattern = /^[\w-]{43}$/;
 
 /** The largest file of an avatar that others see [bytes]. */
-export const mostAvatarBytes = 20 * 2 ** 20;
+export const maxAvatarBytes = 20 * 2 ** 20;
 
 /** Returns whether this is the hash of a file, and not a name. */
-export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHash.test(avatar);
+export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHashPattern.test(avatar);

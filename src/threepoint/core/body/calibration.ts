@@ -11,18 +11,18 @@ export interface Calibration {
   /** From elbow to wrist [m]. Absent: unknown, and estimated as an average share of the arm. */
   readonly forearm?: number | undefined;
   /**
-   * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer.
-   * Absent: not measured, and taken for level.
+   * How far up [rad] the headset points when its user looks straight ahead: it sits tilted on nearly every user.
+   * Absent: not measured, and assumed level.
    */
   readonly gazePitch?: number | undefined;
   /** The tilt of each hand to its forearm. Absent: not measured, and the device's hand frame is used unchanged. */
   readonly handTilts?: HandTilts | undefined;
-  /** Each joint in the frame of its tracker. A tracker without an offset is ignored. */
+  /** The pose of each joint in the frame of its tracker. A tracker without an offset is ignored. */
   readonly trackerOffsets?: TrackerOffsets | undefined;
 }
 
-/** The steepest plausible tilt of a headset [rad]; at a steeper one the wearer was not looking ahead. */
-export const steepestGazePitch = Math.PI / 12;
+/** The steepest plausible tilt of a headset [rad]; at a steeper one the user was not looking ahead. */
+export const maxGazePitch = Math.PI / 12;
 
 // Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II
 // agrees within 1 %.
@@ -34,7 +34,7 @@ const EYE_HEIGHT_PER_STATURE = 0.936;
 const ARM_SPAN_PER_EYE_HEIGHT = 0.945;
 
 // The forearm of an average arm, as a share of the span.
-const ORDINARY_FOREARM = 0.185;
+const FOREARM_PER_ARM_SPAN = 0.185;
 
 // Fingertip span equals stature within 3 % on average (Drillis & Contini; ANSUR II).
 const ARM_SPAN_PER_FINGERTIP_SPAN = ARM_SPAN_PER_EYE_HEIGHT * EYE_HEIGHT_PER_STATURE;
@@ -73,32 +73,34 @@ export const defaultCalibration: Calibration = {
   armSpan: armSpanFromFingertipSpan(1.7),
 };
 
-/** Returns whether two calibrations have the same body. */
+/** Returns whether two calibrations have equal measures, regardless of tilts and trackers. */
 export const sameMeasures = (a: Calibration, b: Calibration): boolean =>
   a.eyeHeight === b.eyeHeight && a.armSpan === b.armSpan && a.forearm === b.forearm;
 
 /** Returns whether two calibrations are equal, including the tilts of headset and hands and the trackers' offsets. */
-export const sameCalibration = (a: Calibration, b: Calibration): boolean => hasParts(a, b) && hasParts(b, a);
+export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
+  includesValues(a, b) && includesValues(b, a);
 
 type Parts = Readonly<Record<string, unknown>> | undefined;
 
-/** Returns whether a value has each part of the other; an absent value has none. Makes no garbage. */
-function hasParts(value: unknown, other: unknown): boolean {
+/** Returns whether a value has all fields of the other, recursively. Allocates nothing. */
+function includesValues(value: unknown, other: unknown): boolean {
   if (value === other) return true;
   if (typeof (other ?? value) !== 'object') return false;
-  for (const part in other as Parts) if (!hasParts((value as Parts)?.[part], (other as Parts)?.[part])) return false;
+  for (const part in other as Parts)
+    if (!includesValues((value as Parts)?.[part], (other as Parts)?.[part])) return false;
   return true;
 }
 
 /**
- * Returns a sentence about the implausible measure of a calibration; null: it is plausible. `pinning` checks the
- * trackers' offsets.
+ * Returns a sentence about the first implausible measure of a calibration; null: all are plausible. `pinning` checks
+ * the trackers' offsets.
  */
 export const calibrationProblem = (calibration: Calibration): string | null =>
   bodyProblem(calibration) ?? tiltProblem(calibration);
 
 /**
- * Throws a RangeError with the sentence of `calibrationProblem` where the measures are not human, or are no measures.
+ * Throws a RangeError with the sentence of `calibrationProblem` if there is a problem, or the value is no calibration.
  */
 export function assertCalibration(calibration: Calibration): void {
   // A page without types may pass anything.
@@ -111,14 +113,14 @@ export function assertCalibration(calibration: Calibration): void {
 
 const metres = (value: number): string => `${value.toFixed(2)} m`;
 
-/** From this value on [m], a measure is one in centimetres. */
-const leastCentimetres = 10;
+/** The value [m] from which a measure is assumed to be in centimetres. */
+const minCentimetres = 10;
 
-/** Returns the rest of a complaint about a measure: what to do where it is in centimetres. */
+/** Returns a sentence for a measure that is in centimetres; empty for others. */
 const unitHint = (value: number): string =>
-  value >= leastCentimetres ? ` Give metres: ${value} cm are ${Number((value / 100).toPrecision(6))} m.` : '';
+  value >= minCentimetres ? ` Give metres: ${value} cm are ${Number((value / 100).toPrecision(6))} m.` : '';
 
-/** Returns why a measure is no number; null: it is one. `how`: what to give. */
+/** Returns a sentence if a measure is no finite number, else null. `how`: the value to give. */
 function numberProblem(name: string, value: unknown, how: string): string | null {
   if (value === undefined) return `The ${name} is missing. Give ${how} in metres.`;
   if (typeof value === 'number' && !Number.isNaN(value)) return null;
@@ -127,7 +129,7 @@ function numberProblem(name: string, value: unknown, how: string): string | null
 }
 
 /** Returns why the body's measures are implausible; null: they are plausible. */
-function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREARM }: Calibration): string | null {
+function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * FOREARM_PER_ARM_SPAN }: Calibration): string | null {
   const complaint =
     numberProblem('eye height', eyeHeight, 'the height of the eyes above the floor') ??
     numberProblem('arm span', armSpan, 'the distance from wrist to wrist') ??
@@ -144,7 +146,7 @@ function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREARM 
   if (ratio < 0.72 || ratio > 1.35) {
     return `An arm span of ${metres(armSpan)} from wrist to wrist does not match a height of ${stature}.`;
   }
-  const share = forearm / armSpan / ORDINARY_FOREARM;
+  const share = forearm / armSpan / FOREARM_PER_ARM_SPAN;
   if (share > 0.65 && share < 1.35) return null;
   return `A forearm of ${metres(forearm)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.${unitHint(forearm)}`;
 }
@@ -152,8 +154,8 @@ function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * ORDINARY_FOREARM 
 /** Returns why the tilts of headset or hands are implausible; null: they are plausible. */
 function tiltProblem({ gazePitch = 0, handTilts }: Calibration): string | null {
   const radians = (value: number) => `${value.toFixed(2)} rad`;
-  if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
-    return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(steepestGazePitch)}.`;
+  if (!(Math.abs(gazePitch) <= maxGazePitch)) {
+    return `A headset’s tilt of ${radians(gazePitch)} exceeds ${radians(maxGazePitch)}.`;
   }
   for (const side of sides) {
     const tilt = handTilts?.[side];
@@ -164,18 +166,18 @@ function tiltProblem({ gazePitch = 0, handTilts }: Calibration): string | null {
   return null;
 }
 
-/** Returns the calibration with this forearm [m]; unchanged where the arm cannot have it. */
+/** Returns the calibration with this forearm [m]; unchanged if the arm cannot have it. */
 export function withForearm(calibration: Calibration, forearm: number | undefined): Calibration {
   const extended = { ...calibration, forearm };
   return forearm !== undefined && calibrationProblem(extended) === null ? extended : calibration;
 }
 
-// Below it the person sits or the floor is wrong; a child that low needs the guided calibration.
+// Below this height the person sits or the floor is wrong; a small child needs the guided calibration.
 const LOWEST_STANDING_ADULT = 1.35;
 
 /**
- * A body for a wearer who has not calibrated, from the headset's height [m] above the floor: taken for the eye height
- * where an adult could stand so tall; otherwise (seated, wrong floor) the default body.
+ * Returns a calibration for a user who has not calibrated, from the headset's height [m] above the floor, if an adult
+ * can have it as eye height; otherwise (seated, wrong floor) the default calibration.
  */
 export function calibrationFromHeadHeight(headHeight: number): Calibration {
   if (!(headHeight >= LOWEST_STANDING_ADULT && headHeight <= eyeHeightRange.max)) return defaultCalibration;

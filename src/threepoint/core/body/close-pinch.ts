@@ -14,7 +14,7 @@ import {
   vec3,
 } from '../math/vec3';
 import { fingerPoints, type HandGeometry, makeFingerPoints } from './hand-geometry';
-import { closedPinch, openPinch } from './hand-joints';
+import { fullPinchDistance, noPinchDistance } from './hand-joints';
 import {
   copyBend,
   type FingerName,
@@ -24,19 +24,19 @@ import {
   type MutableHandShape,
 } from './hand-shape';
 
-/** Pads of touching tips lie this deep in each other [share of the sum of the tips' radii]. */
+/** The overlap of touching fingertips [fraction of the sum of their radii]. */
 const pressedIn = 0.45;
-/** From this pinch on the tips are brought to each other whole; below it in part. */
+/** The pinch from which the tips are moved fully; below it in part. */
 const wholeFrom = 0.35;
 const steps = 5;
 /** Damping of the solution [m]: a straight finger cannot move its tip along itself. */
 const damping = 0.006;
 const probe = 1e-3;
 
-/** The distance of the tips [m] that makes this pinch: the inverse of `pinchOf`, from 0 to 1. */
+/** Returns the distance of the tips [m] for a pinch in [0, 1]: the inverse of `pinchOf`. */
 const gapOf = (pinch: number): number => {
   const open = 0.5 - Math.sin(Math.asin(2 * pinch - 1) / 3);
-  return closedPinch + (openPinch - closedPinch) * open;
+  return fullPinchDistance + (noPinchDistance - fullPinchDistance) * open;
 };
 
 const thumbPoints = makeFingerPoints();
@@ -46,8 +46,8 @@ const toThumb = vec3(0, 0, 0);
 const toIndex = vec3(0, 0, 0);
 
 /**
- * Bends thumb and index finger until their tips are as far apart as the pinch says, on a hand of this geometry: one
- * person's angles close another's fingers beside each other, or short of it. A shape without a pinch stays as it is.
+ * Bends thumb and index finger of a hand with this geometry until the distance of their tips matches the pinch. On
+ * another hand the same angles would leave a gap or miss. A shape without a pinch stays as it is.
  */
 export function closePinch(shape: MutableHandShape, geometry: HandGeometry): void {
   const { thumb, index, pinch } = shape;
@@ -59,8 +59,8 @@ export function closePinch(shape: MutableHandShape, geometry: HandGeometry): voi
     const thumbTip = fingerPoints('thumb', geometry.thumb, thumb, thumbPoints)[3];
     const indexTip = fingerPoints('index', geometry.index, index, indexPoints)[3];
     const gap = distance(thumbTip, indexTip);
-    // The first step knows how far apart the angles alone leave them.
-    if (step === 0) wanted = gap + (touching + gapOf(Math.min(pinch, 1)) - closedPinch - gap) * share;
+    // In the first step the distance follows from the angles alone.
+    if (step === 0) wanted = gap + (touching + gapOf(Math.min(pinch, 1)) - fullPinchDistance - gap) * share;
     if (Math.abs(gap - wanted) < 2e-4) return;
     normalise(subtract(indexTip, thumbTip, between), up, between);
     addScaled(thumbTip, between, (gap - wanted) / 2, toThumb);
@@ -80,7 +80,7 @@ const tip = vec3(0, 0, 0);
 const moved = fingerBend(0, 0, 0, 0);
 
 /**
- * One step of damped least squares that brings a finger's tip towards a place; its end joint bends half as far as its
+ * Moves a finger's tip towards a point by one step of damped least squares; the end joint bends half as far as the
  * middle one.
  */
 function reach(name: FingerName, geometry: HandGeometry, bend: MutableFingerBend, place: Vec3): void {
@@ -116,7 +116,7 @@ function bendFurther(bend: MutableFingerBend, parameter: 0 | 1 | 2, angle: numbe
 
 const minor = vec3(0, 0, 0);
 
-/** The solution of a symmetric system of three equations, by Cramer's rule. */
+/** Solves a symmetric system of three equations by Cramer's rule. */
 function solve([a, b, c]: readonly [Vec3, Vec3, Vec3], right: Vec3, target: MutableVec3): void {
   const determinant = dot(a, cross(b, c, minor));
   const x = dot(right, minor) / determinant;

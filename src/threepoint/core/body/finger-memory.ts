@@ -4,24 +4,24 @@ import {
   fingerNames,
   type HandShape,
   isFiniteBend,
+  lerpBend,
   limitBend,
   type MutableHandShape,
   makeHandShape,
-  mixBend,
   relaxedHand,
 } from './hand-shape';
 
-/** A finger that is not seen keeps its last bend for this long [s], then relaxes with this half-life [s]. */
+/** The time for which a finger that is not tracked keeps its bend [s], and the half-life of its relaxation [s]. */
 const heldSeconds = 0.5;
 const relaxHalfLife = 0.25;
 
-/** The fingers of one hand as they are shown: finite in every frame, whether they are seen, lost or not finite. */
+/** Keeps the fingers of one hand finite in every frame, whether they are tracked, lost or not finite. */
 export class FingerMemory {
   /** Overwritten by the next `follow`. */
   readonly shape: HandShape;
   readonly #shape: MutableHandShape = copyHandShape(relaxedHand, makeHandShape());
   /**
-   * For how long each finger has not been seen [s]. Not in the order of a hand's shape, whose objects would box these
+   * The time since each finger was tracked [s]. The order differs from a hand's shape, whose objects would box these
    * numbers: see `Vec3`.
    */
   readonly #unseen = {
@@ -36,7 +36,10 @@ export class FingerMemory {
     this.shape = this.#shape;
   }
 
-  /** What is seen now; null: nothing. A finger with a bend that is not finite counts as not seen. */
+  /**
+   * Updates the shape with the tracked one (null: not tracked). A finger with a bend that is not finite counts as not
+   * tracked.
+   */
   follow(seen: HandShape | null, deltaSeconds: number): HandShape {
     for (let i = 0; i < fingerNames.length; i++) {
       const name = fingerNames[i]!;
@@ -49,13 +52,13 @@ export class FingerMemory {
       const before = this.#unseen[name];
       this.#unseen[name] = before + deltaSeconds;
       const relaxing = Math.min(deltaSeconds, before + deltaSeconds - heldSeconds);
-      mixBend(shown, relaxedHand[name], smoothingFactor(relaxHalfLife, relaxing), shown);
+      lerpBend(shown, relaxedHand[name], smoothingFactor(relaxHalfLife, relaxing), shown);
     }
     this.#followPinch(seen, deltaSeconds);
     return this.#shape;
   }
 
-  /** A pinch is as good as the two fingers that make it. */
+  /** A pinch is tracked if both of its fingers are. */
   #followPinch(seen: HandShape | null, deltaSeconds: number): void {
     const target = this.#shape;
     if (seen && Number.isFinite(seen.pinch)) target.pinch = clamp(seen.pinch, 0, 1);

@@ -6,15 +6,15 @@ import type { UpperBodyPose } from './avatar-pose';
 import { type JointName, jointNames, parentOf } from './joints';
 import type { Skeleton } from './skeleton';
 
-/** Every joint, floor frame. */
+/** The pose of every joint, floor frame [m]. */
 export type JointPoses = Readonly<Record<JointName, Pose<'floor'>>>;
 export type MutableJointPoses = Readonly<Record<JointName, MutablePose<'floor'>>>;
 
 export const createJointPoses = (): MutableJointPoses => recordOf(jointNames, () => makePose<'floor'>());
 
 /**
- * Returns the position of every joint, floor frame: the skeleton's offsets turned by the pose's rotations, parents
- * first.
+ * Returns the pose of every joint, floor frame [m]: the skeleton's offsets rotated by the pose, parents first. `target`
+ * is overwritten and returned.
  *
  * @example
  * const joints = forwardKinematics(skeletonFromCalibration(body.calibration), pose.body);

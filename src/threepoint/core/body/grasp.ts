@@ -13,8 +13,8 @@ import {
 } from './hand-shape';
 
 /**
- * A thing in a hand, in the frame of a left wrist (hand-geometry): how far a point is from its surface, below 0 inside
- * [m].
+ * Returns the signed distance [m] of a point from an object in the hand, negative inside; frame of a left wrist
+ * (hand-geometry).
  */
 export type Surface = (point: Vec3, finger: FingerName) => number;
 
@@ -31,16 +31,16 @@ export function distanceToRod(point: Vec3, middle: Vec3, axis: Vec3, radius: num
   return Math.sqrt(Math.max(0, dot(relative, relative) - along * along)) - radius;
 }
 
-/** Halvings until a joint's bend is known to 0.01 rad. */
+/** The number of bisections for a joint's bend, to 0.01 rad. */
 const halvings = 7;
 const joints = ['knuckle', 'middle', 'end'] as const;
-/** A thumb stretched away above the palm, to be closed over what the hand holds. */
+/** A thumb stretched away above the palm, from which it closes over an object. */
 const openThumb = fingerBend(-0.3, 0.75, -0.05, -0.05);
-/** A thumb that stands out of the palm, to be closed from before it round a rod that lies across it. */
+/** A thumb opposite to the palm, from which it closes around a rod across the palm. */
 const opposedThumb = fingerBend(1.2, 0.3, -0.05, -0.05);
 /**
- * A finger that is inside a thing when it is straight is closed from here: so far a knuckle bends back without force
- * [rad].
+ * The hyperextension of a knuckle without force [rad], from which a finger closes that would be inside the object when
+ * straight.
  */
 const bentBack = 0.4;
 
@@ -50,9 +50,9 @@ const bent = fingerBend(0, 0, 0, 0);
 const opposed = fingerBend(0, 0, 0, 0);
 
 /**
- * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a
- * fist. A finger that is inside when it is straight begins bent back, and stays straight where its outer bones are
- * inside even so. The thumb closes from above the palm or from before it, whichever brings it further round.
+ * Closes each finger joint by joint, knuckle first, until its skin touches the surface; a finger that meets nothing
+ * closes to a fist. A finger that is inside when straight starts bent back, and stays straight if its outer bones are
+ * still inside. The thumb closes from above or in front of the palm, whichever brings it further around.
  */
 export function closeAround(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
   for (let i = 0; i < fingerNames.length; i++) {
@@ -67,7 +67,7 @@ export function closeAround(surface: Surface, geometry: HandGeometry, target: Mu
   target.pinch = 0;
 }
 
-/** How far a thumb's tip is from where it is in a fist [m]. */
+/** Returns the distance of a thumb's tip from its position in a fist [m]. */
 function fromFist(thumb: FingerGeometry, bend: FingerBend): number {
   fingerPoints('thumb', thumb, closedHand.thumb, points);
   copyVec3(points[3], at);
@@ -89,7 +89,7 @@ function closeFinger(
   for (let joint = 0; joint < 3; joint++) closeJoint(surface, name, finger, joint as 0 | 1 | 2, target);
 }
 
-/** Bends a joint by this share of its way into the fist; the spread of a first bone goes along. */
+/** Bends a joint by a fraction of its way into the fist; the first joint also changes its spread. */
 function bendJoint(
   name: FingerName,
   joint: 0 | 1 | 2,
@@ -126,7 +126,7 @@ function closeJoint(
   copyBend(bent, bend);
 }
 
-/** Whether the bones that a joint moves are outside: the root of a finger lies in the palm, and is not asked. */
+/** Returns whether the bones that a joint moves are outside. The root of a finger is in the palm and is not tested. */
 function isClear(
   surface: Surface,
   name: FingerName,

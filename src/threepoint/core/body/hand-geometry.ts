@@ -25,9 +25,9 @@ import type { FingerBend, FingerName, MutableFingerBend } from './hand-shape';
  * the hand, +X towards the thumb. A right hand is its mirror image at x = 0: `mirrorPoint`.
  */
 export interface FingerGeometry {
-  /** The joint of the first bone [m]; of the thumb: where its metacarpal begins. */
+  /** The joint of the first bone [m]; for the thumb the base of its metacarpal. */
   readonly root: Vec3;
-  /** From joint to joint, and from the last one to the middle of the tip's roundness [m]. */
+  /** The lengths between joints, and from the last one to the centre of the fingertip's curvature [m]. */
   readonly lengths: readonly [number, number, number];
   /** The radius of the finger at its tip, and at its root [m]. */
   readonly tipRadius: number;
@@ -36,7 +36,7 @@ export interface FingerGeometry {
 
 export type HandGeometry = Readonly<Record<FingerName, FingerGeometry>>;
 
-/** First, second and third joint of a finger and the middle of its tip's roundness. */
+/** The three joints of a finger and the centre of the fingertip's curvature [m]. */
 export type FingerPoints = readonly [MutableVec3, MutableVec3, MutableVec3, MutableVec3];
 
 export const makeFingerPoints = (): FingerPoints => [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)];
@@ -46,11 +46,11 @@ type FingerFrames = readonly [MutableQuat, MutableQuat, MutableQuat];
 
 export const makeFingerFrames = (): FingerFrames => [quat(0, 0, 0, 1), quat(0, 0, 0, 1), quat(0, 0, 0, 1)];
 
-/** A point of the left hand's frame in the right one's, and back. */
+/** Mirrors a point from the left hand's frame to the right one's, or back. */
 export const mirrorPoint = (point: Vec3, target: MutableVec3): MutableVec3 =>
   setVec3(target, -point.x, point.y, point.z);
 
-/** A rotation of the left hand's frame in the right one's, and back. */
+/** Mirrors a rotation in place from the left hand's frame to the right one's, or back. */
 export function mirrorRotation(q: MutableQuat): MutableQuat {
   q.y = -q.y;
   q.z = -q.z;
@@ -66,7 +66,7 @@ const thumbAtEase = normalise(vec3(0.639, -0.324, -0.697));
 const thumbAxisAtEase = normalise(reject(vec3(0.053, -0.886, 0.461), thumbAtEase));
 const thumbFrameAtEase = frameAlong(thumbAtEase, thumbAxisAtEase, quat(0, 0, 0, 1));
 
-/** −Z along a unit direction, +X along a unit axis at right angles to it. */
+/** Returns the frame with −Z along a unit direction and +X along a unit axis normal to it. */
 function frameAlong(direction: Vec3, axis: Vec3, target: MutableQuat): MutableQuat {
   const swing = rotationBetween(forward, direction, target);
   const swungRight = rotate(swing, right);
@@ -93,7 +93,7 @@ const turn = quat(0, 0, 0, 1);
 const firstDirection = ({ knuckle, spread }: FingerBend, target: MutableVec3): MutableVec3 =>
   setVec3(target, Math.sin(spread), -Math.cos(spread) * Math.sin(knuckle), -Math.cos(spread) * Math.cos(knuckle));
 
-/** The orientations of a finger's three bones. */
+/** Writes the orientations of a finger's three bones. */
 export function fingerFrames(name: FingerName, bend: FingerBend, target: FingerFrames): FingerFrames {
   const [first, second, third] = target;
   firstFrame(name, bend, first);
@@ -135,17 +135,17 @@ export function fingerPoints(
 const firstBone = vec3(0, 0, 0);
 const localBone = vec3(0, 0, 0);
 
-/** The angle [rad] by which `to` is bent against the −Z of a bone's frame, about its −X. */
+/** Returns the bend [rad] of `to` relative to −Z of a bone's frame, about its −X. */
 function bendAgainst(frame: MutableQuat, to: Vec3): number {
   const local = rotateInverse(frame, to, localBone);
   return Math.atan2(-local.y, -local.z);
 }
 
 /**
- * How a finger is bent whose joints and tip are there: the first bone exactly, the others as far as a hinge bends. A
- * NaN position gives at least one NaN bend.
+ * Computes the bend of a finger from its joints and tip: exactly for the first bone, as a hinge for the others. A NaN
+ * position gives at least one NaN bend.
  */
-export function bendOfPoints(name: FingerName, points: FingerPoints, target: MutableFingerBend): MutableFingerBend {
+export function bendFromPoints(name: FingerName, points: FingerPoints, target: MutableFingerBend): MutableFingerBend {
   const [first, second, third, tip] = points;
   const bone = normalise(subtract(second, first, firstBone), undefined, firstBone);
   target.spread = Math.asin(clamp(bone.x, -1, 1));
@@ -159,7 +159,7 @@ export function bendOfPoints(name: FingerName, points: FingerPoints, target: Mut
 
 const fingertip = 0.006;
 
-/** A hand whose fingers are made from these. */
+/** Creates a hand geometry finger by finger. */
 const handOf = <Finger>(
   { thumb, index, middle, ring, little }: Readonly<Record<FingerName, Finger>>,
   fingerOf: (finger: Finger) => FingerGeometry,
@@ -171,7 +171,7 @@ const handOf = <Finger>(
   little: fingerOf(little),
 });
 
-/** The hand of an average person of this eye height [m]: the mannequin's. */
+/** Returns the hand of an average person with this eye height [m], which is the mannequin's. */
 export function averageHand(eyeHeight: number): HandGeometry {
   const size = eyeHeight / proportions.eyeHeight;
   const fingerOf = ({ knuckle, lengths, radius }: (typeof proportions)['index']): FingerGeometry => ({

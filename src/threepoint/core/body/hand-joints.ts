@@ -3,18 +3,18 @@ import type { Pose } from '../math/pose';
 import { rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import { distance, subtract, type Vec3 } from '../math/vec3';
-import { bendOfPoints, type FingerPoints, makeFingerPoints, mirrorPoint } from './hand-geometry';
+import { bendFromPoints, type FingerPoints, makeFingerPoints, mirrorPoint } from './hand-geometry';
 import { type FingerName, fingerNames, type MutableHandShape } from './hand-shape';
 
-/** Tips of thumb and index finger this near are a full pinch, this far are none [m]. */
-export const closedPinch = 0.012;
-export const openPinch = 0.05;
+/** The distances of thumb and index fingertip for a full pinch and for none [m]. */
+export const fullPinchDistance = 0.012;
+export const noPinchDistance = 0.05;
 
-/** How far two finger tips that are so far apart [m] close on each other, 0 to 1; NaN for a gap that is not finite. */
+/** Returns the pinch, 0 to 1, for a distance of the fingertips [m]; NaN for a distance that is not finite. */
 const pinchOf = (gap: number): number =>
-  Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : Number.NaN;
+  Number.isFinite(gap) ? 1 - smoothstep(fullPinchDistance, noPinchDistance, gap) : Number.NaN;
 
-/** The joints of one hand, in the frame of its wrist as a left hand has it (hand-geometry). */
+/** The joints of one hand in its wrist's frame, mirrored to a left hand (hand-geometry). */
 export type HandJoints = Readonly<Record<FingerName, FingerPoints>>;
 
 export const makeHandJoints = (): HandJoints => ({
@@ -39,12 +39,13 @@ export function setHandJoint(
 }
 
 /**
- * How the fingers with these joints are bent. A NaN joint position gives its finger, and a pinch that needs it, NaN.
+ * Computes the bends of the fingers with these joints. A NaN position gives NaN for its finger, and for a pinch that
+ * needs it.
  */
-export function shapeOfJoints(joints: HandJoints, target: MutableHandShape): MutableHandShape {
+export function handShapeFromJoints(joints: HandJoints, target: MutableHandShape): MutableHandShape {
   for (let i = 0; i < fingerNames.length; i++) {
     const name = fingerNames[i]!;
-    bendOfPoints(name, joints[name], target[name]);
+    bendFromPoints(name, joints[name], target[name]);
   }
   target.pinch = pinchOf(distance(joints.thumb[3], joints.index[3]));
   return target;

@@ -7,10 +7,10 @@ export const fingerNames = ['thumb', 'index', 'middle', 'ring', 'little'] as con
 export type FingerName = (typeof fingerNames)[number];
 
 /**
- * How one finger is bent [rad], in the wrist's frame (threepoint/README.md, Frames). Its first bone (the thumb's: the
+ * The bend of one finger [rad], in the wrist's frame (threepoint/README.md, Frames). Its first bone (the thumb's: the
  * metacarpal) points (sin spread, −cos spread · sin knuckle, −cos spread · cos knuckle), x towards the thumb's side, y
- * out of the back of the hand. The two bones beyond are bent against the one before, about an axis that the first bone
- * carries along.
+ * out of the back of the hand. The two bones beyond are bent relative to the one before, about an axis of the first
+ * bone.
  */
 export interface FingerBend {
   /** The bend of the first bone towards the palm, from the direction of the knuckles. */
@@ -23,11 +23,11 @@ export interface FingerBend {
 
 /** The fingers of one hand, left or right: the two are mirror images with the same numbers. */
 export interface HandShape extends Readonly<Record<FingerName, FingerBend>> {
-  /** How far the tips of thumb and index finger close on each other, 0 to 1: they touch. */
+  /** The pinch of thumb and index finger, 0 to 1; at 1 the tips touch. */
   readonly pinch: number;
 }
 
-/** How the fingers of each hand are bent; null: not known. */
+/** The finger bends of each hand; null: unknown. */
 export type Fingers = Readonly<Record<Side, HandShape | null>>;
 
 export const unknownFingers: Fingers = { left: null, right: null };
@@ -45,7 +45,7 @@ export interface MutableHandShape extends Readonly<Record<FingerName, MutableFin
   pinch: number;
 }
 
-/** A finger's four angles [rad], in an object of their own. */
+/** Returns a new finger bend from four angles [rad]. */
 export const fingerBend = (knuckle: number, spread: number, middle: number, end: number): MutableFingerBend => ({
   knuckle,
   spread,
@@ -53,7 +53,7 @@ export const fingerBend = (knuckle: number, spread: number, middle: number, end:
   end,
 });
 
-/** Fingers straight, thumb beside them; for buffers. */
+/** Returns a hand with straight fingers and the thumb beside them, for buffers. */
 export const makeHandShape = (): MutableHandShape => ({
   thumb: fingerBend(0.35, 0.65, 0.05, 0.05),
   index: fingerBend(0.02, 0.08, 0.02, 0.02),
@@ -66,7 +66,7 @@ export const makeHandShape = (): MutableHandShape => ({
 /** A flat hand. */
 export const flatHand: HandShape = makeHandShape();
 
-/** A hand at ease: each finger a little more bent than the one before. */
+/** A relaxed hand: each finger is a little more bent than the one before. */
 export const relaxedHand: HandShape = {
   thumb: fingerBend(0.5, 0.52, 0.12, 0.2),
   index: fingerBend(0.26, 0.06, 0.34, 0.18),
@@ -100,8 +100,8 @@ export function copyHandShape(from: HandShape, target: MutableHandShape = makeHa
   return target;
 }
 
-/** From a (t = 0) to b (t = 1); target may be one of them. */
-export function mixBend(a: FingerBend, b: FingerBend, t: number, target: MutableFingerBend): MutableFingerBend {
+/** Interpolates from a (t = 0) to b (t = 1); target may be one of them. */
+export function lerpBend(a: FingerBend, b: FingerBend, t: number, target: MutableFingerBend): MutableFingerBend {
   target.knuckle = a.knuckle + (b.knuckle - a.knuckle) * t;
   target.spread = a.spread + (b.spread - a.spread) * t;
   target.middle = a.middle + (b.middle - a.middle) * t;
@@ -109,8 +109,8 @@ export function mixBend(a: FingerBend, b: FingerBend, t: number, target: Mutable
   return target;
 }
 
-/** From a (t = 0) to b (t = 1), finger by finger; target may be one of them. */
-export function mixHandShape(
+/** Interpolates from a (t = 0) to b (t = 1), finger by finger; target may be one of them. */
+export function lerpHandShape(
   a: HandShape,
   b: HandShape,
   t: number,
@@ -118,13 +118,13 @@ export function mixHandShape(
 ): MutableHandShape {
   for (let i = 0; i < fingerNames.length; i++) {
     const name = fingerNames[i]!;
-    mixBend(a[name], b[name], t, target[name]);
+    lerpBend(a[name], b[name], t, target[name]);
   }
   target.pinch = a.pinch + (b.pinch - a.pinch) * t;
   return target;
 }
 
-/** How far each part of a hand is closed, 0 at ease to 1 as in a fist. */
+/** The closing of each part of a hand, 0 (relaxed) to 1 (fist). */
 interface HandClosing {
   readonly thumb: number;
   readonly index: number;
@@ -135,44 +135,47 @@ interface HandClosing {
 
 const share = (value: number): number => (value > 0 ? Math.min(value, 1) : 0);
 
-/** A pinch: thumb and index finger meet before the palm, the others stay at ease. */
+/** A pinch: thumb and index finger meet in front of the palm, the others stay relaxed. */
 const pinchedThumb = fingerBend(0.82, 0.14, 0.18, 0.42);
 const pinchedIndex = fingerBend(0.98, 0.03, 0.72, 0.3);
 
-/** The hand of a player whose fingers are not seen, by what they press. */
-export function shapeOfClosing(closing: HandClosing, target: MutableHandShape = makeHandShape()): MutableHandShape {
+/** Writes the shape of a hand whose fingers are not tracked, from the closing of its parts. */
+export function handShapeFromClosing(
+  closing: HandClosing,
+  target: MutableHandShape = makeHandShape(),
+): MutableHandShape {
   const rest = share(closing.rest);
   target.pinch = share(closing.pinch);
-  mixBend(relaxedHand.thumb, closedHand.thumb, share(closing.thumb), target.thumb);
-  mixBend(relaxedHand.index, closedHand.index, share(closing.index), target.index);
-  mixBend(target.thumb, pinchedThumb, target.pinch, target.thumb);
-  mixBend(target.index, pinchedIndex, target.pinch, target.index);
-  mixBend(relaxedHand.middle, closedHand.middle, rest, target.middle);
-  mixBend(relaxedHand.ring, closedHand.ring, rest, target.ring);
-  mixBend(relaxedHand.little, closedHand.little, rest, target.little);
+  lerpBend(relaxedHand.thumb, closedHand.thumb, share(closing.thumb), target.thumb);
+  lerpBend(relaxedHand.index, closedHand.index, share(closing.index), target.index);
+  lerpBend(target.thumb, pinchedThumb, target.pinch, target.thumb);
+  lerpBend(target.index, pinchedIndex, target.pinch, target.index);
+  lerpBend(relaxedHand.middle, closedHand.middle, rest, target.middle);
+  lerpBend(relaxedHand.ring, closedHand.ring, rest, target.ring);
+  lerpBend(relaxedHand.little, closedHand.little, rest, target.little);
   return target;
 }
 
-/** Whether every number of a finger is one. */
+/** Returns whether all angles of a finger are finite. */
 export const isFiniteBend = ({ knuckle, spread, middle, end }: FingerBend): boolean =>
   Number.isFinite(knuckle + spread + middle + end);
 
-/** Whether every number of a hand is one. */
+/** Returns whether all numbers of a hand are finite. */
 export function isFiniteHand(shape: HandShape): boolean {
   for (let i = 0; i < fingerNames.length; i++) if (!isFiniteBend(shape[fingerNames[i]!])) return false;
   return Number.isFinite(shape.pinch);
 }
 
-/** The range of motion of a hand's joints [rad], with some room: what is tracked or sent beyond it is wrong. */
+/** The range of motion of a hand's joints [rad], with a margin: tracked or received angles beyond it are wrong. */
 const limits = {
-  // Not in the order of a bend: objects in its place would box the numbers of every bend, see `Vec3`.
+  // The order differs from a bend: objects with the same shape would box the numbers of every bend, see `Vec3`.
   end: { low: -0.6, high: 1.7 },
   middle: { low: -0.5, high: 2.1 },
   spread: { low: -0.7, high: 1.3 },
   knuckle: { low: -0.7, high: 1.9 },
 } as const;
 
-/** Keeps each joint within a hand's limits; what is no number stays as it is. */
+/** Limits each joint to its range of motion; NaN stays NaN. */
 export function limitBend(from: FingerBend, target: MutableFingerBend): MutableFingerBend {
   target.knuckle = clamp(from.knuckle, limits.knuckle.low, limits.knuckle.high);
   target.spread = clamp(from.spread, limits.spread.low, limits.spread.high);

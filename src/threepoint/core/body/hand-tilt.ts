@@ -24,25 +24,28 @@ export function defaultHandTilt(side: Side): HandTilt {
   return { pitch, yaw: side === 'left' ? -yaw : yaw };
 }
 
-/** The tilt of a hand in whose frame the forearm points along this vector. */
+/** Returns the tilt for a forearm along this vector in the hand's frame. */
 export function handTiltOf({ x, y, z }: Vec3): HandTilt {
   const across = Math.hypot(x, y);
   const perAcross = Math.atan2(across, -z) / Math.max(across, 1e-12);
   return { pitch: y * perAcross, yaw: -x * perAcross };
 }
 
-/** No hand is held further from the others' than this [rad]; a bent wrist is. */
+/** The largest plausible tilt [rad]; a larger one is a bent wrist. */
 export const { steepestHandTilt } = limits;
 
-/** Whether a hand may be held so. */
+/** Returns whether a tilt is plausible. */
 export const isPlausibleTilt = ({ pitch, yaw }: HandTilt): boolean => Math.hypot(pitch, yaw) <= steepestHandTilt;
 
-/** The rotation that a hand of this tilt is turned by, in its own frame, so that its −Z continues the forearm. */
+/** Returns the rotation of a hand in its own frame after which its −Z continues the forearm. */
 export function tiltRotation({ pitch, yaw }: HandTilt): MutableQuat {
   const angle = Math.hypot(pitch, yaw);
   return angle < 1e-12 ? quat(0, 0, 0, 1) : fromAxisAngle(vec3(pitch / angle, yaw / angle, 0), angle);
 }
 
-/** Returns the turn to a forearm in this direction [unit, hand frame], limited to the steepest plausible tilt. */
+/**
+ * Returns the rotation from −Z to a forearm in this direction (unit, hand frame), limited to the largest plausible
+ * tilt.
+ */
 export const forearmRotation = (direction: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   limitAngle(rotationBetween(forward, direction, target), steepestHandTilt, target);

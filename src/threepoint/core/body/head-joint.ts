@@ -3,8 +3,8 @@ import { rotate } from '../math/quat';
 import { type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 
 /**
- * The head joint [m] of a wearer whose headset is at this pose, same frame; eyesInHead: from the joint to the headset's
- * origin, head frame.
+ * Returns the head joint [m] for a headset at this pose, same frame. `eyesInHead`: the offset from the joint to the
+ * headset's origin, head frame.
  */
 export function headJointOf(head: Pose<Frame>, eyesInHead: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const { position } = head;

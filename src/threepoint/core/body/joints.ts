@@ -1,7 +1,7 @@
 /**
  * Joints of the upper body, by their VRM humanoid names, parents before children. A joint is its bone's origin:
- * `leftLowerArm` is the elbow, `leftHand` the wrist. What the paper calls the shoulder is our `UpperArm`; its "spine"
- * is where our thorax segment begins, which we call `chest`; its "pelvis" is `hips`.
+ * `leftLowerArm` is the elbow, `leftHand` the wrist. The paper's shoulder is `UpperArm` here; its "spine" is `chest`,
+ * where the thorax segment begins; its "pelvis" is `hips`.
  */
 export const jointNames = [
   'hips',
@@ -41,7 +41,8 @@ export const parentOf: Readonly<Record<JointName, JointName | null>> = {
 };
 
 /**
- * The six joints that no device tracks, in the order of every tensor: what the networks estimate and the tables report.
+ * The six joints that no device tracks, which the networks estimate and the tables report, in the order of every
+ * tensor.
  */
 export const estimatedJoints = [
   'leftLowerArm',

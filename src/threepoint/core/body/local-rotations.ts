@@ -11,8 +11,8 @@ const against = (parent: Quat, child: Quat, target: MutableQuat): MutableQuat =>
   multiply(conjugate(parent, inverse), child, target);
 
 /**
- * Writes the rotation of every joint against its parent's (`parentOf`; the hips': as it is), from all bones' in the
- * floor frame.
+ * Writes the rotation of every joint relative to its parent (`parentOf`; for the hips to the floor), from rotations in
+ * the floor frame.
  */
 export function writeLocalRotations(
   trunk: Readonly<Record<'hips' | 'spine' | 'chest' | 'upperChest' | 'neck', Quat>>,

@@ -21,7 +21,7 @@ export interface Skeleton {
 export const sideSign = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
 /**
- * The wrist's frame as the hand bone rests in T-pose (knuckles sideways, palm down): handBone = wrist ·
+ * The rotation from the hand bone to the wrist's frame in T-pose (knuckles sideways, palm down): handBone = wrist ·
  * wristFromHandBone.
  */
 export const wristFromHandBone: Readonly<Record<Side, Quat>> = {
@@ -36,8 +36,8 @@ export function armLength({ eyeHeight, armSpan }: Calibration): number {
 }
 
 /**
- * Bone lengths [m] that sum to armLength. A calibrated forearm is clamped to forearmShare of the arm, then blended with
- * the average by forearmTrust.
+ * Returns bone lengths [m] that sum to `armLength`. A calibrated forearm is clamped to `forearmShare` of the arm, then
+ * blended with the average by `forearmTrust`.
  */
 export function armBones(calibration: Calibration): LimbBones {
   const arm = armLength(calibration);
@@ -101,8 +101,8 @@ export function skeletonFromCalibration(calibration: Calibration): Skeleton {
 }
 
 /**
- * What inverse kinematics needs, in chest space: y from the chest joint to the neck, arms and shoulders of the right
- * side [m].
+ * The measures for inverse kinematics in chest space [m]: y from the chest joint to the neck; arm and shoulder are the
+ * right ones.
  */
 export interface ChestSpaceBody {
   readonly eyeHeight: number;

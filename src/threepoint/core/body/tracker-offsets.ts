@@ -12,15 +12,15 @@ export type TrackerOffset = Pose<'tracker'>;
 /** The offsets of the trackers that were measured. */
 export type TrackerOffsets = { readonly [Name in TrackerName]?: TrackerOffset | undefined };
 
-/** The offset of a tracker that already reports its joint: a source that sends joints instead of devices. */
+/** The offset for a source that reports joints instead of devices: the identity. */
 export const trackerAtJoint: TrackerOffset = { position: zero, orientation: identity };
 
-/** A tracker further from its joint than this [m] is not worn there. */
-export const farthestTracker = 0.4;
+/** The largest plausible distance of a tracker from its joint [m]. */
+export const maxTrackerOffset = 0.4;
 
 /** Returns whether an offset is finite and no longer than a tracker can be from its joint. */
 export const isPlausibleOffset = (offset: TrackerOffset): boolean =>
-  hasParts(offset) && isFinitePose(offset) && length(offset.position) <= farthestTracker;
+  hasParts(offset) && isFinitePose(offset) && length(offset.position) <= maxTrackerOffset;
 
 /** A page without types may leave parts of an offset out. */
 const hasParts = ({ position, orientation }: Partial<TrackerOffset>): boolean =>

@@ -10,20 +10,20 @@ export interface LimbBones {
   readonly lower: number;
 }
 
-/** Elbow flexion in [0, π] rad that puts the wrist `distance` [m] from the shoulder; out of reach: straight arm. */
+/** Returns the elbow flexion in [0, π] rad for a distance of wrist and shoulder [m]; 0 if it is out of reach. */
 export function elbowFlexion(upper: number, lower: number, distance: number): number {
   const cosine = (upper * upper + lower * lower - distance * distance) / (2 * upper * lower);
   return Math.PI - Math.acos(clamp(cosine, -1, 1));
 }
 
-/** All places an elbow (or knee) can have: a circle about the line from shoulder to wrist. */
+/** The possible positions of an elbow or knee: a circle about the line from shoulder to wrist. */
 export interface ElbowCircle {
   readonly centre: MutableVec3;
-  /** From shoulder to wrist, unit. */
+  /** The unit vector from shoulder to wrist. */
   readonly axis: MutableVec3;
   /** [m] */
   radius: number;
-  /** From shoulder to wrist [m], as far as the bones reach. */
+  /** The distance from shoulder to wrist [m], limited to the reach of the bones. */
   span: number;
 }
 
@@ -35,8 +35,8 @@ export const makeElbowCircle = (): ElbowCircle => ({
 });
 
 /**
- * The elbow's circle, all in one frame [m]; a wrist at the shoulder lies along `fallbackAxis`, one out of reach leaves
- * the arm straight.
+ * Writes the elbow's circle, all in one frame [m]. If the wrist is at the shoulder, the axis is `fallbackAxis`; if it
+ * is out of reach, the arm is straight.
  */
 export function elbowCircle(
   shoulder: Vec3,
@@ -57,8 +57,8 @@ export function elbowCircle(
 }
 
 /**
- * Soft-IK reach (Andy Nicholas, 2009): equals `far` up to softReach·reach, then approaches `reach` exponentially, so
- * the elbow does not snap. Same unit in and out.
+ * Returns the soft-IK reach (Andy Nicholas, 2009): `far` up to softReach·reach, then approaching `reach` exponentially,
+ * so that the elbow does not snap. All in one unit.
  */
 export function softenedReach(far: number, reach: number): number {
   const near = reach * limits.softReach;
@@ -66,8 +66,8 @@ export function softenedReach(far: number, reach: number): number {
 }
 
 /**
- * The unit vector at right angles to `axis` nearest to `pole`; where that lies along the axis, to the first fallback
- * that does not.
+ * Returns the unit vector normal to `axis` that is nearest to `pole`, or to the first fallback that is not parallel to
+ * the axis.
  */
 export function poleAcross(
   axis: Vec3,
@@ -81,6 +81,6 @@ export function poleAcross(
   return normalise(target, fallbacks[0], target);
 }
 
-/** The elbow on its circle in the direction `pole` (unit, at right angles to the axis) from the centre. */
+/** Returns the elbow on its circle, in the direction `pole` (unit, normal to the axis) from the centre. */
 export const elbowOnCircle = (circle: ElbowCircle, pole: Vec3, target?: MutableVec3): MutableVec3 =>
   addScaled(circle.centre, pole, circle.radius, target);

@@ -16,15 +16,15 @@ const turnSpeed = 14;
 const longestStep = 1 / 240;
 
 export interface BodyHeading {
-  /** The body's yaw about +Y [rad]; NaN: not known yet. */
+  /** The body's yaw about +Y [rad]; NaN before the first frame. */
   yaw: number;
 }
 
 export const makeBodyHeading = (): BodyHeading => ({ yaw: Number.NaN });
 
 /**
- * The yaw of a body under a turning head, as a rotation about +Y: still where only the head turns, slow to settle,
- * limited in speed, and kept where the head is so tilted that its heading is hardly defined. The first call takes the
+ * Estimates the yaw of the body from the head, as a rotation about +Y. It stays while only the head turns, settles
+ * slowly, is limited in speed, and is kept while the head's heading is not well defined. The first call returns the
  * head's.
  */
 export function followBodyHeading(

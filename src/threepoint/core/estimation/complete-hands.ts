@@ -44,30 +44,30 @@ import {
 } from '../math/vec3';
 import { type Heading, readHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
-import { alongArc, type DirectionArc, directionArc, makeDirectionArc, outsideOfBody } from './arms/direction-arc';
+import { alongArc, type DirectionArc, directionArc, makeDirectionArc, viaDirection } from './arms/direction-arc';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
 import lostHand from './lost-hand.json';
 
 /**
- * Most losses are shorter than a hand is held; of the longer ones most come back near where they were, so it goes to
- * rest slowly.
+ * The durations of a lost hand [s]: most losses are shorter than it is held, and most other hands come back near their
+ * last position, so that it sinks slowly.
  */
 const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
 /**
- * Time [s] in which confidence falls from 1 to 0 or rises again; shorter than the way to rest, so that later stages
- * follow a guess slowly.
+ * The time [s] in which confidence falls from 1 to 0 or rises again. It is shorter than the motion to rest, so that
+ * later stages follow a guess slowly.
  */
 export const confidenceSeconds = 0.3;
-/** A hand seen again this far [m] from its guess, or further, gets confidence 0; less far, in proportion. */
+/** The distance [m] from the guess at which a reacquired hand has confidence 0; less for smaller distances. */
 const doubtfulReturn = 0.1;
 
-/** An assumed hand, floor frame: the tracked one, else an estimate that moves slowly. */
+/** A hand, floor frame: the tracked one, else an estimate that moves slowly. */
 export interface CompletedHand extends MutablePose<'floor'> {
-  /** tracked: seen in this frame. held: lost a moment ago. sinking: on its way to rest beside the hip, or there. */
+  /** tracked: in this frame. held: just lost, at its last pose. sinking: moving to rest beside the hip, or there. */
   source: 'tracked' | 'held' | 'sinking';
-  /** In [0, 1]. 1: the hand is there. 0: a guess. */
+  /** The confidence in [0, 1]. 1: tracked. 0: a guess. */
   confidence: number;
-  /** The target of its arm: the hand where it is seen, is held, or will rest. */
+  /** The goal of its arm: the hand as tracked, as held, or where it will rest. */
   readonly goal: MutablePose<'floor'>;
   /**
    * True in the frame in which the goal changes discontinuously: the hand was reacquired, or begins to sink. The drawn
@@ -80,15 +80,15 @@ export interface CompletedHand extends MutablePose<'floor'> {
 export interface CompletedFrame {
   readonly head: Pose<'floor'>;
   readonly headJoint: Vec3;
-  /** Which way the head faces. */
+  /** The heading of the head. */
   readonly heading: Readonly<Heading>;
-  /** How the body has turned about +Y since the frame before. */
+  /** The rotation of the body about +Y since the previous frame. */
   readonly bodyTurn: Quat;
   readonly leftHand: CompletedHand;
   readonly rightHand: CompletedHand;
 }
 
-/** A hand about its shoulder, body frame: in which direction, how far [m], and how it is turned. */
+/** A hand relative to its shoulder, body frame: direction, distance [m] and orientation. */
 interface Reach {
   readonly direction: MutableVec3;
   distance: number;
@@ -97,16 +97,16 @@ interface Reach {
 
 interface HandState {
   readonly hand: CompletedHand;
-  /** The hand where it was seen last, or at rest if it never was. */
+  /** The hand's last tracked pose, or at rest if it was never tracked. */
   readonly last: Reach;
   /** False before the first frame. */
   known: boolean;
-  /** Since the first frame without it [s]; negative while it is seen. */
+  /** The time since the hand was lost [s]; negative while it is tracked. */
   lostSeconds: number;
   readonly arc: DirectionArc;
 }
 
-/** What `completeHands` remembers of one wearer, and the frame it returns. */
+/** The state of `completeHands` for one user, and the frame it returns. */
 export interface CompleteHandsState {
   readonly bodyHeading: BodyHeading;
   /** Origin on the floor under the head joint, yaw of the body. */
@@ -149,7 +149,7 @@ export function makeCompleteHandsState(): CompleteHandsState {
   };
 }
 
-/** The shoulder of an upright trunk under a head joint at this height [m], body frame. */
+/** Writes the shoulder of an upright trunk under a head joint at this height [m], body frame. */
 function uprightShoulder(side: Side, headJointHeight: number, body: ChestSpaceBody, target: MutableVec3): MutableVec3 {
   return setVec3(
     target,
@@ -165,8 +165,8 @@ const restAxes: Readonly<Record<Side, MutableQuat>> = {
 };
 
 /**
- * A relaxed arm below a head joint at this height [m], body frame: the wrist beside the thigh, the back of the hand
- * outward, fingers down.
+ * Writes the wrist of a relaxed arm below a head joint at this height [m], body frame: beside the thigh, the back of
+ * the hand outward, fingers down.
  */
 function restingHand(
   side: Side,
@@ -198,7 +198,7 @@ const inBody = makePose<'body'>();
 const inverse = quat(0, 0, 0, 1);
 const turn = quat(0, 0, 0, 1);
 
-/** A hand that the device sees. */
+/** Updates a tracked hand. */
 function followSeen(
   state: HandState,
   tracked: TrackedPose,
@@ -222,7 +222,7 @@ function followSeen(
   reachOf(inBody, shoulder, state.last);
 }
 
-/** A hand that the device does not see: held, then on an arc about its shoulder to rest. */
+/** Updates a lost hand: held, then moving on an arc about its shoulder to rest. */
 function followLost(
   state: HandState,
   side: Side,
@@ -245,7 +245,7 @@ function followLost(
   hand.source = held ? 'held' : 'sinking';
 
   const share = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
-  directionArc(last.direction, resting.direction, outsideOfBody[side], arc);
+  directionArc(last.direction, resting.direction, viaDirection[side], arc);
   rotate(alongArc(arc, share, turn), last.direction, inBody.position);
   scale(inBody.position, last.distance + (resting.distance - last.distance) * share, inBody.position);
   addScaled(inBody.position, shoulder, 1, inBody.position);
@@ -271,9 +271,8 @@ function completeHand(
 }
 
 /**
- * Stage 1: the frame in which a hand that is not seen is held, then sinks to rest beside the hip, and in which a hand
- * that is seen again is where it is seen. The one place that decides where a lost hand is; before a hand was ever seen
- * it rests.
+ * Completes the hands (stage 1): a lost hand is held, then sinks to rest beside the hip; a reacquired one is as tracked
+ * at once. A hand that was never tracked rests. No other stage decides where a lost hand is.
  */
 export function completeHands(
   state: CompleteHandsState,
@@ -295,7 +294,7 @@ export function completeHands(
   return frame;
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the state: the next frame is the first. */
 export function resetCompleteHands(state: CompleteHandsState): void {
   state.bodyHeading.yaw = Number.NaN;
   state.left.known = false;

@@ -8,7 +8,7 @@ const framesPerStep = 8;
 
 /**
  * Runs an estimator over a recording frame by frame, awaiting each answer of its network, and calls `drawn` with each
- * pose. Yields the share [0, 1] that is done at intervals. Throws a sentence where the estimator fails.
+ * pose. Yields the fraction [0, 1] that is done at intervals. Throws an Error if the estimator fails.
  */
 export async function* estimateRecording(
   { frames }: Pick<Replayable, 'frames'>,

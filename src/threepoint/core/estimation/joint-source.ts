@@ -23,11 +23,11 @@ export interface SolvedFrame {
   readonly deviceBody: DeviceBody | null;
 }
 
-/** Stage 3: the source of a method's six joints; all other stages are the same for every method. One per wearer. */
+/** The source of a method's six joints (stage 3); all other stages are the same for every method. One per user. */
 export interface JointSource {
   calibrate(body: ChestSpaceBody): void;
   reset(): void;
-  /** Writes the six joints [m], floor frame, finite. deltaSeconds: since the last call, 0 at first. */
+  /** Writes the six joints [m], floor frame, finite. `deltaSeconds`: the time since the last call, 0 at first. */
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void;
   /** The network of this source; null: there is none. */
   readonly network: JointNetwork | null;

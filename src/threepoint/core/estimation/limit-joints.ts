@@ -10,29 +10,30 @@ export interface LimitJointsState {
   known: boolean;
   /** The joints from the headset [m], floor axes. */
   readonly relative: MutableJointPositions;
-  /** Whether a joint is still on its way to where it is estimated. */
-  readonly behind: Record<EstimatedJoint, boolean>;
+  /** Whether a joint has not reached its estimate yet. */
+  readonly catchingUp: Record<EstimatedJoint, boolean>;
   readonly joints: MutableJointPositions;
 }
 
 export const makeLimitJointsState = (): LimitJointsState => ({
   known: false,
   relative: makeJoints(),
-  behind: mapJoints(() => false),
+  catchingUp: mapJoints(() => false),
   joints: makeJoints(),
 });
 
 const wanted = vec3(0, 0, 0);
 const carried = vec3(0, 0, 0);
 
-/** Confidence that this hand makes no joint jump; 1 for a lost hand, since its guess moves slowly. */
+/** Returns the confidence that this hand causes no jump; 1 for a lost hand, because its guess moves slowly. */
 const steadiness = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
 
 /**
- * Stage 4: joints may jump for no motion of the person where a hand that was lost is seen elsewhere, and under a head
- * on its side, whose heading says nothing of the body's. There, and until they have caught up, they move about the head
- * at most `doubtfulSpeed` [m/s] without any confidence and at most `catchUpSpeed` with all of it; everywhere else they
- * are free. An elbow whose own hand jumps goes along: the arm transition of stage 5 bridges it. Floor frame.
+ * Limits the speed of the joints (stage 4), floor frame. Estimates jump without motion of the person when a lost hand
+ * is reacquired elsewhere, and under a head on its side, whose heading is independent of the body's. Then, until the
+ * joints have caught up, their speed relative to the head is limited to between `doubtfulSpeed` (no confidence) and
+ * `catchUpSpeed` (full confidence) [m/s]. An elbow whose own hand jumps is not limited: the arm transition of stage 5
+ * covers it.
  */
 export function limitJoints(
   state: LimitJointsState,
@@ -40,7 +41,7 @@ export function limitJoints(
   { head, heading, bodyTurn, leftHand, rightHand }: CompletedFrame,
   deltaSeconds: number,
 ): MutableJointPositions {
-  const { relative, behind } = state;
+  const { relative, catchingUp } = state;
   const confidence = Math.min(heading.confidence, steadiness(leftHand), steadiness(rightHand));
   const most = (doubtfulSpeed + (catchUpSpeed - doubtfulSpeed) * confidence) * Math.max(deltaSeconds, 0);
   for (let index = 0; index < estimatedJoints.length; index++) {
@@ -49,8 +50,8 @@ export function limitJoints(
     subtract(joints[joint], head.position, wanted);
     rotate(bodyTurn, relative[joint], carried);
     const far = distance(wanted, carried);
-    behind[joint] = state.known && !hand?.jumped && (confidence < 1 || behind[joint]) && far > most;
-    if (behind[joint]) lerp(carried, wanted, most / far, relative[joint]);
+    catchingUp[joint] = state.known && !hand?.jumped && (confidence < 1 || catchingUp[joint]) && far > most;
+    if (catchingUp[joint]) lerp(carried, wanted, most / far, relative[joint]);
     else copyVec3(wanted, relative[joint]);
     add(head.position, relative[joint], state.joints[joint]);
   }
@@ -58,7 +59,7 @@ export function limitJoints(
   return state.joints;
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the state: the next frame is the first. */
 export function resetLimitJoints(state: LimitJointsState): void {
   state.known = false;
 }

@@ -1,6 +1,6 @@
 import type { TrackedFeet } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
-import { farthestTracker, isPlausibleOffset, trackerNames } from '../body/tracker-offsets';
+import { isPlausibleOffset, maxTrackerOffset, trackerNames } from '../body/tracker-offsets';
 import type { Mutable } from '../records';
 import { type TrackerMeasuring, trackerMeasuring } from '../tracking/measure-trackers';
 import type { BodyTrackers } from '../tracking/tracking-frame';
@@ -70,7 +70,7 @@ export const pinning: Pinning = {
       const offset = trackerOffsets?.[name];
       if (!offset || isPlausibleOffset(offset)) continue;
       throw new RangeError(
-        `The offset of the tracker “${name}” is not a pose within ${farthestTracker.toFixed(2)} m of it.`,
+        `The offset of the tracker “${name}” is not a pose within ${maxTrackerOffset.toFixed(2)} m of it.`,
       );
     }
   },

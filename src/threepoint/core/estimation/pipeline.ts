@@ -26,7 +26,7 @@ import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './trunk/
 /** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
 const longestGapSeconds = 0.5;
 
-/** The wearer's body, measured in the ways that the stages need. */
+/** Returns the measures of the user's body that the stages need. */
 function measure(calibration: Calibration) {
   const skeleton = skeletonFromCalibration(calibration);
   return {
@@ -37,7 +37,7 @@ function measure(calibration: Calibration) {
   };
 }
 
-/** The state of all stages for one wearer; each stage writes its own part only. */
+/** Creates the state of all stages for one user; each stage writes its own part only. */
 function makeEstimatorState({ handTilts }: Calibration) {
   const hands = makeCompleteHandsState();
   const trackers = makeSteadyTrackersState();

@@ -1,4 +1,4 @@
-import { makeSteadyPose, type SteadyPose, steadyPose } from '../math/one-euro';
+import { type FilteredPose, filterPose, makeFilteredPose } from '../math/one-euro';
 import { type Side, sides } from '../math/side';
 import { copyVec3, distance, type MutableVec3, subtract, vec3 } from '../math/vec3';
 import type { CompletedFrame } from './complete-hands';
@@ -8,17 +8,17 @@ type Tracker = 'head' | 'leftHand' | 'rightHand';
 const trackers: readonly Tracker[] = ['head', 'leftHand', 'rightHand'];
 
 /** The filtered trackers that joints are estimated from, floor frame. Head and hands are drawn unfiltered. */
-export type SteadyTrackersState = Readonly<Record<Tracker, SteadyPose<'floor'>>> & {
-  /** The distance that each hand has moved about the head since the frame before [m], floor axes; 0 in the first. */
+export type SteadyTrackersState = Readonly<Record<Tracker, FilteredPose<'floor'>>> & {
+  /** The path of each hand relative to the head since the previous frame [m], floor axes; 0 in the first frame. */
   readonly travel: Record<Side, number>;
   /** Each hand from the head [m], floor axes. */
   readonly fromHead: Readonly<Record<Side, MutableVec3>>;
 };
 
 export const makeSteadyTrackersState = (): SteadyTrackersState => ({
-  head: makeSteadyPose(),
-  leftHand: makeSteadyPose(),
-  rightHand: makeSteadyPose(),
+  head: makeFilteredPose(),
+  leftHand: makeFilteredPose(),
+  rightHand: makeFilteredPose(),
   travel: { left: 0, right: 0 },
   fromHead: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
@@ -34,7 +34,7 @@ export function steadyTrackers(
   const { known } = state.head;
   for (let index = 0; index < trackers.length; index++) {
     const tracker = trackers[index]!;
-    steadyPose(state[tracker], completed[tracker], tuning, deltaSeconds);
+    filterPose(state[tracker], completed[tracker], tuning, deltaSeconds);
   }
   for (const side of sides) {
     const hand = side === 'left' ? state.leftHand : state.rightHand;

@@ -3,7 +3,7 @@ import { isTracked, type MutablePose, makePose, transformPose } from '../math/po
 import type { BodyTrackers } from '../tracking/tracking-frame';
 import { validPose } from '../tracking/tracking-validator';
 
-/** The joints by their trackers, floor frame; null: not seen, invalid, or without an offset. */
+/** The joints by their trackers, floor frame; null: not tracked, invalid, or without an offset. */
 export type TrackedJoints = Record<TrackerName, MutablePose<'floor'> | null>;
 
 /** The joints of the newest frame, and the buffers that they are written to. */

@@ -5,9 +5,9 @@ import type { HumanoidMatch } from './match-humanoid';
 /** The bones of a file, at rest or as they can be drawn; of a file without skins, all its nodes. */
 export interface FileBones {
   readonly joints: readonly SkeletonJoint[];
-  /** The bones that were matched, by what the file calls them. */
+  /** The matched bones: the name of the file's node for each. */
   readonly matched: BoneMap;
-  /** How sure each match is, from 0 to 1. */
+  /** The confidence of each match, 0 to 1. */
   readonly confidence: Readonly<Partial<Record<BoneName, number>>>;
 }
 
@@ -21,8 +21,8 @@ export function fileBones(joints: readonly SkeletonJoint[], map: HumanoidMatch['
   };
 }
 
-/** The error of a file whose bones match no humanoid, or not all needed bones: a map of them can be given. */
-export class UnknownBones extends Error implements FileBones {
+/** The error of a file whose bones do not match a humanoid with all needed bones. A bone map can be supplied. */
+export class UnknownBonesError extends Error implements FileBones {
   readonly joints: FileBones['joints'];
   readonly matched: FileBones['matched'];
   readonly confidence: FileBones['confidence'];

@@ -1,16 +1,16 @@
 import { type TrackedPose, trackedOrNull } from '../math/pose';
 import type { Side } from '../math/side';
 
-/** How far each button of a hand is pressed, 0 to 1. A controller has no pinch, a bare hand nothing but. */
+/** The pressure of each button of a hand, 0 to 1. A controller has no pinch; a bare hand has only a pinch. */
 export interface HandButtons {
   readonly trigger: number;
   readonly grip: number;
   readonly pinch: number;
-  /** What they belong to, where that is known. A hand that turns from one into the other lets go of everything. */
+  /** The kind of the input source, if known. A change of kind releases everything that the hand holds. */
   readonly kind?: 'controller' | 'hand';
   /** The number of the device among all of the session; absent where devices are not distinguished. */
   readonly device?: number;
-  /** The hand is busy with a gesture of the device's own, such as the one for its menu: for games it is not seen. */
+  /** Whether the hand makes a gesture of the device, such as that for its menu: for games it is not tracked. */
   readonly taken?: boolean;
 }
 
@@ -18,21 +18,21 @@ export type Buttons = Readonly<Record<Side, HandButtons>>;
 
 export type Button = 'trigger' | 'grip' | 'pinch';
 
-/** Returns the pose of a hand that plays: null where the device does not see it, or uses it itself. */
+/** Returns the pose of a hand for games; null: it is not tracked, or the device uses it. */
 export const playingHand = (hand: TrackedPose | null, { taken }: HandButtons): TrackedPose | null =>
   taken ? null : trackedOrNull(hand);
 
 export const allReleased: HandButtons = { trigger: 0, grip: 0, pinch: 0 };
 export const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
-/** Pressed at and above the first, released below the second; between them what it was. */
+/** The thresholds of a press with hysteresis: pressed at and above the first, released below the second. */
 export const pressedAt = 0.6;
 export const releasedBelow = 0.4;
 
 const names: readonly Button[] = ['trigger', 'grip', 'pinch'];
 const none: readonly never[] = [];
 
-/** How far a button is pressed, in [0, 1]; what is no number is not pressed. */
+/** Returns a button's pressure in [0, 1]; 0 for NaN. */
 export const pressureOf = (buttons: HandButtons, button: Button): number => {
   const value = buttons[button];
   return value > 0 ? Math.min(value, 1) : 0;
@@ -41,18 +41,18 @@ export const pressureOf = (buttons: HandButtons, button: Button): number => {
 /** Distinguishes presses from noise by thresholds with hysteresis, separately for each hand. */
 export interface ButtonPresses {
   /**
-   * The buttons newly pressed in this frame. A hand that is not seen has none; what is down when it is seen (again) for
-   * the first time, or when it has become another kind of hand, was not pressed then.
+   * Returns the buttons that were pressed in this frame. A hand that is not tracked has none. A button that is down
+   * when the hand is first tracked, or after a change of kind, does not count.
    */
   follow(side: Side, buttons: HandButtons, seen: boolean): readonly Button[];
   /**
-   * Whether the last frame's hand was of another kind than the one seen before, or in this very frame became another
-   * device, as when two controllers change sides: what it held is not held by this one.
+   * Returns whether the hand's kind changed with the last frame, or its device in this one, as when two controllers
+   * swap sides: objects in the hand are then released.
    */
   changedKind(side: Side): boolean;
 }
 
-/** What one hand held, and what held it. */
+/** The presses of one hand, and its input source. */
 class HandPresses {
   changed = false;
   #kind: HandButtons['kind'] = undefined;
@@ -62,11 +62,11 @@ class HandPresses {
   readonly #down: Record<Button, boolean> = { trigger: false, grip: false, pinch: false };
 
   follow(buttons: HandButtons, seen: boolean): readonly Button[] {
-    // What an unseen hand is, is as unknown as what it does.
+    // The kind of a hand that is not tracked is unknown.
     const kind = seen ? buttons.kind : undefined;
     const device = seen ? buttons.device : undefined;
     const otherKind = kind !== undefined && this.#kind !== undefined && this.#kind !== kind;
-    // A controller that was off comes back as another device, to what it held: that alone is no change.
+    // A controller that was off returns as another device; this alone is no change.
     const otherDevice = device !== undefined && this.#device !== undefined && this.#device !== device;
     this.changed = otherKind || otherDevice;
     this.#kind = kind ?? this.#kind;
@@ -76,13 +76,13 @@ class HandPresses {
     return seen ? this.#press(buttons, compared) : none;
   }
 
-  /** `compared`: what was down before is known. */
+  /** `compared`: whether the state of the previous frame is known. */
   #press(buttons: HandButtons, compared: boolean): readonly Button[] {
     let pressed: Button[] | null = null;
     for (const name of names) {
       const value = pressureOf(buttons, name);
       const before = this.#down[name];
-      // A value between the thresholds of a hand that comes into sight may be a press that has not ended.
+      // A value between the thresholds when a hand becomes tracked may be a press that has not ended.
       const after = value >= pressedAt || (value >= releasedBelow && (before || !compared));
       this.#down[name] = after;
       if (!compared || !after || before) continue;

@@ -2,18 +2,18 @@ import { clamp } from '../math/damper';
 import type { Pose } from '../math/pose';
 import { rotate } from '../math/quat';
 import { copyVec3, forward } from '../math/vec3';
-import { MovedPointer, type PointedAt, usualDwell } from './pointer';
+import { defaultDwellSeconds, MutablePointer, type PointerTarget } from './pointer';
 
-/** A gaze that passes over something for less than this time [s] holds nothing. */
+/** The time [s] that a gaze must rest on a target before a hold starts. */
 const settleSeconds = 0.25;
-/** A gaze may leave what it rests on for this time [s]: a head is never still. */
+/** The time [s] for which a gaze may leave its target, because a head is never still. */
 const leaveSeconds = 0.15;
 
 /**
- * A pointer along the head's gaze that acts on what it rests on. It acts once: the gaze must move to something else
- * before it acts again.
+ * A pointer along the head's gaze that activates the target on which it rests. It activates a target once: the gaze
+ * must move to another target before it acts again.
  */
-export class GazePointer extends MovedPointer {
+export class GazePointer extends MutablePointer {
   override readonly releases = false;
   /** What it rests on; the id is null where it rests on nothing. */
   #owner = '';
@@ -36,7 +36,7 @@ export class GazePointer extends MovedPointer {
     if (stays) this.#seenAt = time;
     else if (id !== null || time - this.#seenAt > leaveSeconds) this.#restOn(target, time);
     if (!target || id === null || this.#acted) return;
-    const seconds = target.dwellSeconds ?? usualDwell;
+    const seconds = target.dwellSeconds ?? defaultDwellSeconds;
     this.progress = clamp((time - this.#since - settleSeconds) / (seconds - settleSeconds), this.progress, 1);
     this.held = this.progress > 0;
     if (this.progress < 1) return;
@@ -51,7 +51,7 @@ export class GazePointer extends MovedPointer {
     this.#restOn(null, this.#seenAt);
   }
 
-  #restOn(target: PointedAt | null, time: number): void {
+  #restOn(target: PointerTarget | null, time: number): void {
     this.cancelled = this.held;
     this.#release();
     this.#acted = false;

@@ -4,29 +4,29 @@ import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 import type { Mutable } from '../records';
 
 /**
- * What a pointer is. transient: it is there only while its user pinches, touches or presses, and its ray comes from the
- * eyes or the head.
+ * The kind of a pointer. transient: it exists only while the user pinches, touches or presses, and its ray starts at
+ * the eyes or the head.
  */
 export type PointerSource = 'mouse' | 'controller' | 'hand' | 'transient' | 'gaze';
 
-/** Something that a pointer points at. */
-export interface PointedAt {
+/** A target that a pointer points at. */
+export interface PointerTarget {
   /** The distance along the ray [m]. */
   readonly distance: number;
   /** The part of the page that it belongs to, such as a menu or a game. */
   readonly owner: string;
-  /** What a press there would do: another id is another action. null: nothing, as between the buttons of a sheet. */
+  /** The id of the action of a press; null: no action, as between the buttons of a sheet. */
   readonly id: string | null;
-  /** The time after which a gaze that rests there acts [s]; absent: `usualDwell`. */
+  /** The time after which a gaze that rests there acts [s]; absent: `defaultDwellSeconds`. */
   readonly dwellSeconds?: number;
 }
 
 /** The time after which a gaze that rests on a button presses it [s]. */
-export const usualDwell = 1.2;
+export const defaultDwellSeconds = 1.2;
 
 /**
- * A ray, and where there is one a finger tip, with one action. Menus and games know pointers, never devices. Floor
- * frame; the same object in every frame while its input source is there.
+ * A ray, with a fingertip if there is one, and one action. Menus and games use pointers and know no devices. Floor
+ * frame; the same object in every frame while its input source exists.
  */
 export interface Pointer extends Ray {
   readonly source: PointerSource;
@@ -40,22 +40,27 @@ export interface Pointer extends Ray {
   readonly held: boolean;
   /** A hold has ended without its action: the gaze moved away, or the device took the hand. */
   readonly cancelled: boolean;
-  /** Its user ends a hold at will; a gaze cannot, so what it holds must end the hold by itself. */
+  /** Whether the user can end a hold. A gaze cannot, so that the target must end it. */
   readonly releases: boolean;
-  /** How much of its dwell time a gaze has rested, 0 to 1; 0 for other pointers. */
+  /** The fraction of the dwell time for which a gaze has rested, 0 to 1; 0 for other pointers. */
   readonly progress: number;
   /** The nearest of what it points at in this frame; null: nothing yet. Overwritten two frames later. */
-  readonly pointedAt: PointedAt | null;
+  readonly pointedAt: PointerTarget | null;
   /** Reports that the ray meets something, which is copied. The nearest report of a frame counts. */
-  pointAt(target: PointedAt): void;
+  pointAt(target: PointerTarget): void;
   /** Returns whether it is held, and not for another part of the page. */
   isHeldFor(owner: string): boolean;
 }
 
-const noTarget = (): Mutable<PointedAt> => ({ distance: 0, owner: '', id: null, dwellSeconds: usualDwell });
+const noTarget = (): Mutable<PointerTarget> => ({
+  distance: 0,
+  owner: '',
+  id: null,
+  dwellSeconds: defaultDwellSeconds,
+});
 
 /** A pointer that its reader moves. Call `begin` first in every frame. */
-export class MovedPointer implements Pointer {
+export class MutablePointer implements Pointer {
   readonly source: PointerSource;
   readonly side: Side | null;
   readonly origin: MutableVec3 = vec3(0, 0, 0);
@@ -66,9 +71,9 @@ export class MovedPointer implements Pointer {
   cancelled = false;
   progress = 0;
   readonly releases: boolean = true;
-  pointedAt: PointedAt | null = null;
+  pointedAt: PointerTarget | null = null;
   readonly #tip = vec3(0, 0, 0);
-  /** The owner of what it pointed at when the hold began; null: it pointed at nothing. */
+  /** The owner of the target when the hold began; null: there was none. */
   #heldFor: string | null = null;
   #wasHeld = false;
   /** The buffers of the target of this frame and of the last one. */
@@ -81,7 +86,7 @@ export class MovedPointer implements Pointer {
   }
 
   /** Starts a frame; returns what it pointed at in the last one. */
-  begin(): PointedAt | null {
+  begin(): PointerTarget | null {
     const last = this.pointedAt;
     if (!this.held) this.#heldFor = null;
     else if (!this.#wasHeld) this.#heldFor = last?.owner ?? null;
@@ -104,13 +109,13 @@ export class MovedPointer implements Pointer {
     this.tip = tip && copyVec3(tip, this.#tip);
   }
 
-  pointAt(target: PointedAt): void {
+  pointAt(target: PointerTarget): void {
     if (this.pointedAt && target.distance >= this.pointedAt.distance) return;
     const kept = this.#target;
     kept.distance = target.distance;
     kept.owner = target.owner;
     kept.id = target.id;
-    kept.dwellSeconds = target.dwellSeconds ?? usualDwell;
+    kept.dwellSeconds = target.dwellSeconds ?? defaultDwellSeconds;
     this.pointedAt = kept;
   }
 

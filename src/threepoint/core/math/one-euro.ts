@@ -10,7 +10,7 @@ import { copyVec3, distance, lerp, type MutableVec3, vec3 } from './vec3';
 export interface OneEuroTuning {
   /** Cutoff at rest, and of the low-pass on the speed [Hz]. */
   readonly restCutoff: number;
-  /** What one metre a second adds to the cutoff [Hz per m/s]. */
+  /** The increase of the cutoff with speed [Hz per m/s]. */
   readonly cutoffPerSpeed: number;
 }
 
@@ -18,7 +18,7 @@ export interface OneEuroTuning {
 export const halfLifeOfCutoff = (cutoff: number): number => Math.LN2 / (2 * Math.PI * cutoff);
 
 /** The filter's state for one pose. */
-export interface SteadyPose<F extends Frame> {
+export interface FilteredPose<F extends Frame> {
   /** False before the first sample, which passes unchanged. */
   known: boolean;
   readonly value: MutablePose<F>;
@@ -28,7 +28,7 @@ export interface SteadyPose<F extends Frame> {
   speed: number;
 }
 
-export const makeSteadyPose = <F extends Frame>(): SteadyPose<F> => ({
+export const makeFilteredPose = <F extends Frame>(): FilteredPose<F> => ({
   known: false,
   value: makePose(),
   sample: vec3(0, 0, 0),
@@ -39,8 +39,8 @@ export const makeSteadyPose = <F extends Frame>(): SteadyPose<F> => ({
  * Takes the next sample; a step of no time keeps the value of a known state. The position's speed opens the filter for
  * the orientation too, because hands and heads that turn also move.
  */
-export function steadyPose<F extends Frame>(
-  state: SteadyPose<F>,
+export function filterPose<F extends Frame>(
+  state: FilteredPose<F>,
   { position, orientation }: Pose<F>,
   { restCutoff, cutoffPerSpeed }: OneEuroTuning,
   deltaSeconds: number,

@@ -21,10 +21,10 @@ export interface Pose<F extends Frame> {
 /** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
 export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
 
-/** Returns whether the device sees this point; one that is lost, or whose position is only guessed, does not count. */
+/** Returns whether a point is tracked: neither lost nor emulated. */
 export const isTracked = (pose: TrackedPose | null | undefined): pose is TrackedPose => pose?.tracking === 'tracked';
 
-/** Returns the pose where the device sees it, null where it is lost or only guessed. */
+/** Returns the pose if it is tracked; null: lost or emulated. */
 export const trackedOrNull = (pose: TrackedPose | null): TrackedPose | null => (isTracked(pose) ? pose : null);
 
 /** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
@@ -53,7 +53,7 @@ export interface MutableTransform<To extends Frame, From extends Frame> extends 
   readonly orientation: MutableQuat;
 }
 
-/** At the origin, turned not at all; for buffers. */
+/** Returns a pose at the origin without rotation, for buffers. */
 export const makePose = <F extends Frame>(): MutablePose<F> => ({
   position: vec3(0, 0, 0),
   orientation: quat(0, 0, 0, 1),
@@ -112,7 +112,7 @@ export function transformPose<To extends Frame, From extends Frame>(
   return target;
 }
 
-/** Returns the pose in To where the device sees it, null where it is lost or only guessed. */
+/** Returns the pose in To if it is tracked; null: lost or emulated. */
 export function transformTracked<To extends Frame>(
   t: Transform<To, 'floor'>,
   pose: TrackedPose | null,

@@ -31,7 +31,6 @@ export function setQuat(target: MutableQuat, x: number, y: number, z: number, w:
 export const copyQuat = (q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   setQuat(target, q.x, q.y, q.z, q.w);
 
-/** The rotation b followed by a. */
 /** Reads x, y, z, w from index `at` on. */
 export const readQuat = (from: ArrayLike<number>, at: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   setQuat(target, from[at]!, from[at + 1]!, from[at + 2]!, from[at + 3]!);
@@ -45,6 +44,7 @@ export function writeQuat({ x, y, z, w }: Quat, target: Float32Array | Float64Ar
   return at + 4;
 }
 
+/** Returns the rotation b followed by a. */
 export const multiply = (a: Quat, b: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   setQuat(
     target,

@@ -3,11 +3,11 @@ export interface RandomState {
   readonly seed: number;
 }
 
-/** The state's one number after this one: for owners of a buffer. */
-export const seedAfter = (seed: number): number => (seed + 0x9e3779b9) | 0;
+/** Returns the seed that follows a seed, for owners of a buffer. */
+export const nextSeed = (seed: number): number => (seed + 0x9e3779b9) | 0;
 
-/** The number in [0, 1) that belongs to a state's one number (Steele's SplitMix32 mixing steps). */
-export function uniformOf(seed: number): number {
+/** Returns the number in [0, 1) for a seed (Steele's SplitMix32 mixing steps). */
+export function uniformFromSeed(seed: number): number {
   let mixed = seed ^ (seed >>> 16);
   mixed = Math.imul(mixed, 0x21f0aaad);
   mixed ^= mixed >>> 15;
@@ -16,23 +16,23 @@ export function uniformOf(seed: number): number {
   return (mixed >>> 0) / 2 ** 32;
 }
 
-/** The next number and the state after it. */
+/** Returns the next number and the state after it. */
 export function nextRandom(state: RandomState): { readonly value: number; readonly state: RandomState } {
-  const seed = seedAfter(state.seed);
-  return { value: uniformOf(seed), state: { seed } };
+  const seed = nextSeed(state.seed);
+  return { value: uniformFromSeed(seed), state: { seed } };
 }
 
-/** A function whose calls give a generator's numbers one after the other. */
-export function randomNumbers(seed: number): () => number {
+/** Returns a function that returns the next number in [0, 1) with each call. */
+export function createRandom(seed: number): () => number {
   let state = seed;
   return () => {
-    state = seedAfter(state);
-    return uniformOf(state);
+    state = nextSeed(state);
+    return uniformFromSeed(state);
   };
 }
 
 /** Returns a generator of standard normal numbers by Box and Muller; 1 − u is never 0. */
-export function normalNumbers(seed: number): () => number {
-  const uniform = randomNumbers(seed);
+export function createNormalRandom(seed: number): () => number {
+  const uniform = createRandom(seed);
   return () => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
 }

@@ -1,4 +1,4 @@
-/** A side of the body from the person's own view: the wearer's left is `left`. */
+/** A side of the body from the person's own view: the user's left is `left`. */
 export type Side = 'left' | 'right';
 
 export const sides = ['left', 'right'] as const satisfies readonly Side[];

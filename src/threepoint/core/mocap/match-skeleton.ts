@@ -1,6 +1,6 @@
 import { type BoneMap, type BoneName, neededBones } from '../humanoid/bones';
 import { type BoneMatch, type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
-import { type FileBones, fileBones, UnknownBones } from '../humanoid/unknown-bones-error';
+import { type FileBones, fileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
 import { type Side, sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
 import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
@@ -145,7 +145,7 @@ function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): Joi
 
 /**
  * Finds the skeleton of a person in a motion: which joint is which, how the body rests, and which way is up. `map`: the
- * user's map of its bones, which decides which joint is which. Throws UnknownBones with what was found and what is
+ * user's map of its bones, which decides which joint is which. Throws UnknownBonesError with what was found and what is
  * missing where there is no map.
  */
 export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
@@ -216,12 +216,12 @@ function mappedJoints({ names }: FileMotion, map: BoneMap): Match {
   return { map: Object.fromEntries(matches) };
 }
 
-/** Matches joints, left and right by where the toes point. Throws UnknownBones where they do not match. */
+/** Matches joints, left and right by where the toes point. Throws UnknownBonesError where they do not match. */
 function matchSides(file: FileMotion): { readonly match: Match; readonly notes: string[] } {
   const found = matchHumanoid(jointsAt(file, file.rest));
   const complaint = humanoidComplaint(found);
   if (complaint)
-    throw new UnknownBones(
+    throw new UnknownBonesError(
       `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
       fileBones(jointsForPicture(file), found.map),
     );

@@ -1,7 +1,7 @@
 import { type Calibration, calibrationProblem } from '../body/calibration';
 import { reasonOf } from '../errors/reasons';
 import type { BoneMap } from '../humanoid/bones';
-import { type FileBones, UnknownBones } from '../humanoid/unknown-bones-error';
+import { type FileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
 import { isObject } from '../json';
 import type { FileMotion } from '../motion/file-motion';
 import { readAmc } from '../motion/read-amc';
@@ -80,7 +80,9 @@ export interface PreparedMocap {
 /** Returns the fault as a sentence that begins with the name of its file. */
 function faultIn(name: string, error: unknown): Error {
   const message = `${name}: ${reasonOf(error)}`;
-  return error instanceof UnknownBones ? new UnknownBones(message, error) : new Error(message, { cause: error });
+  return error instanceof UnknownBonesError
+    ? new UnknownBonesError(message, error)
+    : new Error(message, { cause: error });
 }
 
 /** What is read of a file that another needs; a fault in it begins with its own name. */

@@ -1,5 +1,5 @@
 import { fromAxisAngle, multiply, type Quat, rotate, writeQuat } from '../math/quat';
-import { normalNumbers } from '../math/random';
+import { createNormalRandom } from '../math/random';
 import { add, length, normalise, type Vec3, vec3, writeVec3 } from '../math/vec3';
 import type { EvenClip } from './even-clip';
 import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
@@ -19,7 +19,7 @@ const noiseOf = (joint: number, { head, hands }: Readonly<Record<'head' | 'hands
 type Normal = () => number;
 
 /** Returns the generator for a person or a clip; NormalNumbers in Python draws the same numbers. */
-const normalOf = (name: string): Normal => normalNumbers(seed ^ checksum(name));
+const normalOf = (name: string): Normal => createNormalRandom(seed ^ checksum(name));
 
 /** Three normal numbers of this deviation. */
 const drawVector = (normal: Normal, deviation: number): Vec3 =>

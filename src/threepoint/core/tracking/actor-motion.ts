@@ -65,7 +65,7 @@ const overhead: HandKey = { at: [0.16, 0.92, -0.2], knuckles: [0, 1, -0.1], back
 const aside: HandKey = { at: [0.93, 0.06, -0.12], knuckles: [1, 0, -0.05], back: [0, 1, 0] };
 const lowAhead: HandKey = { at: [0.12, -0.62, -0.6], knuckles: [0, -0.35, -1], back: [0.6, 0.75, 0] };
 
-/** Half a minute of an actor who shows what the body can do. It ends as it began. */
+/** The key poses of a loop of half a minute, in which an actor shows the body's range of motion. */
 const keys: readonly Key[] = [
   { time: 0, left: hanging, right: hanging },
   { time: 1.2, left: hanging, right: hanging, look: 8 },
@@ -109,14 +109,12 @@ const keys: readonly Key[] = [
 /** Length of the loop [s]. */
 export const actorLoopSeconds = keys.at(-1)?.time ?? 0;
 
-/**
- * From 0 to 1 with neither speed nor acceleration at the ends: how hands move between two places (Flash & Hogan 1985).
- */
+/** Returns the minimum-jerk progress from 0 to 1, by which hands move between two points (Flash & Hogan 1985). */
 const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t);
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
-/** The bodies of calibrations that the actor has performed with: it performs with one in frame after frame. */
+/** A cache of bodies by calibration, because the actor uses one for many frames. */
 const bodies = new WeakMap<Calibration, ChestSpaceBody>();
 
 function bodyOf(calibration: Calibration): ChestSpaceBody {
@@ -128,8 +126,8 @@ function bodyOf(calibration: Calibration): ChestSpaceBody {
 }
 
 /**
- * Head and wrists at a time [s] of an endless performance by this body, floor frame, standing about the origin and
- * facing −Z at first. Smooth in position and speed; hands stay within reach.
+ * Returns head and wrists at a time [s] of an endless loop by a person of these measures, floor frame, standing near
+ * the origin and facing −Z at first. Position and speed are continuous; hands stay within reach.
  */
 export function actorFrame(timeSeconds: number, calibration: Calibration): TrackingFrame {
   const loops = Math.floor(timeSeconds / actorLoopSeconds);
@@ -152,7 +150,7 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
   fromAxisAngle(right, radians(mixed(from.pitch, to.pitch) + 1.2 * Math.sin(timeSeconds * 0.8)), nod);
   const orientation = fromAxisAngle(up, radians(mixed(from.look, to.look) + 2 * Math.sin(timeSeconds * 0.37)));
   multiply(trunk, multiply(orientation, nod, orientation), orientation);
-  // The trunk hangs under the head joint of a head that looks ahead, so that a glance moves no shoulder.
+  // The trunk is placed below the head joint of a level head, so that a glance moves no shoulder.
   setVec3(neck, 0, -body.eyesInHead.y - body.neckToHead.y, -body.eyesInHead.z);
   add(eyes, rotate(trunk, neck, neck), neck);
 
@@ -165,14 +163,14 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
   };
 }
 
-/** Between two keys, a share of the way from one to the other. */
-interface Moment {
+/** A point in time between two keys. */
+interface KeyInterpolation {
   readonly from: Key;
   readonly to: Key;
   readonly share: number;
   readonly timeSeconds: number;
   readonly body: ChestSpaceBody;
-  /** How far the shoulders lie behind the neck [m]. */
+  /** The offset of the shoulders behind the neck [m]. */
   readonly shoulderAhead: number;
 }
 
@@ -192,7 +190,7 @@ const side = vec3(0, 0, 0);
 const turnedFrom = quat(0, 0, 0, 1);
 const turnedTo = quat(0, 0, 0, 1);
 
-function handAt(which: Side, moment: Moment): TrackedPose {
+function handAt(which: Side, moment: KeyInterpolation): TrackedPose {
   const { from, to, share, timeSeconds, body } = moment;
   const sigma = sideSign(which);
   setVec3(shoulder, sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, moment.shoulderAhead);
@@ -200,7 +198,7 @@ function handAt(which: Side, moment: Moment): TrackedPose {
   addScaled(shoulder, reachFrom, body.arm * 0.97, reachFrom);
   outward(sigma, to[which].at, reachTo);
   addScaled(shoulder, reachTo, body.arm * 0.97, reachTo);
-  // Hands swing a little ahead on long ways: never through the trunk.
+  // On long paths hands swing forward a little, so that they do not pass through the trunk.
   const bulge = -0.22 * distance(reachFrom, reachTo) * Math.sin(Math.PI * share) ** 2;
   setVec3(
     tremor,
@@ -222,11 +220,11 @@ function handAt(which: Side, moment: Moment): TrackedPose {
   return { position, orientation: multiply(trunk, orientation, orientation), tracking: 'tracked' };
 }
 
-/** A direction of a key, whose x is outward, on a side. */
+/** Writes a key's direction, whose x is outward, for a side. */
 const outward = (sigma: number, direction: readonly [number, number, number], target: MutableVec3): MutableVec3 =>
   setVec3(target, sigma * direction[0], direction[1], direction[2]);
 
-/** The wrist whose knuckles point one way and the back of whose hand faces another, as nearly as right angles allow. */
+/** Writes the wrist orientation for the directions of the knuckles (exact) and of the back of the hand (nearest). */
 function handOrientation(sigma: number, key: HandKey, target: MutableQuat): MutableQuat {
   scale(normalise(outward(sigma, key.knuckles, knuckles), undefined, knuckles), -1, knuckles);
   reject(outward(sigma, key.back, back), knuckles, back);

@@ -1,4 +1,4 @@
-/** What keeps a guided calibration from measuring, and what to do about it. */
+/** The messages of a failed guided calibration, by fault: the reason, and what to do. */
 export const calibrationFaults = {
   lost: 'Tracking was lost. Try again where the headset sees the room.',
   headMoved: 'Your head moved. Stand still for two seconds.',

@@ -4,8 +4,8 @@ import { sides } from '../math/side';
 import { type MutableVec3, readVec3 } from '../math/vec3';
 
 /**
- * The joints of WebXR Body Tracking that are used, in the specification's order: all but those within a hand, whose
- * fingers a frame has anyway.
+ * The joints of WebXR Body Tracking that are used, in the specification's order: all except those within a hand,
+ * because frames have fingers.
  */
 export const deviceJointNames: readonly string[] = [
   ...['hips', 'spine-lower', 'spine-middle', 'spine-upper', 'chest', 'neck', 'head'],
@@ -32,8 +32,8 @@ export const isFiniteDeviceBody = (body: DeviceBody): boolean => body.length ===
 const named = (joint: string): number => 3 * deviceJointNames.indexOf(joint);
 
 /**
- * The index in a DeviceBody of each joint of the skeleton that devices have too. The skeleton's `chest` lies where the
- * thorax begins, a device's `spine-upper`.
+ * The index in a DeviceBody of each joint of the skeleton that devices report. The skeleton's `chest` is a device's
+ * `spine-upper`.
  */
 const places = {
   hips: named('hips'),
@@ -48,14 +48,14 @@ const places = {
   rightHand: named('right-hand-wrist'),
 } as const satisfies Partial<Record<JointName, number>>;
 
-/** A joint of the skeleton that devices report too. */
+/** A joint of the skeleton that devices report. */
 export type SharedJoint = keyof typeof places;
 
 /** Returns the device's position of this joint [m], floor frame. */
 export const deviceJoint = (body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 =>
   readVec3(body, places[joint], target);
 
-/** Interpolates between two bodies, joint by joint; share 0: the first. */
+/** Interpolates between two bodies, joint by joint; `share` 0: the first. */
 export function mixDeviceBodies(
   a: DeviceBody,
   b: DeviceBody,

@@ -1,4 +1,4 @@
-import { type Calibration, calibrationProblem, steepestGazePitch } from '../body/calibration';
+import { type Calibration, calibrationProblem, maxGazePitch } from '../body/calibration';
 import { type HandTilts, handTiltOf, isPlausibleTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
@@ -32,7 +32,7 @@ interface Sample {
   readonly trackers: TrackerSample | null;
 }
 
-/** Samples, newest first: a state grows by a sample without a copy of the ones before, which earlier states share. */
+/** A linked list of samples, newest first: a state adds a sample without a copy, and shares the earlier ones. */
 interface SampleList {
   readonly newest: Sample;
   readonly before: SampleList | null;
@@ -64,7 +64,7 @@ export type GuidedCalibration =
   | {
       readonly kind: 'failed';
       readonly fault: CalibrationFault;
-      /** An English sentence, for pages that have no text for the fault. */
+      /** An English sentence for the user, for pages without a text for the fault. */
       readonly reason: string;
     };
 
@@ -76,9 +76,9 @@ export const initialGuidedCalibration: GuidedCalibration = {
 };
 
 /**
- * Returns the next state after a frame; `done` and `failed` stay as they are. Time that runs backwards restarts the
- * measuring. `pinning` also measures how trackers are worn: pass it with every frame. Throws a TypeError where a frame
- * has trackers without it.
+ * Returns the state after a frame; `done` and `failed` do not change. A time that decreases restarts the measuring.
+ * With `pinning` in every call it also measures the trackers' offsets. Throws a TypeError if a frame has trackers
+ * without it.
  */
 export function stepGuidedCalibration(
   state: GuidedCalibration,
@@ -111,9 +111,9 @@ function sampleOf({ head, leftHand, rightHand, trackers }: TrackingFrame, pinnin
 const FEWEST_SAMPLES = 8;
 /** The largest sway of a head at rest [m]. */
 const HEAD_SWAY = 0.06;
-/** The largest mean distance of a hand at rest from its middle [m]. */
+/** The largest mean distance of a hand at rest from its mean position [m]. */
 const HAND_SWAY = 0.05;
-/** The share of the frames in which a hand must be seen. */
+/** The fraction of the frames in which a hand must be tracked. */
 const SEEN = 0.7;
 // 30° up or down.
 const STEEPEST_GAZE = 0.5;
@@ -122,25 +122,24 @@ const STEEPEST_GAZE = 0.5;
 const SHORTEST_ARM = 0.28;
 const LONGEST_ARM = 0.46;
 /**
- * The mean arm in eye heights; an arm longer than the second limit shows that the wearer sits, or that the floor is too
+ * The mean arm in eye heights; an arm longer than the second limit shows that the user sits, or that the floor is too
  * high.
  */
 const ORDINARY_ARM = 0.355;
 const SEATED_ARM = 0.42;
 /** The largest difference [m] between the left arm's length and the right's. */
 const UNEVEN_ARMS = 0.1;
-// How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted clavicle of the
-// inverse kinematics does there.
+// The forward offset of the shoulder joint of a stretched arm [eye heights], as in the fitted inverse kinematics.
 const PROTRACTION = 0.018;
 
-// A wearer who reads a sheet beside them does not look along their arms: the gaze does not show the headset's tilt
+// A user who reads a sheet beside them does not look along their arms: the gaze does not show the headset's tilt
 // then.
 const LOOKING_AHEAD = Math.PI / 18;
 
 // The length of the mean of unit vectors that lie 12° from it.
 const STEADY_HAND = 0.978;
 
-/** A wrist in the heading frame: its middle, and where it was seen. */
+/** A wrist in the heading frame: its mean position, and its tracked poses. */
 interface MeasuredWrist {
   readonly side: Side;
   readonly position: Vec3;
@@ -183,7 +182,7 @@ function measureWrists(samples: readonly Sample[]): readonly MeasuredWrist[] | C
   return wrists.length === 0 ? 'handsUnseen' : wrists;
 }
 
-/** Returns the eye height, and the mean length of the arms from shoulder to wrist [m]. */
+/** The eye height, and the mean length of the arms from shoulder to wrist [m]. */
 interface MeasuredBody {
   readonly eyeHeight: number;
   readonly arm: number;
@@ -197,7 +196,7 @@ function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): Meas
   let eyeHeight = headHeight;
   let arms = reaches(eyeHeight);
   if (arms && Math.min(...arms) > SEATED_ARM * headHeight) {
-    // For a seated wearer, or a floor at the wrong height, the height is estimated from the arms.
+    // For a seated user, or a floor at the wrong height, the height is estimated from the arms.
     for (let i = 0; i < 8 && arms; i++) {
       eyeHeight = mean(arms) / ORDINARY_ARM;
       arms = reaches(eyeHeight);
@@ -223,7 +222,7 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
   const measured: Calibration = {
     eyeHeight,
     armSpan: 2 * (arm + restShoulder('right', eyeHeight).x),
-    ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -steepestGazePitch, steepestGazePitch) }),
+    ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -maxGazePitch, maxGazePitch) }),
     ...tiltsOf(wrists, head.height, eyeHeight),
   };
   const trackers = samples.map((sample) => sample.trackers);
@@ -236,7 +235,7 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
 
 /**
  * Shoulder to wrist [m] of an arm stretched in one of the poses; null: it points elsewhere. Wrist in the heading frame,
- * the eyes this high now, which for a seated wearer is less than their eye height.
+ * the eyes this high now, which for a seated user is less than their eye height.
  */
 function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
   const arm = armTo(side, wrist, headHeight, eyeHeight);
@@ -298,7 +297,7 @@ function restShoulder(side: Side, eyeHeight: number): Vec3 {
   return add(upperChest, add(restOffsets[`${side}Shoulder`], restOffsets[`${side}UpperArm`]));
 }
 
-/** Returns the mean of the middle half, which outliers do not move. */
+/** Returns the interquartile mean, which is robust to outliers. */
 function robustMean(values: readonly number[]): number {
   const sorted = [...values].sort((a, b) => a - b);
   const cut = Math.floor(sorted.length / 4);

@@ -6,8 +6,8 @@ import { forward, right, setVec3, up, vec3 } from '../math/vec3';
 const axis = vec3(0, 0, 0);
 
 /**
- * The yaw [rad] of a head about +Y, from its right axis, so that looking straight up or down does not matter. A head on
- * its side has none: then the gaze's, then that of −Z.
+ * Returns the yaw [rad] of a head about +Y, from its right axis, so that it is defined when looking up or down. For a
+ * head on its side the yaw of the gaze, then that of −Z.
  */
 export function yawOf(orientation: Quat): number {
   const side = rotate(orientation, right, axis);
@@ -38,7 +38,7 @@ export function floorFromHeading(
 export const headingFromFloor = (head: Pose<'floor'>): Transform<'heading', 'floor'> =>
   invertTransform(floorFromHeading(head));
 
-/** The horizontal part of a head's right axis at which its heading starts to be defined, and at which it is certain. */
+/** The horizontal length of a head's right axis at which the confidence of its heading is 0, and at which it is 1. */
 const [undefinedHeading, definedHeading] = [0.35, 0.7];
 
 /** The direction that a head faces along the floor. */

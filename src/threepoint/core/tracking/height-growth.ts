@@ -12,31 +12,30 @@ import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
 /**
- * Detects a wearer who stands taller than the calibration. A lower headset shows nothing: people crouch, slouch and
- * sit.
+ * Detects a user who stands taller than the calibration. A lower headset proves nothing: people crouch, slouch and sit.
  */
 interface GrowthDetector {
   /**
-   * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null.
-   * Another object is another calibration, unless it is the one that was returned.
+   * Observes a frame with the calibration in use. Returns a larger calibration in the frame that proves it too small,
+   * else null. Another object is another calibration, unless it is the returned one.
    */
   observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
   /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */
   reset(): void;
 }
 
-/** The time [s] at a height that proves it: longer than anybody jumps. */
+/** The time [s] at a height that proves it, longer than a jump. */
 const provingSeconds = 1.25;
 /** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
 /** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
 /**
- * The ignored excess once the calibration has grown: the measured one was wrong, and a wearer who straightens up is
+ * The ignored excess once the calibration has grown: the measured one was wrong, and a user who straightens up is
  * followed.
  */
 const grownDeadZone = 0.005;
-/** The largest growth as a share of the measured eye height: a wearer who rises further stands on something. */
+/** The largest growth as a share of the measured eye height: a user who rises further stands on something. */
 const mostGrowth = 0.08;
 /** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
@@ -51,10 +50,10 @@ interface CalmStand {
 
 export function createGrowthDetector(): GrowthDetector {
   let current: Calibration | null = null;
-  /** The eye height [m] before any growth, and the highest plausible one: above it a wearer stands on something. */
+  /** The eye height [m] before any growth, and the highest plausible one: above it a user stands on something. */
   let measured = 0;
   let highest = 0;
-  /** From the skull's pivot to the eyes, in the frame of a headset whose wearer looks straight ahead. */
+  /** From the skull's pivot to the eyes, in the frame of a headset whose user looks straight ahead. */
   let eyesInHeadset = zero;
   /** The height [m] of the eyes above that pivot then. */
   let levelRise = 0;
@@ -63,7 +62,7 @@ export function createGrowthDetector(): GrowthDetector {
   function take(calibration: Calibration): void {
     current = calibration;
     measured = calibration.eyeHeight;
-    // The height of a wearer with the default body is unknown if they have been sitting: any height is possible.
+    // The height of a user with the default body is unknown if they have been sitting: any height is possible.
     highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + mostGrowth);
     const { eyesInHead } = skeletonFromCalibration(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
@@ -71,7 +70,7 @@ export function createGrowthDetector(): GrowthDetector {
     stand = null;
   }
 
-  /** Returns the height [m] of the eyes with a level head: looking up lifts a headset and makes no one taller. */
+  /** Returns the height [m] of the eyes with a level head, because looking up lifts the headset. */
   function levelHeight({ position, orientation }: TrackingFrame['head']): number {
     return position.y - rotate(orientation, eyesInHeadset).y + levelRise;
   }

@@ -72,7 +72,7 @@ function measureTrackers(
 
 export const trackerMeasuring: TrackerMeasuring = { sample: sampleTrackers, measure: measureTrackers };
 
-/** Returns where the joints of a person who stands straight are, heading frame; null: it is unknown. */
+/** Returns a function for the joints of a person who stands straight, heading frame; null: unknown. */
 function restJointsOf(calibration: Calibration, headHeight: number): (name: TrackerName, tracker: Vec3) => Vec3 | null {
   const { restOffsets, eyesInHead } = skeletonFromCalibration(calibration);
   const head = subtract(vec3(0, headHeight, 0), eyesInHead);

@@ -1,26 +1,25 @@
 /** The longest step of the clock [s]: a longer gap between frames is a pause, of which only this much counts. */
-export const longestStep = 0.5;
-/** The assumed length of the first frames [s], until one was measured. */
+export const maxStepSeconds = 0.5;
+/** The assumed frame length [s] until one was measured. */
 const usualStep = 1 / 60;
 /** The shortest frame of any device [s]: a smaller step of the time stamp does not measure a frame. */
 const shortestStep = 1 / 1000;
 
 /**
- * The page's one time [s]: games, estimators, playback of the others and the log of a study all count in it. It never
- * goes back and never leaps when the time stamps do: devices change between clocks of their own, systems set theirs,
- * tabs sleep.
+ * The common clock of a page [s] for games, estimators, playback and logs. It is monotonic and does not jump when time
+ * stamps do: devices change between clocks, systems set theirs, tabs sleep.
  */
 export interface PageClock {
   /**
-   * The time of a frame that the device dates `timestampMs`. A time stamp that goes back is taken as another clock's:
-   * this one goes on by the length of the last frame. One that is more than `longestStep` ahead follows a pause: this
-   * clock goes on by `longestStep`. The same one again within half a frame is the same frame's, asked by another part
-   * of the page: its time stays, and `paused`. In place of one that is no finite number stands what `read` says.
+   * Returns the time [s] of the frame with the time stamp `timestampMs`. After a time stamp of another clock, which
+   * goes back, the time advances by the length of the last frame. After a pause, with a time stamp more than
+   * `maxStepSeconds` ahead, it advances by `maxStepSeconds`. The same time stamp within half a frame is the same frame:
+   * the time and `paused` stay. A time stamp that is not finite is replaced by the result of `read`.
    */
   tick(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
   readonly paused: boolean;
-  /** The time that was left out of all pauses so far [s]. */
+  /** The total time of pauses that the clock has skipped [s]. */
   readonly skippedSeconds: number;
   /** Returns the time between two frames, for events from elsewhere. */
   now(): number;
@@ -51,10 +50,10 @@ export function createPageClock(read: () => number): PageClock {
       if (stamp === null) time = timestampMs / 1000;
       else {
         const passed = (timestampMs - stamp) / 1000;
-        paused = passed > longestStep;
-        if (paused) leftOut += passed - longestStep;
+        paused = passed > maxStepSeconds;
+        if (paused) leftOut += passed - maxStepSeconds;
         else if (passed >= shortestStep) step = passed;
-        time += paused ? longestStep : step;
+        time += paused ? maxStepSeconds : step;
       }
       stamp = timestampMs;
       readAt = read();
@@ -69,7 +68,7 @@ export function createPageClock(read: () => number): PageClock {
       return leftOut;
     },
     now() {
-      const since = Math.min(longestStep, Math.max(0, (read() - readAt) / 1000));
+      const since = Math.min(maxStepSeconds, Math.max(0, (read() - readAt) / 1000));
       newest = Math.max(newest, (stamp === null ? readAt / 1000 : time) + since);
       return newest;
     },

@@ -1,5 +1,5 @@
 import type { Calibration } from '../body/calibration';
-import { type Fingers, fingerNames, type HandShape, limitBend, makeHandShape, mixHandShape } from '../body/hand-shape';
+import { type Fingers, fingerNames, type HandShape, lerpHandShape, limitBend, makeHandShape } from '../body/hand-shape';
 import type { HandTilts } from '../body/hand-tilt';
 import { isFiniteNumber, isObject } from '../json';
 import { clamp } from '../math/damper';
@@ -45,7 +45,7 @@ const columns =
   'knuckle, spread, middle, end [rad] from thumb to little finger, pinch; where the device reports a body, its joints: x, y, z [m]';
 
 /** Returns a hand's angles, rounded to a ten-thousandth of a radian. */
-const bends = (shape: HandShape | null): readonly number[] | null =>
+const fingerColumns = (shape: HandShape | null): readonly number[] | null =>
   shape &&
   [
     ...fingerNames.flatMap((name) => {
@@ -59,13 +59,14 @@ const bends = (shape: HandShape | null): readonly number[] | null =>
 const bodyNumbers = (body: DeviceBody): readonly number[] => Array.from(body, (value) => Math.round(1e4 * value) / 1e4);
 
 /** Returns the text of a recording file: JSON with one frame per line. */
-export const writeRecording = (recording: Replayable): string => cutRecording(recording, Number.POSITIVE_INFINITY).text;
+export const writeRecording = (recording: Replayable): string =>
+  writeRecordingWithin(recording, Number.POSITIVE_INFINITY).text;
 
 /**
  * Returns a recording file with as many of the first frames as fit into `mostBytes` bytes of UTF-8, at least one, and
  * their number.
  */
-export function cutRecording(
+export function writeRecordingWithin(
   { device, rateHz, calibration, frames }: Replayable,
   mostBytes: number,
 ): { readonly text: string; readonly frames: number } {
@@ -78,7 +79,8 @@ export function cutRecording(
     ];
   const line = ({ time, head, leftHand, rightHand, fingers, deviceBody }: TrackingFrame) => {
     const poses = [time, pose(head), pose(leftHand), pose(rightHand)];
-    const bent = fingers || deviceBody ? [bends(fingers?.left ?? null), bends(fingers?.right ?? null)] : [];
+    const bent =
+      fingers || deviceBody ? [fingerColumns(fingers?.left ?? null), fingerColumns(fingers?.right ?? null)] : [];
     return JSON.stringify([...poses, ...bent, ...(deviceBody ? [bodyNumbers(deviceBody)] : [])]);
   };
   const top = (joints: object) => {
@@ -137,7 +139,7 @@ function parseJson(text: string): unknown {
   }
 }
 
-/** Locates a syntax error: each frame is one line, and the first line that does not parse is damaged. */
+/** Returns the place of a syntax error: each frame is one line, and the first line that does not parse is damaged. */
 function placeOfSyntaxError(text: string, message: string): string {
   const lines = text.split('\n');
   const broken = lines.slice(1, -2).findIndex((line) => {
@@ -249,7 +251,7 @@ function indexAt(frames: TrackingFrames, time: number): number {
   const isLater = (index: number): boolean => frames.at(index)!.time > time;
   const last = frames.length - 1;
   const [first, end] = [frames.at(0)!.time, frames.at(-1)!.time];
-  // Devices keep their rate: the search starts where the frame would lie at an even one, and doubles its steps.
+  // The search starts at the index for an even frame rate, and doubles its steps.
   let low = Math.floor(clamp(end > first ? (time - first) / (end - first) : 0, 0, 1) * last);
   let high = low + 1;
   for (let step = 1; low > 0 && isLater(low); step *= 2) [low, high] = [Math.max(0, low - step), low];
@@ -264,8 +266,8 @@ function indexAt(frames: TrackingFrames, time: number): number {
 }
 
 /**
- * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame.
- * A hand that either neighbour lacks is null, its device's body absent: never on its way from or to nowhere.
+ * Returns the interpolated frame at a time [s] on the recording's clock; before the first and after the last that
+ * frame. A hand that either neighbour lacks is null, and a device body that either lacks is absent.
  */
 export function sampleRecording({ frames }: Replayable, time: number): TrackingFrame {
   const low = indexAt(frames, time);
@@ -286,7 +288,7 @@ export function sampleRecording({ frames }: Replayable, time: number): TrackingF
 }
 
 function mixFingers(a: Fingers, b: Fingers, share: number): Fingers {
-  const hand = (from: HandShape | null, to: HandShape | null) => from && to && mixHandShape(from, to, share);
+  const hand = (from: HandShape | null, to: HandShape | null) => from && to && lerpHandShape(from, to, share);
   return { left: hand(a.left, b.left), right: hand(a.right, b.right) };
 }
 

@@ -1,7 +1,7 @@
-import { copyHandShape, type HandShape, type MutableHandShape, makeHandShape, mixHandShape } from '../body/hand-shape';
+import { copyHandShape, type HandShape, lerpHandShape, type MutableHandShape, makeHandShape } from '../body/hand-shape';
 import { copyPose, type MutableTrackedPose, makeTrackedPose, type TrackedPose } from '../math/pose';
 import { fromAxisAngle, multiply, quat, slerp } from '../math/quat';
-import { seedAfter, uniformOf } from '../math/random';
+import { nextSeed, uniformFromSeed } from '../math/random';
 import { type Side, sides } from '../math/side';
 import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
 import type { Mutable } from '../records';
@@ -18,19 +18,19 @@ export interface TrackingImpairments {
   readonly dropouts?: { readonly perMinute: number; readonly seconds: number };
 }
 
-export const mostLatencyMs = 200;
+export const maxLatencyMs = 200;
 /** The number of buffered frames: the longest latency at 300 Hz. */
 const kept = 64;
 const handOf = { left: 'leftHand', right: 'rightHand' } as const;
 
 /** A buffered hand of a frame. */
-class KeptHand {
+class BufferedHand {
   readonly pose = makeTrackedPose();
   readonly shape = makeHandShape();
   seen = false;
   shapeKnown = false;
 
-  keep(pose: TrackedPose | null, shape: HandShape | null): void {
+  store(pose: TrackedPose | null, shape: HandShape | null): void {
     this.seen = pose !== null;
     this.shapeKnown = shape !== null;
     if (pose) keepPose(pose, this.pose);
@@ -44,22 +44,22 @@ function keepPose(pose: TrackedPose, target: MutableTrackedPose): void {
 }
 
 /** A buffered frame. */
-class KeptFrame {
+class BufferedFrame {
   time = 0;
   readonly head = makeTrackedPose();
-  readonly hands = { left: new KeptHand(), right: new KeptHand() };
+  readonly hands = { left: new BufferedHand(), right: new BufferedHand() };
   hasFingers = false;
   readonly deviceBody = new Float32Array(deviceBodySize);
   hasDeviceBody = false;
 
-  keep({ time, head, leftHand, rightHand, fingers, deviceBody }: TrackingFrame): void {
+  store({ time, head, leftHand, rightHand, fingers, deviceBody }: TrackingFrame): void {
     this.time = time;
     keepPose(head, this.head);
     this.hasDeviceBody = deviceBody !== undefined;
     if (deviceBody) this.deviceBody.set(deviceBody);
     this.hasFingers = fingers !== undefined;
-    this.hands.left.keep(leftHand, fingers?.left ?? null);
-    this.hands.right.keep(rightHand, fingers?.right ?? null);
+    this.hands.left.store(leftHand, fingers?.left ?? null);
+    this.hands.right.store(rightHand, fingers?.right ?? null);
   }
 }
 
@@ -88,7 +88,7 @@ function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrack
 export class TrackingDegradation {
   #impairments: TrackingImpairments | null = null;
   /** A ring buffer; `#newest` is the index of the newest frame, `#count` the number of frames. */
-  readonly #ring = Array.from({ length: kept }, () => new KeptFrame());
+  readonly #ring = Array.from({ length: kept }, () => new BufferedFrame());
   #newest = 0;
   #count = 0;
   /** The seed of the generator, see `nextRandom`; an Int32Array holds 32-bit integers without boxes. */
@@ -144,10 +144,10 @@ export class TrackingDegradation {
   #push(frame: TrackingFrame): void {
     this.#newest = (this.#newest + 1) % kept;
     this.#count = Math.min(kept, this.#count + 1);
-    this.#ring[this.#newest]!.keep(frame);
+    this.#ring[this.#newest]!.store(frame);
   }
 
-  #frameBefore(steps: number): KeptFrame {
+  #frameBefore(steps: number): BufferedFrame {
     return this.#ring[(this.#newest - steps + kept) % kept]!;
   }
 
@@ -170,14 +170,14 @@ export class TrackingDegradation {
     return written;
   }
 
-  #delayHand(side: Side, older: KeptFrame, newer: KeptFrame, share: number, written: WrittenFrame): void {
+  #delayHand(side: Side, older: BufferedFrame, newer: BufferedFrame, share: number, written: WrittenFrame): void {
     const before = older.hands[side];
     const after = newer.hands[side].seen ? newer.hands[side] : before;
     const pose = this.#hands[side];
     if (before.seen) mixPose(before.pose, after.pose, share, pose);
     written[handOf[side]] = before.seen ? pose : null;
     const shape = this.#shapes[side];
-    if (before.shapeKnown) mixHandShape(before.shape, (after.shapeKnown ? after : before).shape, share, shape);
+    if (before.shapeKnown) lerpHandShape(before.shape, (after.shapeKnown ? after : before).shape, share, shape);
     this.#fingers[side] = before.shapeKnown ? shape : null;
   }
 
@@ -237,7 +237,7 @@ export class TrackingDegradation {
 
   /** Draws a number in [0, 1). */
   #uniform(): number {
-    this.#seed[0] = seedAfter(this.#seed[0]!);
-    return uniformOf(this.#seed[0]!);
+    this.#seed[0] = nextSeed(this.#seed[0]!);
+    return uniformFromSeed(this.#seed[0]!);
   }
 }

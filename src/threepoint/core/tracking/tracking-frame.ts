@@ -27,13 +27,13 @@ export interface TrackingFrame {
    */
   readonly trackers?: BodyTrackers | undefined;
   /**
-   * Set while the device shows a menu in front of the page: hands are not for the page, and players keep what they
+   * Set while a menu of the device covers the page: hands are not for the page, and players keep the objects that they
    * hold.
    */
   readonly suspended?: true;
 }
 
-/** Throws a TypeError where there are trackers and no part that draws or measures them. */
+/** Throws a TypeError if there are trackers without `pinning`. */
 export function assertPinning(trackers: unknown, pinning: object | undefined): void {
   if (!trackers || pinning) return;
   throw new TypeError("Trackers need `pinning`. Import it from 'threepoint/trackers' and pass it with the options.");

@@ -8,9 +8,9 @@ import {
   eyeHeightFromStature,
   eyeHeightRange,
   fingertipSpanFromArmSpan,
+  maxGazePitch,
   sameCalibration,
   statureFromEyeHeight,
-  steepestGazePitch,
   withForearm,
 } from 'threepoint/core/body/calibration';
 import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
@@ -109,7 +109,7 @@ describe('what is a person’s body', () => {
 
 test('whatever the guided calibration measures of a headset and of hands is a person’s', () => {
   const tilt = { pitch: 0.6, yaw: -0.7 };
-  for (const gazePitch of [-steepestGazePitch, 0, steepestGazePitch]) {
+  for (const gazePitch of [-maxGazePitch, 0, maxGazePitch]) {
     expect(calibrationProblem({ ...defaultCalibration, gazePitch, handTilts: { left: tilt } })).toBeNull();
   }
 });

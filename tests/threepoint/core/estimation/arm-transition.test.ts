@@ -2,12 +2,12 @@ import fc from 'fast-check';
 import type { LimbBones } from 'threepoint/core/body/two-bone-ik';
 import {
   type ArmDirections,
+  type ArmGoal,
   copyArmDirections,
   followTransition,
   makeArmDirections,
   makeArmTransition,
   startTransition,
-  type WantedArm,
 } from 'threepoint/core/estimation/arms/arm-transition';
 import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
 import {
@@ -53,7 +53,7 @@ const arm = fc.record({ upperArm: direction, forearm: direction }).map(({ upperA
 const elbowOf = ({ upperArm }: ArmDirections): Vec3 => scale(upperArm, bones.upper);
 const wristOf = (directions: ArmDirections): Vec3 => addScaled(elbowOf(directions), directions.forearm, bones.lower);
 /** What is wanted of an arm whose hand is seen, and whose shoulder stands still at the origin. */
-const wantedOf = (directions: ArmDirections): WantedArm => ({
+const wantedOf = (directions: ArmDirections): ArmGoal => ({
   ...directions,
   shoulder: vec3(0, 0, 0),
   hand: wristOf(directions),

@@ -2,7 +2,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody, sideSign } from 'threepoint/core/body/skeleton';
 import { type Frame, type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import type { Side } from 'threepoint/core/math/side';
 import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
@@ -34,7 +34,7 @@ export function movingPerson(
   standpoint: Standpoint,
 ): (time: number) => TrackingFrame {
   const body = chestSpaceBody(calibration);
-  const random = randomNumbers(seed);
+  const random = createRandom(seed);
   const wave = (amplitude: number): ((time: number) => number) => {
     const parts = [1, 2, 3].map(() => ({ rate: 0.3 + 3 * random(), phase: 7 * random() }));
     return (time) =>

@@ -4,7 +4,8 @@ import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/sk
 import { solveIk } from 'threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from 'threepoint/core/estimation/joint-positions';
 import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/networks/chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from 'threepoint/core/estimation/networks/frame-features';
+import { FeatureWindow } from 'threepoint/core/estimation/networks/feature-window';
+import { featureCount, frameFeatures } from 'threepoint/core/estimation/networks/frame-features';
 import { paperFeatures } from 'threepoint/core/estimation/networks/paper-features';
 import { makeHandTiltsState, noticeHandTilts } from 'threepoint/core/estimation/online-calibration/notice-hand-tilts';
 import { type Side, sides } from 'threepoint/core/math/side';

@@ -10,7 +10,7 @@ import { pinning } from 'threepoint/core/estimation/pinning';
 import type { TrackerMismatch } from 'threepoint/core/estimation/tracker-watch';
 import { type Pose, type TrackedPose, transformPoint } from 'threepoint/core/math/pose';
 import { angleBetween, identity, multiply, rotate } from 'threepoint/core/math/quat';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import {
   add,
   addScaled,
@@ -261,7 +261,7 @@ describe('a pinned trunk', () => {
     const [factor, speed] = [2, 1.5];
     fc.assert(
       fc.property(fc.integer(), standpoint, evenly(0, 0.12), evenly(0.05, 1), (motion, place, far, pace) => {
-        const random = randomNumbers(motion);
+        const random = createRandom(motion);
         const person = movingPerson(motion, calibration, place);
         const wander = { hips: wandering(random, far), chest: wandering(random, far) };
         const [plain, pinned] = [createEstimator('ik', calibration), createPinned(calibration)];

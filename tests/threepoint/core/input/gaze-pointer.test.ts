@@ -1,15 +1,15 @@
 import { GazePointer } from 'threepoint/core/input/gaze-pointer';
-import type { PointedAt } from 'threepoint/core/input/pointer';
+import type { PointerTarget } from 'threepoint/core/input/pointer';
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 
 const head = { position: vec3(0, 1.6, 0), orientation: identity };
-const exit: PointedAt = { distance: 1, owner: 'menu', id: 'exit' };
-const recentre: PointedAt = { distance: 1, owner: 'menu', id: 'recentre' };
+const exit: PointerTarget = { distance: 1, owner: 'menu', id: 'exit' };
+const recentre: PointerTarget = { distance: 1, owner: 'menu', id: 'recentre' };
 
 /** A gaze that looks at these in turn, each for a time [s]; returns what happened, in order, with its time. */
-function look(...path: readonly (readonly [target: PointedAt | null, seconds: number])[]) {
+function look(...path: readonly (readonly [target: PointerTarget | null, seconds: number])[]) {
   const gaze = new GazePointer();
   const happened: string[] = [];
   let frame = 0;

@@ -1,7 +1,7 @@
-import { halfLifeOfCutoff, makeSteadyPose, steadyPose } from 'threepoint/core/math/one-euro';
+import { filterPose, halfLifeOfCutoff, makeFilteredPose } from 'threepoint/core/math/one-euro';
 import type { Pose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, type Quat } from 'threepoint/core/math/quat';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { copyVec3, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
 
@@ -11,9 +11,9 @@ const pose = (position: Vec3, angle = 0): Pose<'floor'> => ({ position, orientat
 
 /** The filtered points of a path, sampled at a rate for some seconds. */
 function filtered(path: (time: number) => Vec3, seconds: number, rateHz: number): Vec3[] {
-  const state = makeSteadyPose<'floor'>();
+  const state = makeFilteredPose<'floor'>();
   return Array.from({ length: Math.round(seconds * rateHz) + 1 }, (_, i) => {
-    steadyPose(state, pose(path(i / rateHz)), tuning, i === 0 ? 0 : 1 / rateHz);
+    filterPose(state, pose(path(i / rateHz)), tuning, i === 0 ? 0 : 1 / rateHz);
     return copyVec3(state.value.position);
   });
 }
@@ -24,24 +24,24 @@ test('the half-life of a cutoff is that of a first-order low-pass', () => {
 });
 
 test('the first sample passes unchanged, and a step of no time changes nothing', () => {
-  const state = makeSteadyPose<'floor'>();
-  steadyPose(state, pose(vec3(1, 2, 3), 0.3), tuning, 0);
+  const state = makeFilteredPose<'floor'>();
+  filterPose(state, pose(vec3(1, 2, 3), 0.3), tuning, 0);
   expect(state.value).toEqual(pose(vec3(1, 2, 3), 0.3));
-  steadyPose(state, pose(vec3(2, 2, 3), 1), tuning, 0);
+  filterPose(state, pose(vec3(2, 2, 3), 1), tuning, 0);
   expect(state.value).toEqual(pose(vec3(1, 2, 3), 0.3));
 });
 
 test('an infinite step passes the sample unchanged', () => {
-  const state = makeSteadyPose<'floor'>();
-  steadyPose(state, pose(vec3(1, 2, 3), 0.3), tuning, 0);
+  const state = makeFilteredPose<'floor'>();
+  filterPose(state, pose(vec3(1, 2, 3), 0.3), tuning, 0);
   const sample = pose(vec3(4, 5, 6), 2);
-  steadyPose(state, sample, tuning, Number.POSITIVE_INFINITY);
+  filterPose(state, sample, tuning, Number.POSITIVE_INFINITY);
   expect(state.value.position).toEqual(sample.position);
   expect(state.value.orientation).toBeSameRotationAs(sample.orientation, 1e-9);
 });
 
 test('a tenth of the noise at rest passes', () => {
-  const random = randomNumbers(5);
+  const random = createRandom(5);
   const noise = () => 0.0005 * (random() - 0.5);
   const points = filtered(() => vec3(1 + noise(), noise(), noise()), 10, 72);
   const way = points.slice(73).reduce((sum, point, i) => sum + distance(point, points[72 + i]!), 0);
@@ -71,8 +71,8 @@ test('the same motion gives the same points at 60, 72, 90 and 120 Hz, to 3 mm', 
 
 /** The angle [rad] by which a filter lags that turns at 4 rad/s for a second while it moves at this speed [m/s]. */
 function lagOfTurn(speed: number): number {
-  const state = makeSteadyPose<'floor'>();
-  for (let i = 0; i <= 72; i++) steadyPose(state, pose(vec3((speed * i) / 72, 0, 0), (4 * i) / 72), tuning, 1 / 72);
+  const state = makeFilteredPose<'floor'>();
+  for (let i = 0; i <= 72; i++) filterPose(state, pose(vec3((speed * i) / 72, 0, 0), (4 * i) / 72), tuning, 1 / 72);
   return angleBetween(state.value.orientation, fromAxisAngle(axis, 4));
 }
 
@@ -82,14 +82,14 @@ test('an orientation follows by less than 4° while its position moves, and slow
 });
 
 test('orientations are filtered alike with either sign', () => {
-  const [one, other] = [makeSteadyPose<'floor'>(), makeSteadyPose<'floor'>()];
+  const [one, other] = [makeFilteredPose<'floor'>(), makeFilteredPose<'floor'>()];
   for (let i = 0; i < 50; i++) {
     const position = vec3(0.01 * i, 0, 0);
     const { x, y, z, w }: Quat = fromAxisAngle(axis, 0.02 * i);
     const sign = i % 2 ? -1 : 1;
-    steadyPose(one, { position, orientation: { x, y, z, w } }, tuning, 1 / 72);
+    filterPose(one, { position, orientation: { x, y, z, w } }, tuning, 1 / 72);
     const orientation = { x: sign * x, y: sign * y, z: sign * z, w: sign * w };
-    steadyPose(other, { position, orientation }, tuning, 1 / 72);
+    filterPose(other, { position, orientation }, tuning, 1 / 72);
     expect(other.value.orientation).toBeSameRotationAs(one.value.orientation, 1e-9);
   }
   expect(angleBetween(one.value.orientation, fromAxisAngle(axis, 0.98))).toBeLessThan(0.05);

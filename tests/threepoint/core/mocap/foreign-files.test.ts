@@ -1,4 +1,4 @@
-import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { angleBetween, conjugate, multiply, quat } from 'threepoint/core/math/quat';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
@@ -183,7 +183,7 @@ describe('without its map, a skeleton is read as with it', () => {
 });
 
 describe('a VRM Animation without', () => {
-  const { json, binary } = chunksOf(bytesOf(writeVrma(actingPerson(1).motion)))!;
+  const { json, binary } = readGlbChunks(bytesOf(writeVrma(actingPerson(1).motion)))!;
   const without = (bone: string | null) => {
     const description = JSON.parse(json);
     if (bone) delete description.extensions.VRMC_vrm_animation.humanoid.humanBones[bone];

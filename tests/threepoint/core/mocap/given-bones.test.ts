@@ -1,5 +1,5 @@
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { UnknownBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import { UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
 import { distance } from 'threepoint/core/math/vec3';
 import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { finishWork } from 'threepoint/core/motion/work';
@@ -13,11 +13,11 @@ const bvh = (text: string, bones?: BoneMap): MocapSource => ({
   ...(bones && { bones }),
 });
 
-function refusalOf(source: MocapSource): UnknownBones {
+function refusalOf(source: MocapSource): UnknownBonesError {
   try {
     prepare(source);
   } catch (error) {
-    if (error instanceof UnknownBones) return error;
+    if (error instanceof UnknownBonesError) return error;
     throw error;
   }
   throw new Error('expected the bones to be refused');

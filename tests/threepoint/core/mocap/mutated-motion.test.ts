@@ -1,5 +1,5 @@
-import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
+import { createRandom } from 'threepoint/core/math/random';
 import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { finishWork } from 'threepoint/core/motion/work';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';
@@ -9,14 +9,14 @@ import { mutatedFiles, ReadingCosts } from '../../mutated-files';
 import { actingPerson, bytesOf } from '../motion/moved-person';
 import { madeBvh } from './made-bvh';
 
-let chance = randomNumbers(0);
+let chance = createRandom(0);
 const below = (end: number): number => Math.floor(chance() * end);
 const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
 
 /** Reads spoiled files; each is refused in a sentence or becomes finite trackers, with a second of work at most. */
 async function readAll(format: string, count: number, spoil: () => MocapSource & { readonly bytes: number }) {
   // Every format has its own numbers, so that one can be run without the other.
-  chance = randomNumbers(20261127);
+  chance = createRandom(20261127);
   const counts = { refused: 0, read: 0 };
   const costs = new ReadingCosts();
   for (let i = 0; i < count; i++) {
@@ -110,7 +110,7 @@ test('VRM Animations, spoiled, are refused in a sentence or read as finite numbe
     rotations: motion.rotations.slice(0, 4 * motion.measured * frames),
     seen: motion.seen.slice(0, frames),
   };
-  const { json, binary } = chunksOf(bytesOf(writeVrma(short)))!;
+  const { json, binary } = readGlbChunks(bytesOf(writeVrma(short)))!;
   const odd: readonly unknown[] = [null, true, '', [], {}, [null], -1, 0, 0.5, 1e9, 2 ** 31, 1e308, 'VEC3', 5126];
   const containersIn = (value: unknown): (Record<string, unknown> | unknown[])[] =>
     typeof value === 'object' && value !== null

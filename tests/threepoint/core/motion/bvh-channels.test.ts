@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
-import { randomNumbers } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/core/math/random';
 import { distance } from 'threepoint/core/math/vec3';
 import { createJointPoses } from 'threepoint/core/motion/file-motion';
 import { poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
@@ -54,7 +54,7 @@ function randomFile(random: () => number) {
 const axes = { X: new Vector3(1, 0, 0), Y: new Vector3(0, 1, 0), Z: new Vector3(0, 0, 1) };
 
 test.each([1, 2, 3])('channels of every order place joints as matrices do: file %i', (seed) => {
-  const { text, offsets, rows, channels } = randomFile(randomNumbers(seed));
+  const { text, offsets, rows, channels } = randomFile(createRandom(seed));
   const file = finishWork(readBvh(text));
   const found = file.joints.map(({ name }) => name);
   const pose = createJointPoses(file.joints.length);

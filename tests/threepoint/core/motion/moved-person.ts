@@ -4,7 +4,7 @@ import { type Calibration, defaultCalibration } from 'threepoint/core/body/calib
 import { fingerBoneNames } from 'threepoint/core/body/finger-bone-names';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from 'threepoint/core/body/hand-geometry';
-import { closedHand, fingerNames, flatHand, type HandShape, mixHandShape } from 'threepoint/core/body/hand-shape';
+import { closedHand, fingerNames, flatHand, type HandShape, lerpHandShape } from 'threepoint/core/body/hand-shape';
 import { jointNames } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration, wristFromHandBone } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
@@ -71,7 +71,7 @@ export function contortedPerson(count = 40): MovedPerson {
     body.hipsPosition.y = 0.9;
     body.hipsPosition.z = 1.5 - i / 20;
     for (const [j, name] of jointNames.entries()) copyQuat(rotations[j]!, body.localRotations[name]);
-    const shape = (at: number) => ({ ...mixHandShape(flatHand, closedHand, bends[at]!), pinch: 0 });
+    const shape = (at: number) => ({ ...lerpHandShape(flatHand, closedHand, bends[at]!), pinch: 0 });
     const shapes = { left: shape(2 * i), right: shape(2 * i + 1) };
     const frame: TrackingFrame = {
       time: 100 + i / rateHz,
@@ -101,7 +101,7 @@ export function actingPerson(seconds = 4): MovedPerson {
   const truth: Truth[] = [];
   for (let i = 0; i < count; i++) {
     const acted = actorFrame(3 + i / rateHz, person);
-    const shape = { ...mixHandShape(flatHand, closedHand, 0.5 - 0.5 * Math.cos(i / 20)), pinch: 0 };
+    const shape = { ...lerpHandShape(flatHand, closedHand, 0.5 - 0.5 * Math.cos(i / 20)), pinch: 0 };
     const shapes = { left: shape, right: shape };
     const frame = {
       ...acted,

@@ -1,4 +1,4 @@
-import { chunksOf } from 'threepoint/avatar/file/glb-chunks';
+import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
 import { distance } from 'threepoint/core/math/vec3';
 import { createJointPoses } from 'threepoint/core/motion/file-motion';
 import { resampleMotion } from 'threepoint/core/motion/motion';
@@ -10,7 +10,7 @@ import { describe, expect, test } from 'vitest';
 import { actingPerson, bytesOf, rateHz } from './moved-person';
 
 const { motion, truth } = actingPerson();
-const { json, binary } = chunksOf(bytesOf(writeVrma(motion)))!;
+const { json, binary } = readGlbChunks(bytesOf(writeVrma(motion)))!;
 
 /** Returns the file with a replacement in its description. */
 const changed = (from: string | RegExp, to: string): unknown => {
@@ -58,7 +58,7 @@ test.each([2, 60, 300, 601, 20_000])('of %d frames at 60 Hz none is lost, though
     ...{ times: Float64Array.of(0, duration), hips: hips.slice(0, 6), rotations: rotations.slice(0, 8 * measured) },
     seen: seen.slice(0, 2),
   };
-  const chunks = chunksOf(bytesOf(writeVrma(short)))!;
+  const chunks = readGlbChunks(bytesOf(writeVrma(short)))!;
   expect(readVrma(JSON.parse(chunks.json), chunks.binary).frameCount).toBe(frames);
 });
 

@@ -5,12 +5,12 @@ import { slerp } from 'threepoint/core/math/quat';
 import { distance, lerp, vec3 } from 'threepoint/core/math/vec3';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
 import {
-  cutRecording,
   parseRecording,
   type Recording,
   recordingDuration,
   sampleRecording,
   writeRecording,
+  writeRecordingWithin,
 } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
@@ -134,7 +134,7 @@ describe('a recording', () => {
   test('that is cut begins as the whole does, in no more bytes than are allowed but for its first frame', () => {
     fc.assert(
       fc.property(recording, fc.integer({ min: 0, max: 8000 }), (whole, mostBytes) => {
-        const { text, frames } = cutRecording(whole, mostBytes);
+        const { text, frames } = writeRecordingWithin(whole, mostBytes);
         expect(parseRecording(text).frames).toEqual(parseRecording(writeRecording(whole)).frames.slice(0, frames));
         if (frames > 1) expect(new TextEncoder().encode(text).length).toBeLessThanOrEqual(mostBytes);
       }),

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { closedHand, mixHandShape, relaxedHand } from 'threepoint/core/body/hand-shape';
+import { closedHand, lerpHandShape, relaxedHand } from 'threepoint/core/body/hand-shape';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, multiply } from 'threepoint/core/math/quat';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
@@ -76,7 +76,7 @@ describe('an added latency', () => {
   test('loses a hand, finds it and bends its fingers as much later', () => {
     const tracking = new TrackingDegradation();
     tracking.configure({ latencyMs: 50 });
-    const shapes = [0, 0.25, 0.5, 0.75, 1].map((share) => mixHandShape(relaxedHand, closedHand, share));
+    const shapes = [0, 0.25, 0.5, 0.75, 1].map((share) => lerpHandShape(relaxedHand, closedHand, share));
     const seen = shapes.map((shape, index) => {
       const time = 3 + index * 0.05;
       const leftHand = index === 1 ? null : swinging(time, 0.7);

@@ -19,24 +19,24 @@ import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc
 /** The shortest transition [s]. */
 const shortestSeconds = 0.2;
 /**
- * Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves, 3.75 cm in a frame at 60 Hz; an arm
- * that has further to go than it gets by `hurrySeconds` so, all the way round, goes evenly as fast as it must.
+ * The highest speed of elbow and wrist [m/s] in addition to the hand's own motion: 3.75 cm in a frame at 60 Hz. An arm
+ * that would take longer than `hurrySeconds` moves evenly and as fast as necessary.
  */
 const fastest = 2.25;
-/** The share of the shortest time that acceleration and deceleration take. */
+/** The fraction of the shortest duration that acceleration and deceleration take. */
 const ramp = 0.2;
 /**
  * Catch-up window [s since the jump] of an arm whose hand is tracked: the minimum progress along the arcs ramps from 0
  * to 1, so a moving goal is reached by the end. Longest measured transition: 0.7 s.
  */
 const [hurrySeconds, longestSeconds] = [0.7, 0.9];
-/** The smallest bend [sine of the angle] of an arm that defines the plane it bends in. */
+/** The smallest bend of an arm [sine of the angle] at which its plane is defined. */
 const allButStraight = 0.1;
-/** The number of steps in which a path is measured; a share of it is found to a sixty-fourth of one. */
+/** The number of steps in which a path is sampled; progress is found to a sixty-fourth of a step. */
 const pathSteps = 8;
 const shareHalvings = 6;
 
-/** The directions of an arm's bones, unit, and of the elbow's hinge, floor frame. */
+/** The unit directions of an arm's bones and of the elbow's hinge, floor frame. */
 export interface ArmDirections {
   readonly upperArm: MutableVec3;
   readonly forearm: MutableVec3;
@@ -56,31 +56,30 @@ export function copyArmDirections(from: ArmDirections, target: ArmDirections): v
 }
 
 /** The target of an arm in this frame, floor frame. */
-export interface WantedArm extends ArmDirections {
+export interface ArmGoal extends ArmDirections {
   readonly shoulder: Vec3;
-  /** The position at which the hand is seen or will rest; the arm itself may end short of it. */
+  /** The position of the tracked hand, or at which it will rest; the arm may not reach it. */
   readonly hand: Vec3;
-  /** Shortest time of the way to it [s]: a hand sinks slowly to rest. 0: the hand is seen. */
+  /** The shortest duration of the transition [s], because a hand sinks slowly to rest; 0: the hand is tracked. */
   readonly minDuration: number;
   readonly bones: LimbBones;
-  /** The direction through which an arm swings all the way round, unit. */
+  /** The unit direction through which an arm swings if its goal is on the opposite side. */
   readonly outside: Vec3;
 }
 
 /**
- * An arm that is not yet where it belongs, because its hand's goal has jumped: from frame to frame each bone turns on
- * an arc from where it was drawn to where it belongs now, both with the same share of its arc, and neither elbow nor
- * wrist goes further than the speed and what the hand itself moves allow. Bones turn in the room's axes: a body that
- * turns about flings no arm.
+ * The state of an arm whose hand's goal has jumped. Both bones rotate on arcs from the drawn to the current goal
+ * directions, by the same fraction in each frame; the speed of elbow and wrist is limited. Directions are in the floor
+ * frame, so that a turn of the body does not fling the arm.
  */
 export interface ArmTransition {
   /** The time since the jump [s]; NaN: there is no transition. */
   age: number;
-  /** The speed beyond the hand's own motion [m/s]. */
+  /** The current speed in addition to the hand's own motion [m/s]. */
   speed: number;
   /** The longest path of elbow or wrist since the jump [m], which limits their speed. */
   longestPath: number;
-  /** The hand's target in the frame before, and the drawn elbow and wrist [m]. */
+  /** The hand's target, and the drawn elbow and wrist, in the previous frame [m]. */
   readonly hand: MutableVec3;
   readonly elbow: MutableVec3;
   readonly wrist: MutableVec3;
@@ -108,20 +107,20 @@ const elbowBefore = vec3(0, 0, 0);
 const wristBefore = vec3(0, 0, 0);
 
 /** Places `elbow` and `wrist` of an arm whose bones point in these directions. */
-function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: WantedArm): void {
+function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: ArmGoal): void {
   addScaled(shoulder, upperArm, bones.upper, elbow);
   addScaled(elbow, forearm, bones.lower, wrist);
 }
 
-/** Places `elbow` and `wrist` at a share of the arcs. */
-function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): void {
+/** Places `elbow` and `wrist` at a fraction of the arcs. */
+function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, share: number): void {
   rotate(alongArc(upperArm, share, turn), drawn.upperArm, bone);
   rotate(alongArc(forearm, share, turn), drawn.forearm, unbent);
   placeJoints(bone, unbent, wanted);
 }
 
 /** Returns the longer path [m] of elbow and wrist on the arcs. */
-function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): number {
+function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): number {
   let metres = 0;
   for (let step = 0; step <= pathSteps; step++) {
     placeAt(transition, drawn, wanted, step / pathSteps);
@@ -132,18 +131,18 @@ function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
   return metres;
 }
 
-/** Returns the larger distance [m] of elbow and wrist at a share of the arcs from where they were drawn. */
-function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): number {
+/** Returns the larger distance [m] of elbow and wrist from their drawn positions, at a fraction of the arcs. */
+function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, share: number): number {
   placeAt(transition, drawn, wanted, share);
   return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
 }
 
 /**
- * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn. If
- * shoulder motion alone exceeds the limit at every share, returns the share with the smallest distance. Shares are
- * sampled in steps of 1/pathSteps.
+ * Returns the fraction of the arcs up to which neither elbow nor wrist is further than this [m] from its drawn
+ * position. If shoulder motion alone exceeds the limit, returns the fraction with the smallest distance. Sampled in
+ * steps of 1/pathSteps.
  */
-function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, metres: number): number {
+function progressWithin(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, metres: number): number {
   let nearest = 0;
   let least = distanceAt(transition, drawn, wanted, 0);
   for (let step = 1; step <= pathSteps && (least > metres || nearest === step - 1); step++) {
@@ -166,17 +165,17 @@ function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: Wa
 }
 
 /** Starts a transition from the drawn arm to its target. */
-export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
+export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
   directionArc(drawn.upperArm, wanted.upperArm, wanted.outside, transition.upperArm);
   directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);
   transition.age = 0;
   transition.speed = 0;
   transition.longestPath = 0;
-  remember(transition, drawn, wanted);
+  storeDrawn(transition, drawn, wanted);
 }
 
-/** Stores the hand's target in this frame, and the drawn elbow and wrist. */
-function remember(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
+/** Stores the hand's target and the drawn elbow and wrist of this frame. */
+function storeDrawn(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
   copyVec3(wanted.hand, transition.hand);
   placeJoints(drawn.upperArm, drawn.forearm, wanted);
   copyVec3(elbow, transition.elbow);
@@ -184,9 +183,10 @@ function remember(transition: ArmTransition, drawn: ArmDirections, wanted: Wante
 }
 
 /**
- * Returns the path [m] of elbow and wrist in this frame: accelerating and decelerating evenly, and along with the hand.
+ * Returns the path [m] of elbow and wrist in this frame: even acceleration and deceleration, plus the hand's own
+ * motion.
  */
-function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, deltaSeconds: number): number {
+function stepOf(transition: ArmTransition, toGo: number, wanted: ArmGoal, deltaSeconds: number): number {
   const { hand } = transition;
   const seconds = Math.max(shortestSeconds, wanted.minDuration);
   transition.longestPath = Math.max(transition.longestPath, toGo);
@@ -198,10 +198,10 @@ function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, delt
   return distance(wanted.hand, hand) + transition.speed * deltaSeconds;
 }
 
-/** Writes the arm of this frame into `drawn`, which holds that of the frame before. */
+/** Advances the transition by a frame: `drawn` contains the arm of the previous frame and receives that of this one. */
 export function followTransition(
   transition: ArmTransition,
-  wanted: WantedArm,
+  wanted: ArmGoal,
   drawn: ArmDirections,
   deltaSeconds: number,
 ): void {
@@ -221,14 +221,14 @@ export function followTransition(
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry =
     wanted.minDuration === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
-  const share = Math.max(hurry, least, shareWithin(transition, drawn, wanted, step));
+  const share = Math.max(hurry, least, progressWithin(transition, drawn, wanted, step));
   if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
-  goAlong(transition, wanted, drawn, share);
-  remember(transition, drawn, wanted);
+  advanceArcs(transition, wanted, drawn, share);
+  storeDrawn(transition, drawn, wanted);
 }
 
-/** Turns the drawn bones by a share of the arcs, and the hinge with them. */
-function goAlong({ upperArm, forearm }: ArmTransition, wanted: WantedArm, drawn: ArmDirections, share: number): void {
+/** Rotates the drawn bones by a fraction of the arcs, and the hinge with them. */
+function advanceArcs({ upperArm, forearm }: ArmTransition, wanted: ArmGoal, drawn: ArmDirections, share: number): void {
   if (share === 1) {
     copyArmDirections(wanted, drawn);
     return;
@@ -238,7 +238,7 @@ function goAlong({ upperArm, forearm }: ArmTransition, wanted: WantedArm, drawn:
   rotate(alongArc(forearm, share, turn), drawn.forearm, drawn.forearm);
   advanceArc(upperArm, share);
   advanceArc(forearm, share);
-  // The hinge is the bones' normal; of an all but straight arm it turns from the drawn one's to the wanted one's.
+  // The hinge is normal to the bones; for an almost straight arm it is interpolated from the drawn to the goal hinge.
   rotate(rotationBetween(bone, drawn.upperArm, turn), drawn.hinge, unbent);
   lerp(unbent, wanted.hinge, share, unbent);
   cross(drawn.upperArm, drawn.forearm, drawn.hinge);

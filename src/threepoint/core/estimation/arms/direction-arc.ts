@@ -11,11 +11,11 @@ import {
 import type { Side } from '../../math/side';
 import { addScaled, dot, lerp, type MutableVec3, normalise, reject, subtract, type Vec3, vec3 } from '../../math/vec3';
 
-/** The path on a sphere from one direction to another, by way of a third where they lie far apart. */
+/** The path on a sphere from one direction to another, via a third one if they are far apart. */
 export interface DirectionArc {
   readonly first: MutableQuat;
   readonly second: MutableQuat;
-  /** The first leg's share of the whole path. */
+  /** The length of the first leg as a fraction of the whole path. */
   share: number;
   /** Intermediate direction, unit; used only while `roundabout`. */
   readonly via: MutableVec3;
@@ -31,15 +31,16 @@ export const makeDirectionArc = (): DirectionArc => ({
 });
 
 /**
- * Directions further apart than this [rad] are joined by way of `outside`: the shortest path may lead through the body.
+ * The angle [rad] beyond which directions are joined via `outside`, because the shortest path may lead through the
+ * body.
  */
 const farApart = 2.1;
 
 /**
- * The direction through which an arm swings all the way round, in the axes of the body or its chest: ahead, to its own
- * side and a little down.
+ * The direction via which an arm swings to the opposite side, in the axes of the body or the chest: forward, outward
+ * and a little down.
  */
-export const outsideOfBody: Readonly<Record<Side, Vec3>> = {
+export const viaDirection: Readonly<Record<Side, Vec3>> = {
   left: normalise(vec3(-1, -0.2, -1)),
   right: normalise(vec3(1, -0.2, -1)),
 };
@@ -48,8 +49,8 @@ const across = vec3(0, 0, 0);
 const aside = vec3(0, 0, 0);
 
 /**
- * From the unit direction `from` to `to`; `outside` is where an arm passes that swings all the way round. The direction
- * by way of which it does is as far from either end, so that no path begins by going back.
+ * Writes the arc between two unit directions, via `outside` if they are far apart. The via direction is equally far
+ * from both ends, so that no path starts backwards.
  */
 export function directionArc(
   from: Vec3,
@@ -79,7 +80,7 @@ export function advanceArc(arc: DirectionArc, progress: number): void {
   if (progress >= arc.share) arc.roundabout = false;
 }
 
-/** The rotation from the arc's start to `progress` in [0, 1] of its path. */
+/** Returns the rotation from the arc's start to `progress` in [0, 1] of its path. */
 export function alongArc(arc: DirectionArc, progress: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const { first, second, share } = arc;
   if (progress <= share)

@@ -42,20 +42,20 @@ import { restSeconds } from '../lost-hand.json';
 import type { TorsoPose } from '../trunk/fit-torso';
 import {
   type ArmDirections,
+  type ArmGoal,
   type ArmTransition,
   copyArmDirections,
   followTransition,
   makeArmDirections,
   makeArmTransition,
   startTransition,
-  type WantedArm,
 } from './arm-transition';
-import { outsideOfBody } from './direction-arc';
+import { viaDirection } from './direction-arc';
 import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, type SwivelState } from './swivel-limiter';
 
-/** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
+/** The largest bend of a wrist relative to the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
-/** The highest speed [rad/s] of a forearm's turn about itself; a quick pronation reaches 15. */
+/** The highest twist speed of a forearm [rad/s]; a quick pronation reaches 15. */
 const forearmSpeed = 20;
 
 /** The rotations of an arm's bones, floor frame. */
@@ -70,10 +70,10 @@ interface ArmState extends SwivelState {
   /** False before the first frame. */
   known: boolean;
   readonly rotations: ArmRotations;
-  /** The arm as it was drawn last. */
+  /** The arm that was drawn in the previous frame. */
   readonly drawn: ArmDirections;
   readonly transition: ArmTransition;
-  /** Unwrapped angle [rad] by which the hand is turned about the forearm, and how much of it the forearm takes. */
+  /** The unwrapped twist [rad] of the hand about the forearm, and the part that the forearm takes. */
   twist: number;
   forearmTwist: number;
 }
@@ -96,7 +96,7 @@ const makeArmState = (): ArmState => ({
 
 export const makeFitArmsState = (): FitArmsState => ({ left: makeArmState(), right: makeArmState() });
 
-/** The bones of both arms, as those of the right one. */
+/** Returns the bone lengths of the right arm, which are used for both arms [m]. */
 export const armBones = (skeleton: Skeleton): LimbBones => armBonesOf(skeleton, 'right');
 
 /** The input of both arms in one frame, floor frame. */
@@ -115,8 +115,8 @@ const downAndBack: Readonly<Record<Side, Vec3>> = {
 };
 
 /**
- * An arm that reaches its wrist, floor frame: the circle that its elbow may lie on, where it lies, and where it points
- * from the circle's axis, unit.
+ * An arm that reaches its wrist, floor frame: the elbow's circle, the elbow, and its unit direction from the circle's
+ * axis.
  */
 interface BentArm {
   readonly wrist: MutableVec3;
@@ -139,7 +139,7 @@ const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose 
   confidence: Number.NaN,
   deltaSeconds: Number.NaN,
 };
-const wanted: Mutable<WantedArm> & { readonly outside: MutableVec3 } = {
+const wanted: Mutable<ArmGoal> & { readonly outside: MutableVec3 } = {
   ...makeArmDirections(),
   shoulder: zero,
   hand: zero,
@@ -153,16 +153,17 @@ const inverse = quat(0, 0, 0, 1);
 const inForearm = quat(0, 0, 0, 1);
 const twist = quat(0, 0, 0, 1);
 
-/**
- * Stage 5, the arms: they hang from the trunk's shoulders, reach the hands and bend where their elbows are estimated.
- */
+/** Fits the arms (stage 5): from the trunk's shoulders to the hands, with the elbows in their estimated directions. */
 export function fitArms(state: FitArmsState, input: ArmsInput, deltaSeconds: number): FitArmsState {
   fitArm('left', state.left, input, deltaSeconds);
   fitArm('right', state.right, input, deltaSeconds);
   return state;
 }
 
-/** Fits one arm to its wrist, or on its way there: the hand as tracked, the forearm turned half as far. */
+/**
+ * Fits one arm to its wrist, or to the transition towards it. The hand is as tracked; the forearm has half of its
+ * twist.
+ */
 function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: number): void {
   const { torso, bones } = input;
   const completed = side === 'left' ? input.frame.leftHand : input.frame.rightHand;
@@ -179,7 +180,7 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   normalise(subtract(elbow, wanted.shoulder, wanted.upperArm), undefined, wanted.upperArm);
   normalise(subtract(wrist, elbow, wanted.forearm), undefined, wanted.forearm);
   elbowHinge(pole, circle.axis, wanted.hinge);
-  rotate(floorFromChest, outsideOfBody[side], wanted.outside);
+  rotate(floorFromChest, viaDirection[side], wanted.outside);
   if (jumped) startTransition(state.transition, state.drawn, wanted);
   if (state.known) followTransition(state.transition, wanted, state.drawn, deltaSeconds);
   else copyArmDirections(wanted, state.drawn);
@@ -191,7 +192,7 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   state.known = true;
 }
 
-/** Bends an arm that reaches its hand. before: the elbow's direction in the frame before; null: unconstrained. */
+/** Bends an arm that reaches its hand. `before`: the elbow's direction in the previous frame; null: unconstrained. */
 function bendArm(
   side: Side,
   before: SwivelState | null,
@@ -221,7 +222,7 @@ function bendArm(
   elbowOnCircle(circle, pole, elbow);
 }
 
-/** Returns the wrist's target: as tracked, or closer than a resting place that nears the arm's reach. */
+/** Returns the wrist's target: as tracked, or for a resting hand within the soft reach of the arm. */
 function wristTarget(
   { goal: { position }, source }: CompletedHand,
   shoulder: Vec3,

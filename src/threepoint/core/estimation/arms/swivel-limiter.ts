@@ -58,7 +58,7 @@ export interface EstimatedPole {
 const ownAxis = vec3(0, 0, 0);
 const turn = quat(0, 0, 0, 1);
 
-/** The pole of an estimated arm, carried to the circle of the arm that is drawn; all in the floor frame. */
+/** Writes the pole of an estimated arm, transported to the elbow's circle of the drawn arm; floor frame. */
 export function estimatedPole(
   estimated: { readonly shoulder: Vec3; readonly elbow: Vec3; readonly wrist: Vec3 },
   { axis }: ElbowCircle,
@@ -104,7 +104,7 @@ const axes: SwivelAxes = { zero: vec3(0, 0, 0), quarter: vec3(0, 0, 0) };
 const clear: ClearRange = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
 const carried = vec3(0, 0, 0);
 
-/** Writes the axes for an arm along `axis`; those of an arm along the chest's own side axis begin behind. */
+/** Writes the axes for an arm along `axis`; for an arm along the chest's side axis, `zero` is backward. */
 function swivelAxes(side: Side, floorFromChest: Quat, axis: Vec3, { zero, quarter }: SwivelAxes): void {
   reject(rotate(floorFromChest, setVec3(zero, sideSign(side), 0, 0), zero), axis, zero);
   if (length(zero) <= 1e-3) reject(rotate(floorFromChest, backward, zero), axis, zero);
@@ -121,9 +121,9 @@ function poleAt(angle: number, { zero, quarter }: SwivelAxes, target: MutableVec
 }
 
 /**
- * Writes where the elbow points now: after its estimate by way of the trunk's outside, with bounded speed, and slowly
- * where the estimate says little. Its previous side (null: none) is carried along as the arm moves; the first frame
- * takes the estimate, out of the trunk.
+ * Writes the direction of the elbow: it follows the estimate around the outside of the trunk, with limited speed, and
+ * slowly if the estimate is uncertain. The previous direction (null: none) is transported with the arm. The first frame
+ * uses the estimate, moved out of the trunk.
  */
 export function limitSwivel(
   before: SwivelState | null,
@@ -144,7 +144,7 @@ export function limitSwivel(
   rotate(turn, rotate(floorFromChest, before.pole, carried), carried);
   const kept = angleOf(carried, axes);
   const inside = limited && nearestWithin(clear, kept) !== kept;
-  // Free to turn both ways round, the elbow takes the shorter; else the one that does not lead through the trunk.
+  // The elbow takes the shorter way, or the one that does not lead through the trunk.
   const toGo = limited && !inside ? wanted - kept : wrapAngle(wanted - kept);
   const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
   const followed = inside ? toGo : toGo * smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
@@ -152,18 +152,21 @@ export function limitSwivel(
   return poleAt(kept + clamp(followed, -most, most), axes, target);
 }
 
-/** The clear angle nearest to one in (−π, π]. */
+/** Returns the clear angle nearest to an angle in (−π, π]. */
 function nearestWithin({ low, high }: ClearRange, angle: number): number {
   if (angle >= low && angle <= high) return angle;
   // The larger the cosine, the smaller the turn.
   return Math.cos(angle - low) > Math.cos(angle - high) ? low : high;
 }
 
-/** Angles are looked at in steps of 10°, borders found to a sixty-fourth of that, a part. */
+/**
+ * The number of parts in a turn: angles are sampled in steps of 10°, and borders found to a sixty-fourth of a step, one
+ * part.
+ */
 const partsPerStep = 64;
 const partsPerHalfTurn = 18 * partsPerStep;
 const swivelPart = Math.PI / partsPerHalfTurn;
-/** The cosines of whole steps from none to half a turn, which are most of the angles in use. */
+/** The cosines of whole steps from 0 to half a turn, which most samples use. */
 const stepCosines = Float64Array.from({ length: 19 }, (_, step) => Math.cos(step * partsPerStep * swivelPart));
 const stepSines = Float64Array.from({ length: 19 }, (_, step) => Math.sin(step * partsPerStep * swivelPart));
 
@@ -172,7 +175,7 @@ const trunkUp = vec3(0, 0, 0);
 const floorFromTrunk = quat(0, 0, 0, 1);
 const behind = vec3(0, 0, 0);
 
-/** An elbow's circle beside the trunk's capsule, in the trunk's frame and in the capsule's units (`inCapsule`). */
+/** An elbow's circle in the trunk's frame and in the capsule's units (`inCapsule`). */
 interface CircleInCapsule {
   readonly centre: MutableVec3;
   /** The circle's radius towards `zero` and `quarter`. */
@@ -190,8 +193,8 @@ const inTrunk: CircleInCapsule = {
 };
 
 /**
- * A vector in the trunk's frame, with the capsule's half width, height of the caps and half depth as units of x, y and
- * z.
+ * Returns a vector in units of the trunk's capsule: half its width, the height of its caps and half its depth for x, y
+ * and z.
  */
 function inCapsule(v: Vec3, unit: number, target: MutableVec3): MutableVec3 {
   rotateInverse(floorFromTrunk, v, target);
@@ -201,7 +204,7 @@ function inCapsule(v: Vec3, unit: number, target: MutableVec3): MutableVec3 {
   return target;
 }
 
-/** The squared distance of a point from the axis of a capsule of this height; below 1 it is inside. */
+/** Returns the squared distance of a point from the axis of a capsule of this height; below 1 the point is inside. */
 function squaredDistance(x: number, y: number, z: number, height: number): number {
   const beyond = y - clamp(y, 0, height);
   return x * x + beyond * beyond + z * z;
@@ -226,7 +229,7 @@ function circleInCapsule(
   return target;
 }
 
-/** Writes the swivel angles at which an elbow is clear of the trunk; false: all are, and nothing may be written. */
+/** Writes the range of swivel angles at which an elbow is clear of the trunk; returns false if all are. */
 function findClearRange(circle: CircleInCapsule, target: ClearRange): boolean {
   const { centre, towardsZero, towardsQuarter, trunkHeight } = circle;
   const furthest = Math.sqrt(dot(towardsZero, towardsZero) + dot(towardsQuarter, towardsQuarter));
@@ -237,8 +240,7 @@ function findClearRange(circle: CircleInCapsule, target: ClearRange): boolean {
 }
 
 /**
- * Whether an elbow so many parts of a turn away is inside the trunk. Whole numbers: the engine hands them on without a
- * box.
+ * Returns whether the elbow is inside the trunk at this angle [parts of a turn]; integers are passed without boxing.
  */
 function isInside({ centre, towardsZero, towardsQuarter, trunkHeight }: CircleInCapsule, parts: number): boolean {
   const step = Math.abs(parts) / partsPerStep;
@@ -255,7 +257,7 @@ function isInside({ centre, towardsZero, towardsQuarter, trunkHeight }: CircleIn
   );
 }
 
-/** From 0 on in the direction of `sign`: the last clear angle. */
+/** Returns the last clear angle from 0 in the direction of `sign` [parts]. */
 function border(circle: CircleInCapsule, sign: 1 | -1): number {
   let blocked = partsPerStep;
   while (blocked <= partsPerHalfTurn && !isInside(circle, sign * blocked)) blocked += partsPerStep;

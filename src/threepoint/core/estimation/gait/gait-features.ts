@@ -3,7 +3,7 @@ import type { Pose } from '../../math/pose';
 import { type Quat, rotate } from '../../math/quat';
 import { addScaled, forward, scale, up, type Vec3, vec3, writeVec3 } from '../../math/vec3';
 import { yawOf } from '../../tracking/heading';
-import { FeatureWindow } from '../networks/frame-features';
+import { FeatureWindow } from '../networks/feature-window';
 
 /** The points of a drawn body that a gait is estimated from, floor frame [m]. */
 export interface GaitPoints {
@@ -16,7 +16,7 @@ export interface GaitPoints {
 /** The ages [s] of the frames that a gait is estimated from: a step takes half a second. */
 const gaitAges = [0, 0.1, 0.2, 0.35, 0.5, 0.75, 1] as const;
 
-/** hips, their yaw, head, its yaw, left hand, right hand. */
+/** The columns of a sample: hips, yaw of hips, head, yaw of head, left hand, right hand. */
 const sampleWidth = 14;
 const [hipsAt, hipsYawAt, headAt, headYawAt, leftAt, rightAt] = [0, 3, 4, 7, 8, 11] as const;
 /** The number of features of each age in the network's input: both yaws are a sine and a cosine. */
@@ -28,8 +28,9 @@ const overhead = vec3(0, 0, 0);
 const way = vec3(0, 0, 0);
 
 /**
- * Yaw of hips [rad, 0 = −Z] from a weighted sum of their forward and up axes, so it stays defined when bent over.
- * Upside down with forward not below the horizon both weights are 0: the result is then 0 or ±π, by the signs of zeros.
+ * Returns the yaw of hips [rad, 0 = −Z] from a weighted sum of their forward and up axes, so that it stays defined when
+ * bent over. Upside down with forward not below the horizon both weights are 0: the result is then 0 or ±π, by the
+ * signs of zeros.
  */
 export function yawOfHips(orientation: Quat): number {
   rotate(orientation, forward, ahead);
@@ -40,8 +41,8 @@ export function yawOfHips(orientation: Quat): number {
 }
 
 /**
- * A gait network's inputs: hips, head and hands at each age, in the frame of the hips as they are now (origin on the
- * floor under them, their yaw), in eye heights.
+ * The inputs of a gait network: hips, head and hands at each age, in eye heights, in the frame of the current hips
+ * (origin on the floor under them, their yaw).
  */
 export class GaitFeatures {
   readonly values = new Float64Array(gaitFeatureCount);
@@ -52,7 +53,7 @@ export class GaitFeatures {
   #hipsYaw = 0;
   #headYaw = 0;
 
-  /** Adds a frame at a time [s] that does not go back, and reads all ages. eyeHeight [m]. */
+  /** Adds a frame at a time [s] that must not decrease, and writes all ages. `eyeHeight`: [m]. */
   update({ hips, head, leftHand, rightHand }: GaitPoints, eyeHeight: number, time: number): void {
     this.#hipsYaw = unwrapAngle(yawOfHips(hips.orientation), this.#hipsYaw);
     this.#headYaw = unwrapAngle(yawOf(head.orientation), this.#headYaw);
@@ -84,7 +85,7 @@ export class GaitFeatures {
     this.#writeFromHips(to + 13, from + rightAt, origin, eyeHeight, to + 10);
   }
 
-  /** mirrorTo: the index of the mirrored person's point. */
+  /** Writes a point relative to the hips. `mirrorTo`: the index of the mirrored person's point. */
   #writeFromHips(to: number, from: number, origin: Vec3, eyeHeight: number, mirrorTo = to): void {
     const { values, mirrored } = this;
     const samples = this.#samples;

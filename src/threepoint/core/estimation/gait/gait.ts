@@ -28,7 +28,10 @@ export interface ExpectedFoot {
   readonly standing: number;
 }
 
-/** Both feet from the hips [eye heights, their frame], logits of standing, sine and cosine of each foot's yaw. */
+/**
+ * The number of outputs: both feet relative to the hips [eye heights, their frame], logits of standing, sine and cosine
+ * of each foot's yaw.
+ */
 export const gaitOutputCount = 10;
 const [standingAt, yawAt] = [4, 6] as const;
 
@@ -48,7 +51,7 @@ export class Gait {
   readonly #features = new GaitFeatures();
   readonly #perceptron: Perceptron;
 
-  /** Throws a sentence where the weights do not belong to a gait network. */
+  /** Throws an Error if the weights do not belong to a gait network. */
   constructor({ tensors }: GaitNetwork = shippedGait) {
     const weights = new Map<string, Tensor>(
       Object.entries(tensors).map(([name, { shape, numbers }]) => [
@@ -60,7 +63,7 @@ export class Gait {
     this.feet = this.#own;
   }
 
-  /** Adds a frame at a time [s] that does not go back. eyeHeight [m]. */
+  /** Adds a frame at a time [s] that must not decrease. `eyeHeight`: [m]. */
   update(points: GaitPoints, eyeHeight: number, time: number): void {
     const { values, mirrored } = this.#features;
     this.#features.update(points, eyeHeight, time);

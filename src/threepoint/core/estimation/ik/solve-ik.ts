@@ -42,7 +42,7 @@ export const makeThreePoints = (): { readonly [point in keyof ThreePoints]: Muta
   rightHand: makePose(),
 });
 
-/** What each hand is turned by in its own frame so that its −Z continues the forearm. */
+/** The rotation of each hand in its own frame after which its −Z continues the forearm. */
 export type HandTurns = Readonly<Record<Side, Quat>>;
 
 /** Turns both hands so that their −Z continues the forearm. */
@@ -58,10 +58,10 @@ export interface ChestAxes {
   readonly z: MutableVec3;
 }
 
-// Not in the order of a vector: see `Vec3` for why an object with vectors in it must not be written like one.
+// The order differs from a vector: see `Vec3` for why an object that contains vectors must not have the same shape.
 export const makeChestAxes = (): ChestAxes => ({ z: vec3(0, 0, 0), y: vec3(0, 0, 0), x: vec3(0, 0, 0) });
 
-/** What inverse kinematics finds, heading frame. */
+/** The result of inverse kinematics, heading frame. */
 export interface IkSolution {
   readonly joints: MutableJointPositions;
   /** The chest frame (docs/glossary.md): by the shoulders and the chest joint. */
@@ -84,14 +84,14 @@ export const makeIkSolution = (): IkSolution => ({
 
 const { ik: bounds } = limits;
 
-/** The sum of weights·values. */
+/** Returns the sum of weights·values. */
 function weighted(weights: readonly number[], values: Float64Array): number {
   let sum = 0;
   for (let i = 0; i < weights.length; i++) sum += weights[i]! * values[i]!;
   return sum;
 }
 
-/** A 3-row matrix of parameters times values. */
+/** Returns a matrix of three rows times values. */
 const affine = (rows: readonly (readonly number[])[], values: Float64Array, target: MutableVec3): MutableVec3 =>
   setVec3(target, weighted(rows[0]!, values), weighted(rows[1]!, values), weighted(rows[2]!, values));
 
@@ -102,7 +102,7 @@ function mirror(v: MutableVec3, sigma: number): MutableVec3 {
 
 /** Intermediate results of one solution, heading frame; overwritten by the next. */
 const headJoint = vec3(0, 0, 0);
-/** Wrists from the head joint [arm lengths], their middle and the way between them. */
+/** The wrists relative to the head joint [arm lengths], their mean and their difference. */
 const left = vec3(0, 0, 0);
 const rightHand = vec3(0, 0, 0);
 const middle = vec3(0, 0, 0);
@@ -122,7 +122,8 @@ const reach = new Float64Array(4);
 const handFeatures = new Float64Array(10);
 // Scratch of `leanTrunk`.
 const headAxis = vec3(0, 0, 0);
-// Scratch of `placeTrunk`: the way from the neck to the head joint [m] by the thorax's rotation, and by the head's.
+// Scratch of `placeTrunk`: the offset from the neck to the head joint [m] by the rotation of the thorax, and by that of
+// the head.
 const neckByThorax = vec3(0, 0, 0);
 const neckByHead = vec3(0, 0, 0);
 // Scratch of `placeShoulder`, thorax frame [m].
@@ -138,8 +139,9 @@ const untiltedElbow = vec3(0, 0, 0);
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
 
 /**
- * Stage 2: the six joints from head and wrists: spine bend, pelvis under the head, clavicles and two-bone arms with an
- * anatomical swivel, from hands that were turned so (`turnHands`). The numbered steps are those of docs/estimation.md.
+ * Solves the six joints from head and wrists (stage 2): spine bend, pelvis under the head, clavicles, and two-bone arms
+ * with an anatomical swivel. The hands must be corrected by `turnHands`. The numbered steps are those of
+ * docs/estimation.md.
  */
 export function solveIk(
   points: ThreePoints,
@@ -191,7 +193,7 @@ function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
 }
 
 /**
- * A segment's rotation: sideways, then forward about the chest's side axis, then with the chest's yaw; no lean is
+ * Writes a segment's rotation: sideways, then forward about the chest's side axis, then by the chest's yaw. No lean is
  * singular.
  */
 function leanRotation(segment: { forward: number[]; sideways: number[] }, target: MutableQuat): void {
@@ -214,7 +216,7 @@ function placeTrunk(head: Pose<'heading'>, body: ChestSpaceBody, joints: Mutable
   joints.hips.y = Math.max(joints.hips.y, bounds.lowestHips * body.eyeHeight);
 }
 
-/** A vector of the heading frame in the thorax frame, mirrored for the left arm. */
+/** Transforms a vector from the heading frame to the thorax frame, mirrored for the left arm. */
 const inThorax = (v: Vec3, sigma: number, target: MutableVec3): MutableVec3 =>
   mirror(rotateInverse(thorax, v, target), sigma);
 
@@ -250,7 +252,7 @@ function placeArm(
   rotate(turn, rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm), untoldForearms[side]);
 }
 
-/** The elbow on its circle, and its pole, by these weights of the hand's features. */
+/** Writes the elbow on its circle, and its pole, by these weights of the hand's features. */
 function placeElbow(rows: readonly (readonly number[])[], sigma: number, pole: MutableVec3, elbow: MutableVec3): void {
   rotate(thorax, mirror(affine(rows, handFeatures, pole), sigma), pole);
   poleAcross(circle.axis, pole, fallbackPoles, pole);
@@ -274,10 +276,7 @@ function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: numb
   add(neck, rotate(thorax, clavicle, clavicle), target);
 }
 
-/**
- * The chest's axes by its joints: x between the shoulders, y the part of the way from the chest joint to their middle
- * that is normal to it.
- */
+/** Writes the chest's axes: x between the shoulders, y towards their middle from the chest joint, normal to x. */
 function chestAxesOf(joints: MutableJointPositions, { x, y, z }: ChestAxes): void {
   normalise(subtract(joints.rightUpperArm, joints.leftUpperArm, x), undefined, x);
   lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, y);

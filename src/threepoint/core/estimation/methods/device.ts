@@ -25,8 +25,8 @@ const isNear = (body: DeviceBody, joint: SharedJoint, tracked: Vec3, most: numbe
   distance(deviceJoint(body, joint, place), tracked) <= most;
 
 /**
- * The device's own body. Where it reports none, or one that is not where head and hands are, `otherwise` draws: an
- * elbow alone, or all six joints; what the device was different by fades, and comes, within 0.3 s.
+ * Creates a source with the joints of the device's own body. If the device reports none, or an elbow or body that does
+ * not match head and hands, `otherwise` supplies that elbow or all joints; the difference is blended within 0.3 s.
  */
 export function createDeviceSource(otherwise: JointSource): JointSource {
   /** The offset of the device's joints from the other source's [m], heading frame, and its weight [0, 1]. */

@@ -7,8 +7,8 @@ import { paperFeatureCount, paperFeatures } from '../networks/paper-features';
 import type { PoseRegressor } from '../networks/pose-regressor';
 
 /**
- * The paper's network as published: local positions in the room's axes and Euler angles in, six joints out. Inverse
- * kinematics draws until it answers.
+ * Creates a source with the paper's network as published: positions in the room's axes and Euler angles in, six joints
+ * out. Inverse kinematics supplies the joints before its first result.
  */
 export function createPaper(regressor: PoseRegressor): JointSource {
   const input = new Float32Array(paperFeatureCount);
@@ -25,8 +25,8 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   );
 
   /**
-   * The joints [m] from the floor point under this frame's headset: an answer to an older frame moves along with the
-   * head.
+   * Writes the joints [m] of a result relative to the floor point under the current headset: a result for an older
+   * frame moves with the head.
    */
   function place(output: Float32Array, { completed }: SolvedFrame, target: MutableJointPositions): void {
     const { x, z } = completed.head.position;
@@ -37,7 +37,7 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   }
 
   const network: JointNetwork = {
-    // Its joints are drawn unfiltered, so each frame needs its own answer.
+    // Its joints are not filtered, so that each frame needs a result of its own.
     wantsFrames: true,
     ask({ completed }) {
       if (inference.running) return inference.running;

@@ -8,7 +8,8 @@ import { add, lerp, scale, setVec3 } from '../../math/vec3';
 import { copyJoints, type MutableJointPositions, makeJoints } from '../joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
 import { chestFeatureCount, chestFeatures, headingFromChest } from '../networks/chest-features';
-import { FeatureWindow, featureCount, frameFeatures } from '../networks/frame-features';
+import { FeatureWindow } from '../networks/feature-window';
+import { featureCount, frameFeatures } from '../networks/frame-features';
 import { LatestResult } from '../networks/latest-result';
 import type { PoseRegressor } from '../networks/pose-regressor';
 import { correctionCutoff } from '../smoothing.json';
@@ -21,8 +22,9 @@ export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
 
 /**
- * The learned network: the residual of the IK solution in the frame of IK's chest. It is low-passed there and added to
- * the IK of the current frame, so that neither the filter nor a late answer delays what follows head, hands and chest.
+ * The learned network: the residual of the IK solution in the frame of IK's chest. It is low-passed in that frame and
+ * added to the IK of the current frame, so that neither the filter nor a late result delays the motion of head, hands
+ * and chest.
  */
 class Residual implements JointSource, JointNetwork {
   readonly #regressor: PoseRegressor;
@@ -35,7 +37,7 @@ class Residual implements JointSource, JointNetwork {
   readonly #answered = makeJoints();
   readonly #inference: LatestResult;
   #body: ChestSpaceBody;
-  /** Whether `newest` is an answer of the network. */
+  /** Whether `newest` is a result of the network. */
   #known = false;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
@@ -46,8 +48,8 @@ class Residual implements JointSource, JointNetwork {
     this.#input = new Float32Array(learnedInputCount(windowSeconds));
     this.#inference = new LatestResult(
       regressor,
-      (output) => this.#learn(output),
-      () => this.#forget(),
+      (output) => this.#storeResult(output),
+      () => this.#clear(),
     );
   }
 
@@ -67,7 +69,7 @@ class Residual implements JointSource, JointNetwork {
   reset(): void {
     this.#window.clear();
     this.#inference.reset();
-    this.#forget();
+    this.#clear();
     copyJoints(nothing, this.#damped);
   }
 
@@ -76,7 +78,7 @@ class Residual implements JointSource, JointNetwork {
   }
 
   ask(solved: SolvedFrame): Promise<void> {
-    this.#remember(solved);
+    this.#addFrame(solved);
     if (this.#inference.running) return this.#inference.running;
     this.#fillInput(solved);
     return this.#inference.start(this.#input);
@@ -94,12 +96,12 @@ class Residual implements JointSource, JointNetwork {
 
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void {
     if (this.#regressor.runNow) {
-      this.#remember(solved);
+      this.#addFrame(solved);
       this.#fillInput(solved);
       this.#inference.answerNow(this.#input);
     }
     const { ik, floorFromHeading } = solved;
-    // Without an answer the correction fades, and IK is drawn.
+    // Without a result the correction fades to zero.
     const share = smoothingFactor(correctionHalfLife, deltaSeconds);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;
@@ -110,7 +112,7 @@ class Residual implements JointSource, JointNetwork {
   }
 
   /** Adds a requested frame to the window. */
-  #remember({ time, completed, points, ik }: SolvedFrame): void {
+  #addFrame({ time, completed, points, ik }: SolvedFrame): void {
     const seen = this.#seen;
     seen.left = completed.leftHand.source === 'tracked';
     seen.right = completed.rightHand.source === 'tracked';
@@ -125,7 +127,7 @@ class Residual implements JointSource, JointNetwork {
     chestFeatures(points, ik, this.#body, input, windowSeconds.length * featureCount);
   }
 
-  #learn(output: Float32Array): void {
+  #storeResult(output: Float32Array): void {
     for (let index = 0; index < estimatedJoints.length; index++) {
       const residual = this.#newest[estimatedJoints[index]!];
       setVec3(residual, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
@@ -134,7 +136,7 @@ class Residual implements JointSource, JointNetwork {
     this.#known = true;
   }
 
-  #forget(): void {
+  #clear(): void {
     copyJoints(nothing, this.#newest);
     this.#known = false;
   }

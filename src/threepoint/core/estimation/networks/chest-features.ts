@@ -18,12 +18,12 @@ import type { ChestAxes, IkSolution, ThreePoints } from '../ik/solve-ik';
 /** The number of features of a frame in the chest frame; their order is in docs/estimation.md. */
 export const chestFeatureCount = 38;
 
-/** A vector of the heading frame along the chest's axes. */
+/** Transforms a vector from the heading frame to the chest frame. */
 function inChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3): MutableVec3 {
   return setVec3(target, dot(x, v), dot(y, v), dot(z, v));
 }
 
-/** A vector of the chest frame in the heading frame. */
+/** Transforms a vector from the chest frame to the heading frame. */
 export function headingFromChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   return setVec3(
     target,
@@ -40,8 +40,8 @@ function write(target: Float32Array, next: number, chest: ChestAxes, v: MutableV
 }
 
 /**
- * Chest-frame features of one frame, in which an arm looks the same however its body turns and leans: written into
- * `target` from `start` on.
+ * Writes the chest-frame features of one frame into `target` from `start` on. They are independent of how the body
+ * turns and leans.
  */
 export function chestFeatures(
   { head, leftHand, rightHand }: ThreePoints,

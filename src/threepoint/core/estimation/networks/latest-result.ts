@@ -16,7 +16,7 @@ export class LatestResult {
   #fault: string | null = null;
   #epoch = 0;
 
-  /** finished: called with each valid result. failed: called when a run failed, which invalidates earlier results. */
+  /** `finished` is called with each valid result; `failed` when a run failed, which invalidates earlier results. */
   constructor(regressor: PoseRegressor, finished: (output: Float32Array) => void, failed: () => void) {
     this.#regressor = regressor;
     this.#outputs = regressor.contract.outputs[0]?.shape.reduce((product, size) => product * size, 1) ?? 0;
@@ -24,7 +24,7 @@ export class LatestResult {
     this.#failed = failed;
   }
 
-  /** The current run, beside which none may be started. */
+  /** The current run; no other may be started before it settles. */
   get running(): Promise<void> | null {
     return this.#open ? this.#running : null;
   }
@@ -42,12 +42,12 @@ export class LatestResult {
     return this.#running;
   }
 
-  /** Runs a regressor that answers at once (`runNow`); `fault` is the fault of its answer. Makes no garbage. */
+  /** Runs a regressor synchronously (`runNow`); an error is stored in `fault`. Allocates nothing. */
   answerNow(features: Float32Array): void {
     try {
-      this.#take(this.#regressor.runNow!(features));
+      this.#finish(this.#regressor.runNow!(features));
     } catch (error) {
-      this.#refuse(error);
+      this.#fail(error);
     }
   }
 
@@ -60,15 +60,15 @@ export class LatestResult {
     const startedIn = this.#epoch;
     try {
       const output = await this.#regressor.run(features);
-      if (startedIn === this.#epoch) this.#take(output);
+      if (startedIn === this.#epoch) this.#finish(output);
     } catch (error) {
-      this.#refuse(error);
+      this.#fail(error);
     } finally {
       this.#open = false;
     }
   }
 
-  #take(output: Float32Array): void {
+  #finish(output: Float32Array): void {
     if (output.length !== this.#outputs) {
       throw new Error(`${output.length} numbers came out, the contract says ${this.#outputs}`);
     }
@@ -77,7 +77,7 @@ export class LatestResult {
     this.#fault = null;
   }
 
-  #refuse(error: unknown): void {
+  #fail(error: unknown): void {
     this.#failed();
     this.#fault = `${this.#regressor.contract.name}: ${reasonOf(error)}`;
   }

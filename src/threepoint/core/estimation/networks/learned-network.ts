@@ -12,7 +12,7 @@ const outputs = 3 * estimatedJoints.length;
 /** The smallest divisor: a trial run with zeros as inputs must not divide by zero. */
 const shortestArm = 1e-3;
 
-/** Returns the contract's entry for the weights of a run without a runtime; throws a sentence where there is none. */
+/** Returns the contract's entry for the weights of a run without a runtime; throws an Error if there is none. */
 export function weightsOf({ name, weights }: ModelContract): FlatWeights {
   if (!weights) throw new Error(`${name}.json: names no weights for a run without a runtime`);
   return weights;
@@ -32,15 +32,15 @@ class LearnedNetwork {
   readonly #armInputs: number;
   readonly #trunk: Perceptron;
   readonly #arm: Perceptron;
-  /** For the body, then for its mirror image: which feature each input is, and its sign. */
+  /** The feature index and the sign of each input, for the body and then for its mirror image. */
   readonly #columns: Int32Array;
   readonly #signs: Float64Array;
   readonly #armColumns: Int32Array;
-  /** Both bodies before normalisation, which the arm's inputs are taken from. */
+  /** The inputs of both bodies before normalisation, from which the arm's inputs are read. */
   readonly #bodies: Float64Array;
   readonly #output = new Float32Array(outputs);
 
-  /** Throws a sentence where contract and file do not match. */
+  /** Throws an Error if contract and file do not match. */
   constructor(contract: ModelContract, bytes: Uint8Array) {
     const stated = weightsOf(contract);
     const weights = readWeights(stated, bytes);
@@ -60,7 +60,8 @@ class LearnedNetwork {
   }
 
   /**
-   * Corrections [eye heights, chest frame] of the six estimated joints, overwritten by the next run. Makes no garbage.
+   * Returns the corrections of the six estimated joints [eye heights, chest frame], overwritten by the next run.
+   * Allocates nothing.
    */
   run(features: Float32Array): Float32Array {
     const bodies = this.#bodies;
@@ -92,8 +93,8 @@ class LearnedNetwork {
   }
 
   /**
-   * The right arm of the body (0) or of its image (1), whose shoulder's correction stands at `shoulder` behind the left
-   * one's.
+   * Writes the inputs of the right arm of the body (0) or of its mirror image (1). `shoulder`: the index of that
+   * shoulder's correction.
    */
   #fillArm(body: 0 | 1, shoulder: 0 | 3): void {
     const from = body * this.#features;

@@ -11,8 +11,8 @@ const arrays = { float32: Float32Array, int16: Int16Array, int8: Int8Array } as 
 const isType = (name: string | undefined): name is keyof typeof arrays => name !== undefined && name in arrays;
 
 /**
- * Returns the tensors of a file of flat weights by name. Throws a sentence where the file's length does not match its
- * list, or a number is not finite.
+ * Returns the tensors of a file of flat weights by name. Throws an Error if the file's length does not match its list,
+ * or a number is not finite.
  */
 export function readWeights({ file, tensors }: FlatWeights, bytes: Uint8Array): ReadonlyMap<string, Tensor> {
   // A copy is aligned for every typed array.
@@ -39,7 +39,7 @@ export function readWeights({ file, tensors }: FlatWeights, bytes: Uint8Array): 
   return read;
 }
 
-/** Returns the tensor of this name; throws where it is missing or has another shape. */
+/** Returns the numbers of a tensor; throws if it is missing or has another shape. */
 export function tensorOf(weights: ReadonlyMap<string, Tensor>, name: string, ...shape: number[]): Tensor['numbers'] {
   const tensor = weights.get(name);
   if (!tensor) throw new Error(`no tensor is called ${name}`);

@@ -2,7 +2,7 @@ import type { Pose } from '../../math/pose';
 import { toEulerYxz } from '../../math/quat';
 import { type Vec3, vec3 } from '../../math/vec3';
 
-/** 2 quantities of 3 components for 3 points. */
+/** The number of features: two quantities of three components for three points. */
 export const paperFeatureCount = 18;
 
 const angles = vec3(0, 0, 0);
@@ -21,8 +21,8 @@ function writePoint(target: Float32Array, column: number, { position, orientatio
 }
 
 /**
- * The paper's input [1, 2, 3, 3]: depth (position [m] from the floor point under the headset, axes of the room; Euler
- * angles [rad]), row x, y, z, column head, left, right.
+ * Writes the paper's input [1, 2, 3, 3]: depth (position [m] relative to the floor point under the headset, axes of the
+ * room; Euler angles [rad]), row (x, y, z), column (head, left, right).
  */
 export function paperFeatures(
   head: Pose<'floor'>,

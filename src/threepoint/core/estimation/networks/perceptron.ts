@@ -11,7 +11,7 @@ interface Layer {
   readonly rows: number;
   /** `rows`, rounded up to a multiple of `rowsAtOnce`: nothing reads the outputs beyond. */
   readonly outputs: number;
-  /** Input by input the weights of `rowsAtOnce` outputs, then those of the next outputs. */
+  /** For each block of `rowsAtOnce` outputs, the weights input by input. */
   readonly weights: Float32Array;
   readonly bias: Float64Array;
   /** Its outputs for both inputs, one behind the other. */
@@ -30,7 +30,7 @@ export class Perceptron {
   readonly #inverseScale: Float64Array;
   readonly #layers: readonly Layer[];
 
-  /** name: the prefix of its tensors. */
+  /** `name`: the prefix of its tensors. */
   constructor(weights: ReadonlyMap<string, Tensor>, name: string, inputs: number, outputs: number) {
     this.#inputs = inputs;
     this.input = new Float64Array(2 * inputs);
@@ -99,7 +99,7 @@ function readLayer(weights: ReadonlyMap<string, Tensor>, name: string, inputs: n
   return { inputs, rows, outputs, weights: interleaved, bias, results: new Float64Array(2 * outputs) };
 }
 
-/** given: both inputs, the second `stride` behind the first. */
+/** Applies a layer. `given`: both inputs, the second at offset `stride`. */
 function applyLayer({ inputs, outputs, weights, bias, results }: Layer, given: Float64Array, stride: number): void {
   let at = 0;
   for (let row = 0; row < outputs; row += rowsAtOnce) {

@@ -50,16 +50,16 @@ export interface ModelContract {
 /** A network that maps one flat feature vector to one flat output vector. */
 export interface PoseRegressor {
   readonly contract: ModelContract;
-  /** The backend, for the overlay: 'wasm', 'webgpu' or 'plain'. */
+  /** The backend: 'wasm', 'webgpu' or 'plain' (without a runtime). */
   readonly provider: string;
   /**
-   * Runs the network. features: as many numbers as the input tensor has elements, unchanged until the promise settles.
-   * Rejects when the runtime fails. One run at a time.
+   * Runs the network. `features`: as many numbers as the input tensor has elements; do not change them until the
+   * promise settles. Resolves to the output tensor's numbers. Rejects if the runtime fails. One run at a time.
    */
   run(features: Float32Array): Promise<Float32Array>;
   /**
-   * Runs the network at once, so that a frame has its own answer; absent where it runs elsewhere. The next run
-   * overwrites the numbers.
+   * Runs the network synchronously, so that a frame has its own result; absent if it runs on another thread or device.
+   * The next run overwrites the numbers.
    */
   readonly runNow?: (features: Float32Array) => Float32Array;
   dispose(): Promise<void>;

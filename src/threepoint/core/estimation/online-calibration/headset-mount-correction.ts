@@ -6,8 +6,8 @@ import { addScaled, right, up, vec3 } from '../../math/vec3';
 const headUp = vec3(0, 0, 0);
 
 /**
- * Corrects a head pose for the way a headset is worn: the pitch that a calibration measured, and the rise above its
- * nominal place.
+ * Corrects a head pose for the mount of the headset: the pitch that a calibration measured, and the rise above its
+ * nominal position.
  */
 export class HeadsetMountCorrection {
   readonly #corrected: MutablePose<'floor'> & { tracking: TrackedPose['tracking'] } = {
@@ -26,8 +26,8 @@ export class HeadsetMountCorrection {
   }
 
   /**
-   * Returns the head pose as the wearer holds it, lower by `rise` [m] along its own up, floor frame; overwritten by the
-   * next call.
+   * Returns the corrected head pose, floor frame: levelled, and lowered by `rise` [m] along its own up axis.
+   * Overwritten by the next call.
    */
   apply(tracked: TrackedPose, rise: number): TrackedPose {
     if (this.#levelling === null && rise === 0) return tracked;

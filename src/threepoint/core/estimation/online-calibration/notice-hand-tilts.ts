@@ -29,13 +29,13 @@ interface HandTiltState {
 export interface HandTiltsState {
   readonly left: HandTiltState;
   readonly right: HandTiltState;
-  /** The turn of each hand in its own frame after which its −Z continues the forearm. */
+  /** The rotation of each hand in its own frame after which its −Z continues the forearm. */
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 
 const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, noticed: vec3(0, 0, 0) });
 
-/** Returns the state for a wearer with these calibrated tilts. */
+/** Returns the state for a user with these calibrated tilts. */
 export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTiltsState {
   const state: HandTiltsState = {
     left: makeHandTiltState(),
@@ -47,8 +47,8 @@ export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTilts
 }
 
 /**
- * Resets the estimate to the tilts of another calibration. A recentre or a pause does not reset it: the hands are held
- * as before.
+ * Resets the estimate to the tilts of another calibration. A recentring or a pause does not reset it, because the hands
+ * hold the controllers as before.
  */
 export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | undefined): void {
   for (const side of sides) {
@@ -83,7 +83,7 @@ function turnAfter(state: HandTiltsState, side: Side): void {
  * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as
  * it is tracked), weighted by how far the hand has travelled about the head since the frame before. Takes effect next
  * frame. The input ignores the estimate, so errors cannot feed back; IK's own errors average out as the posture
- * changes. A hand that lies still changes nothing.
+ * changes. A hand at rest changes nothing.
  */
 export function noticeHandTilts(
   state: HandTiltsState,

@@ -5,7 +5,7 @@ import type { CompletedFrame } from '../complete-hands';
 import type { SolvedFrame } from '../joint-source';
 import { furthest, hanging, share, speed, unremarkable, usualReach } from './headset-rise.json';
 
-/** Estimate of how far the headset sits above its nominal place on the head. */
+/** The estimate of the headset's rise above its nominal position on the head. */
 export interface HeadsetRiseState {
   /** Tracked quantile of the shoulder–wrist distance while the arm hangs [arm lengths]. */
   readonly reach: Record<Side, number>;
@@ -37,7 +37,7 @@ const fromShoulder = vec3(0, 0, 0);
  * Mathematical Statistics 22(3), 1951); the mean of both arms less usualReach, less a dead zone for anatomical
  * variation, is attributed to the headset, within ±furthest.
  *
- * arm: its length [m]; lowered: by how much the head of this frame was lowered for what had been noticed before [m].
+ * `arm`: its length [m]; `lowered`: the rise by which the head of this frame was already lowered [m].
  */
 export function noticeHeadsetRise(
   state: HeadsetRiseState,

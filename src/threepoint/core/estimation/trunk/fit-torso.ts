@@ -39,18 +39,21 @@ import {
 import type { CompletedFrame } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
 import limits from '../kinematic-limits.json';
-import { beginLean, followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
+import { followLean, increaseLean, type Lean, makeLean, startLeanFrame } from './lean-after-hand';
 
 const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
 
-/** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
+/** The highest turning speed of the shoulders [rad/s]; a pirouette reaches 12. */
 const turnSpeed = 12;
-/** Longest half-life [s] of the shoulders' line, where they are estimated so close together that it says little. */
+/**
+ * The longest half-life [s] of the shoulder line, used where the estimated shoulders are too close together to define
+ * it.
+ */
 const shoulderLineHalfLife = 0.15;
 /** Confidence in the shoulder line rises from 0 to 1 between these shoulder distances [share of rest width]. */
 const [undefinedLine, definedLine] = [0.2, 0.7];
-/** Hips turn at most this fast about the chest joint [rad/s]: 4 cm in a frame at 60 Hz. */
+/** The highest speed of the hips about the chest joint [rad/s]: 4 cm in a frame at 60 Hz. */
 const hipsTurnSpeed = 6;
 /** Share of the turn from the pelvis to the shoulders' line that the lower back has made [1]. */
 const spineToShoulders = 0.35;
@@ -59,7 +62,7 @@ const lowestHips = 0.09;
 
 type TrunkBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck';
 
-/** A trunk with its bones' lengths under the head, floor frame. */
+/** A trunk with fixed bone lengths under the head, floor frame. */
 export interface TorsoPose {
   readonly hips: MutableVec3;
   readonly chest: MutableVec3;
@@ -101,7 +104,7 @@ export const makeFitTorsoState = (): FitTorsoState => ({
   lean: { left: makeLean(), right: makeLean() },
 });
 
-/** What the fitting of the torso needs of a skeleton, measured once. */
+/** The measures of a skeleton for `fitTorso`. */
 export interface TorsoBones {
   readonly skeleton: Skeleton;
   /**
@@ -117,11 +120,11 @@ export interface TorsoBones {
   /** From the neck to the middle of the shoulders, at rest. */
   readonly shouldersFromNeck: Vec3;
   readonly shoulderWidth: number;
-  /** Shoulder to wrist of a straight arm [m], a hair less, so that the elbow keeps a side. */
+  /** Slightly less than the length of a straight arm [m], so that the elbow has a direction. */
   readonly reach: number;
 }
 
-/** Measures a skeleton for `fitTorso`: [m], T-pose facing −Z. Both arms are taken to be as long as the right one. */
+/** Measures a skeleton for `fitTorso`: [m], T-pose facing −Z. Both arms have the length of the right one. */
 export function torsoBones(skeleton: Skeleton): TorsoBones {
   const offsets = skeleton.restOffsets;
   const thorax = add(offsets.upperChest, offsets.neck);
@@ -143,7 +146,7 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
   };
 }
 
-/** What the torso of one frame is fitted to; floor frame. */
+/** The input of `fitTorso` in one frame, floor frame. */
 interface TorsoInput {
   readonly joints: JointPositions;
   readonly frame: CompletedFrame;
@@ -151,7 +154,7 @@ interface TorsoInput {
   readonly deltaSeconds: number;
 }
 
-/** A thorax as it was placed, for the spine below it; floor frame, unit. */
+/** The placed thorax, for the spine below it; floor frame, unit. */
 interface PlacedThorax {
   /** From the chest joint to the neck. */
   readonly up: MutableVec3;
@@ -159,7 +162,7 @@ interface PlacedThorax {
   readonly line: MutableVec3;
 }
 
-/** What leans start from in one frame; floor frame. */
+/** The thorax of a frame before leaning, floor frame. */
 interface UnleanedThorax {
   /** From the chest joint to the neck, unit. */
   readonly up: MutableVec3;
@@ -167,7 +170,7 @@ interface UnleanedThorax {
   readonly line: MutableVec3;
   /** From the neck to the head joint [m]. */
   readonly neckToHead: MutableVec3;
-  /** What chest joint and hips follow of the neck's way onto its bone's length from the head [m]. */
+  /** The part of the neck's displacement onto its bone length that chest joint and hips follow [m]. */
   readonly moved: MutableVec3;
 }
 
@@ -183,10 +186,10 @@ const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 
 const headingRight = vec3(0, 0, 0);
 const lineBefore = vec3(0, 0, 0);
 const meanLean = vec3(0, 0, 0);
-/** The thorax's line turned about its length by a lean, before the length leans; unit. */
+/** The thorax's shoulder line after the turn about its length and before the lean of the length; unit. */
 const turnedLine = vec3(0, 0, 0);
 const shoulderMiddle = vec3(0, 0, 0);
-/** The neck's base that the wanted shoulders hang from, before it is brought onto the neck's length from the head. */
+/** The base of the neck for the wanted shoulders, before it is moved to the neck's length from the head. */
 const impliedNeck = vec3(0, 0, 0);
 /** From the neck to the head on a neck at rest [m]. */
 const neckAtRest = vec3(0, 0, 0);
@@ -197,9 +200,8 @@ const rotation = quat(0, 0, 0, 1);
 const swing = quat(0, 0, 0, 1);
 
 /**
- * Stage 5, the trunk: neck, chest joint, hips and clavicles on their bones' lengths under the head, as nearly where
- * they are estimated as that lets them, leaning and turning after hands that the arms alone cannot reach, or would have
- * to be straight to.
+ * Fits the trunk (stage 5): neck, chest joint, hips and clavicles with fixed bone lengths under the head, as near to
+ * their estimates as possible. It leans and turns towards hands that the arms cannot reach, or only when straight.
  */
 export function fitTorso(
   state: FitTorsoState,
@@ -211,14 +213,14 @@ export function fitTorso(
   const { pose, lean } = state;
   const input: TorsoInput = { joints, frame, bones, deltaSeconds };
   setVec3(headingRight, Math.cos(frame.heading.yaw), 0, -Math.sin(frame.heading.yaw));
-  beginLean(lean.left);
-  beginLean(lean.right);
+  startLeanFrame(lean.left);
+  startLeanFrame(lean.right);
   followShoulderLine(state, joints, bones, deltaSeconds);
   placeUprightNeck(state.shoulderLine, input, unleaned);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
     placeThorax(state, input, lean.left.wanted, lean.right.wanted, thorax);
-    const pulledLeft = leanFurther(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
-    const pulledRight = leanFurther(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
+    const pulledLeft = increaseLean(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
+    const pulledRight = increaseLean(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
     if (!pulledLeft && !pulledRight) break;
   }
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
@@ -231,7 +233,7 @@ export function fitTorso(
 
 /**
  * Follows the line through the estimated shoulders: never faster than `turnSpeed`, and slowly where they are estimated
- * close together. Reads no lean, so that the line of a still frame settles whatever the hands ask of the trunk.
+ * close together. Independent of leans, so that the line settles at rest.
  */
 function followShoulderLine(
   { shoulderLine: line, known }: FitTorsoState,
@@ -259,13 +261,13 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
 }
 
 /**
- * How far the clavicle swings or the neck bends from rest against the thorax [rad], so far on the way from anatomy to
- * the extreme [0 to 1].
+ * Returns the limit of the clavicle's swing or the neck's bend relative to the thorax [rad]. `extremity`: from the
+ * anatomical limit (0) to the extreme (1).
  */
 const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number =>
   torsoLimits[joint] + extremity * (extremeLimits[joint] - torsoLimits[joint]);
 
-/** The neck below the head and the thorax below it as they are estimated, before any lean. */
+/** Places neck and thorax below the head by their estimates, before any lean. */
 function placeUprightNeck(
   shoulderLine: Vec3,
   { joints, frame, bones }: TorsoInput,
@@ -284,16 +286,16 @@ function placeUprightNeck(
   );
   rotate(swing, neckAtRest, neckToHead);
 
-  // Chest joint and hips follow a share of what the neck is moved by.
+  // Chest joint and hips follow a fraction of the neck's displacement.
   subtract(subtract(frame.headJoint, neckToHead, moved), impliedNeck, moved);
   const far = length(moved);
   scale(moved, torsoLimits.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
 }
 
 /**
- * Neck, chest joint, the upper chest's rotation and the shoulders, for estimated shoulders that lean by these offsets
- * [m]. A lean turns the thorax about its length, then its length and the neck, by less than a right angle each, so that
- * none of them flips; what it asks back along them is left to the clavicles.
+ * Places neck, chest joint, upper chest and shoulders for leans by these offsets [m]. A lean turns the thorax about its
+ * length, then its length and the neck, each by less than a right angle, so that none flips. The part of an offset that
+ * points back along a bone is left to the clavicles.
  */
 function placeThorax(
   state: FitTorsoState,
@@ -326,8 +328,8 @@ function placeThorax(
 }
 
 /**
- * The rotation of a thorax of this length (unit): by the smallest rotation from the estimated length, which carries the
- * turned line along. Line and length stay at right angles, whatever leans ask of both.
+ * Writes the rotation of a thorax with this direction (unit): the smallest rotation from the estimated direction,
+ * applied to the turned line. Line and direction stay normal to each other.
  */
 function turnThorax(bones: TorsoBones, thoraxUp: Vec3, line: MutableVec3, target: MutableQuat): MutableQuat {
   rotate(rotationBetween(unleaned.up, thoraxUp, swing), turnedLine, line);
@@ -335,15 +337,15 @@ function turnThorax(bones: TorsoBones, thoraxUp: Vec3, line: MutableVec3, target
 }
 
 /**
- * Writes where the end of a bone in this direction (unit) and length [m] points when it is moved by an offset, of which
- * the part that leads back along the bone is left out: by less than a right angle from where it pointed.
+ * Writes the direction of a bone (unit direction, length [m]) after its end was moved by an offset. The part that
+ * points back along the bone is left out, so that the bone turns by less than a right angle.
  */
 function leanDirection(direction: Vec3, boneLength: number, offset: Vec3, target: MutableVec3): void {
   addScaled(offset, direction, boneLength - Math.min(dot(offset, direction), 0), target);
   normalise(target, direction, target);
 }
 
-/** A shoulder on its clavicle, which swings towards its target. */
+/** Writes a shoulder on its clavicle, which swings towards its target. */
 export function placeShoulder(
   side: Side,
   { neck, rotations, clavicles, shoulders }: TorsoPose,
@@ -359,8 +361,8 @@ export function placeShoulder(
 }
 
 /**
- * Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the
- * rest.
+ * Writes the hips and the rotations of the vertebrae: the pelvis faces between head and shoulders, and each joint above
+ * turns by a part of the rest.
  */
 function placeSpine(
   state: FitTorsoState,
@@ -383,9 +385,9 @@ function placeSpine(
 }
 
 /**
- * Hips at `lowerBack` [m] from the chest joint, towards the estimate, never below the floor. The direction is
- * rate-limited (hipsTurnSpeed, relative to the body's turn) because it is ill-defined when the estimate is close to the
- * chest joint, or directly below a chest joint that is too low.
+ * Writes the hips at `lowerBack` [m] from the chest joint, towards the estimate, never below the floor. The direction
+ * is rate-limited (hipsTurnSpeed, relative to the body's turn) because it is ill-defined when the estimate is close to
+ * the chest joint, or directly below a chest joint that is too low.
  */
 function hangHips(
   { known, pose, towardsHips: towards }: FitTorsoState,
@@ -413,7 +415,7 @@ function hangHips(
   normalise(subtract(hips, chest, towards), down, towards);
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the state: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
 }

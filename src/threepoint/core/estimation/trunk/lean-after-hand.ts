@@ -18,7 +18,7 @@ import limits from '../kinematic-limits.json';
 
 const { anatomicalPasses, extremeReach } = limits.reach;
 
-/** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
+/** The highest speed of a lean [m/s], towards a reacquired hand or back after a lost one. */
 const leanSpeed = 0.6;
 
 /**
@@ -26,14 +26,14 @@ const leanSpeed = 0.6;
  * reachable only with a nearly straight arm.
  */
 export interface Lean {
-  /** What would reach the hand: in this frame, and in the one before. */
+  /** The offset that reaches the hand in this frame, and in the previous one. */
   readonly wanted: MutableVec3;
   readonly wantedBefore: MutableVec3;
-  /** What is in use: limited in speed. */
+  /** The offset in use, limited in speed. */
   readonly offset: MutableVec3;
-  /** How near to the hand the shoulder is to come, within what anatomy allows [m]. */
+  /** The target distance of shoulder and hand within anatomical limits [m]. */
   softReach: number;
-  /** How far clavicle and neck go beyond anatomy for it [share of the way to their extremes, 0 to 1]. */
+  /** How far clavicle and neck exceed their anatomical limits [fraction of the range to their extremes, 0 to 1]. */
   extremity: number;
   /** Its value in the frame before. */
   extremityBefore: number;
@@ -50,8 +50,8 @@ export const makeLean = (): Lean => ({
 
 const towards = vec3(0, 0, 0);
 
-/** Nothing is wanted yet in this frame. */
-export function beginLean(lean: Lean): void {
+/** Starts a frame without a lean. */
+export function startLeanFrame(lean: Lean): void {
   setVec3(lean.wanted, 0, 0, 0);
   lean.extremity = 0;
 }
@@ -61,9 +61,9 @@ export function beginLean(lean: Lean): void {
  * passes, which also raise `extremity`), within one arm's reach. Returns false when nothing is missing, or the hand is
  * sinking.
  *
- * reach: the arm's [m]; pass: how often this frame has leaned already.
+ * `reach`: the arm's [m]; `pass`: the number of earlier passes in this frame.
  */
-export function leanFurther(
+export function increaseLean(
   lean: Lean,
   shoulder: Vec3,
   { position, source }: CompletedHand,
