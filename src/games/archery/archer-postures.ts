@@ -96,7 +96,7 @@ export class ArcherPostures {
   readonly #arm: number;
   readonly #halfShoulders: number;
   /** The sign of x on the side of the string hand. */
-  readonly #aside: -1 | 1;
+  readonly #stringSign: -1 | 1;
 
   constructor({ bowSide, eyeHeight, armLength = armRatio * eyeHeight }: ArcherBody) {
     this.eyes = vec3(0, eyeHeight, 0);
@@ -104,14 +104,14 @@ export class ArcherPostures {
     this.#stringSide = otherSide(bowSide);
     this.#arm = armLength;
     this.#halfShoulders = (halfShoulderRatio / armRatio) * armLength;
-    this.#aside = bowSide === 'left' ? 1 : -1;
+    this.#stringSign = bowSide === 'left' ? 1 : -1;
   }
 
   /** Returns a resting posture that faces a yaw [rad, 0: ahead, positive: to the left]. */
   resting(yaw: number): Posture {
     const arm = this.#arm;
     const gaze = fromAxisAngle(up, yaw);
-    const trunkYaw = yaw - this.#aside * 0.2;
+    const trunkYaw = yaw - this.#stringSign * 0.2;
     const bow = this.#shoulderOf(this.#bowSide, gaze, trunkYaw);
     const string = this.#shoulderOf(this.#stringSide, gaze, trunkYaw);
     return {
@@ -134,8 +134,8 @@ export class ArcherPostures {
   /** Returns the posture with the bow at the chest, and the string hand about to take an arrow. */
   ready(yaw: number): Posture {
     const arm = this.#arm;
-    const gaze = multiply(fromAxisAngle(up, yaw - this.#aside * 0.12), fromAxisAngle(right, -0.3));
-    const trunkYaw = yaw - this.#aside * readyTurn;
+    const gaze = multiply(fromAxisAngle(up, yaw - this.#stringSign * 0.12), fromAxisAngle(right, -0.3));
+    const trunkYaw = yaw - this.#stringSign * readyTurn;
     const bow = this.#shoulderOf(this.#bowSide, gaze, trunkYaw);
     const string = this.#shoulderOf(this.#stringSide, gaze, trunkYaw);
     return {
@@ -161,7 +161,7 @@ export class ArcherPostures {
     const to = subtract(target, this.eyes);
     const yaw = yawOf(to);
     const gaze = lookAlong(to);
-    const trunkYaw = yaw - this.#aside * drawnTurn;
+    const trunkYaw = yaw - this.#stringSign * drawnTurn;
     const nock = this.#facing(yaw, 0.14 * arm, -0.17 * arm, 0.16 * arm);
     const shoulder = this.#shoulderOf(this.#bowSide, gaze, trunkYaw);
     const atNock = add(this.eyes, nock);
@@ -185,7 +185,7 @@ export class ArcherPostures {
   followedThrough(shot: Posture): Posture {
     const { arrowRest, direction, draw } = shot.hold;
     const nock = addScaled(arrowRest, direction, -braceHeight - draw);
-    const back = rotate(fromAxisAngle(up, 0.5 * this.#aside), scale(direction, -1));
+    const back = rotate(fromAxisAngle(up, 0.5 * this.#stringSign), scale(direction, -1));
     return {
       ...shot,
       free: { fist: addScaled(nock, back, 0.12 * this.#arm), knuckles: direction, thumb: this.#hooked(direction) },
@@ -216,7 +216,7 @@ export class ArcherPostures {
 
   /** Returns the vector of (towards the string side, up, ahead) for an archer that faces a yaw. */
   #facing(yaw: number, outward: number, upward: number, ahead: number): Vec3 {
-    return rotate(fromAxisAngle(up, yaw), vec3(this.#aside * outward, upward, -ahead));
+    return rotate(fromAxisAngle(up, yaw), vec3(this.#stringSign * outward, upward, -ahead));
   }
 
   /** Returns the thumb of the hand on the string, which leans inward because the elbow is behind the arrow. */

@@ -55,7 +55,12 @@ export class CourtPeople {
   private readonly head = vec3(0, 0, 0);
 
   /** Updates all people. `frame`: the user's hands, null if nothing is tracked. */
-  update(line: BallConnection, seen: BallRoomView, frame: TrackingFrame | null, others: readonly RemotePerson[]): void {
+  update(
+    connection: BallConnection,
+    seen: BallRoomView,
+    frame: TrackingFrame | null,
+    others: readonly RemotePerson[],
+  ): void {
     const { seats, mySeat } = seen;
     const shown = seen.match;
     this.players.length = seats.length;
@@ -67,7 +72,7 @@ export class CourtPeople {
       const row = seats[seat];
       const player = shown.players[seat];
       const there = seat === mySeat ? null : remoteOn(seat, others);
-      const arenaFromFloor = line.arenaFromFloor(seat);
+      const arenaFromFloor = connection.arenaFromFloor(seat);
       const place = seat === mySeat ? frame : (there?.pose ?? null);
       if (player?.role === 'holder' && place) {
         this.opening = this.openingOf(place, arenaFromFloor, player.station) ?? this.opening;

@@ -7,8 +7,8 @@ import type { DisplayedMatch } from './displayed-match';
 export const boardSize = { width: 1024, height: 588 } as const;
 
 /** Score, clock, balls left and the last sentence. */
-export function paintBoard(context: CanvasRenderingContext2D, standing: DisplayedMatch, line: string): void {
-  const { state, seconds } = standing;
+export function paintBoard(context: CanvasRenderingContext2D, match: DisplayedMatch, line: string): void {
+  const { state, seconds } = match;
   const { width, height } = boardSize;
   paintGround(context, width, height);
   paintScoreHeading(context, {

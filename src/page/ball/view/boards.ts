@@ -23,13 +23,13 @@ export function createBoards(quality: Quality) {
   let shown = '';
   return {
     object,
-    show(standing: DisplayedMatch, line: string): void {
-      const { state, seconds } = standing;
+    show(match: DisplayedMatch, line: string): void {
+      const { state, seconds } = match;
       const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
       const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);
       if (key === shown) return;
       shown = key;
-      draw((context) => paintBoard(context, standing, line));
+      draw((context) => paintBoard(context, match, line));
     },
   };
 }

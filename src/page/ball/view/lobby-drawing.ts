@@ -31,9 +31,9 @@ const byStation = ({ state }: DisplayedMatch): readonly number[] =>
     .sort((a, b) => (state.players[a]?.station ?? 0) - (state.players[b]?.station ?? 0));
 
 /** The buttons that its reader may press: a place for each seat that is free or a bot's, and ready. */
-export function lobbyButtons(standing: DisplayedMatch): readonly SheetButton<LobbyButton>[] {
-  const { players, me } = standing;
-  const places = byStation(standing).flatMap((player, row): SheetButton<LobbyButton>[] => {
+export function lobbyButtons(match: DisplayedMatch): readonly SheetButton<LobbyButton>[] {
+  const { players, me } = match;
+  const places = byStation(match).flatMap((player, row): SheetButton<LobbyButton>[] => {
     const person = players[player];
     const id = seatIds[player];
     if (!id || player === me || (person && !person.bot)) return [];
@@ -45,10 +45,10 @@ export function lobbyButtons(standing: DisplayedMatch): readonly SheetButton<Lob
 /** Paints the sheet before and after a match: players, who is ready, the result. */
 export function paintLobby(
   context: CanvasRenderingContext2D,
-  standing: DisplayedMatch,
+  match: DisplayedMatch,
   hovered: LobbyButton | null,
 ): void {
-  const { state, players, me, rotate } = standing;
+  const { state, players, me, rotate } = match;
   const { width, height } = lobbySize;
   paintCard(context, width, height);
   const over = state.phase === 'over';
@@ -67,15 +67,15 @@ export function paintLobby(
   } else {
     const roles = 'Two players throw, one catches with the basket.';
     middle(roles, 172, { font: '600 46px', color: ink.text, maxWidth: width - 128 });
-    const match = `${balls} balls, ${Math.round(seconds)} seconds, a point per catch`;
-    middle(match, 240, { font: '600 42px', color: ink.soft });
+    const terms = `${balls} balls, ${Math.round(seconds)} seconds, a point per catch`;
+    middle(terms, 240, { font: '600 42px', color: ink.soft });
   }
-  for (const [row, player] of byStation(standing).entries()) {
-    paintRow(context, standing, player, rowTop + row * rowHeight);
+  for (const [row, player] of byStation(match).entries()) {
+    paintRow(context, match, player, rowTop + row * rowHeight);
   }
-  const waiting = waitingSentence(standing);
+  const waiting = waitingSentence(match);
   if (waiting) middle(waiting, 702, { font: '700 38px', color: ink.accent, baseline: 'middle', maxWidth: width - 96 });
-  const buttons = lobbyButtons(standing);
+  const buttons = lobbyButtons(match);
   const isReady = state.players[me ?? -1]?.ready ?? false;
   for (const button of buttons) {
     const lit = hovered === button.id;
@@ -94,8 +94,8 @@ export function paintLobby(
   }
 }
 
-function paintRow(context: CanvasRenderingContext2D, standing: DisplayedMatch, player: number, top: number): void {
-  const { state, players, me } = standing;
+function paintRow(context: CanvasRenderingContext2D, match: DisplayedMatch, player: number, top: number): void {
+  const { state, players, me } = match;
   const { width } = lobbySize;
   const station = state.players[player]?.station ?? 0;
   const look = seatLooks[station];

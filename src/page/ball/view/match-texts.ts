@@ -4,21 +4,21 @@ import { type DisplayedMatch, type DisplayedPlayer, displayName } from './displa
 
 /** Returns the line of the board for an event; null: none. */
 export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | null)[]): string | null {
-  const who = 'player' in event ? people[event.player] : null;
-  const name = who?.me ? 'you' : (who?.name ?? 'A player');
+  const player = 'player' in event ? people[event.player] : null;
+  const name = player?.me ? 'you' : (player?.name ?? 'A player');
   switch (event.type) {
     case 'started':
       return 'Go!';
     case 'caught':
       return `In! Thrown by ${name}`;
     case 'missed':
-      return who?.me ? 'Your ball is on the floor' : `${name}’s ball is on the floor`;
+      return player?.me ? 'Your ball is on the floor' : `${name}’s ball is on the floor`;
     case 'bounced':
       return event.off === 'basket' ? 'Off the rim' : null;
     case 'left':
-      return who?.me ? null : `${name} has left`;
+      return player?.me ? null : `${name} has left`;
     case 'joined':
-      return who?.me ? null : `${name} has joined`;
+      return player?.me ? null : `${name} has joined`;
     default:
       return null;
   }
@@ -40,14 +40,14 @@ const listed = (names: readonly string[]): string =>
   names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 
 /** Describes what a match waits for; null: it is running. */
-export function waitingSentence(standing: DisplayedMatch): string | null {
-  const { state, players, me, rotate, acting } = standing;
+export function waitingSentence(match: DisplayedMatch): string | null {
+  const { state, players, me, rotate, acting } = match;
   if (state.phase === 'running') return null;
   const there = players.flatMap((person, player) => (person ? [player] : []));
   const taken = there.flatMap((player) => state.players[player]?.station ?? []);
   // Roles move on between two matches alone.
   const canPlay = rotationForRound(taken, rotate && state.phase === 'over') !== null;
-  if (!canPlay) return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
+  if (!canPlay) return `${waitingLine({ ...match, state: { ...state, phase: 'ready' } })}.`;
   const idle = there.filter((player) => !state.players[player]?.ready);
   const names = idle.flatMap((player) => (player !== me && players[player] ? [displayName(players[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
