@@ -92,8 +92,8 @@ export class AvatarLoader {
   }
 
   /**
-   * Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBonesError if
-   * they are unknown.
+   * Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBonesError
+   * if they are unknown.
    */
   build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
     return this.#build(checked, name, checked.hash === null ? undefined : this.#options.boneMaps.of(checked.hash));

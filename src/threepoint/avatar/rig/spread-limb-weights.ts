@@ -84,8 +84,8 @@ function rotationScaleOf(matrix: Matrix4): RotationScale {
 }
 
 /**
- * Returns the inverse bind matrix of a joint between the bones `before` and `after`. In a rig that was straightened from
- * an A-pose it rotates the skin half as far as `after` does.
+ * Returns the inverse bind matrix of a joint between the bones `before` and `after`. In a rig that was straightened
+ * from an A-pose it rotates the skin half as far as `after` does.
  */
 function halfBind(skeleton: Skeleton, before: number, after: number): Matrix4 {
   const skinAfter = skinMatrix(skeleton, after);
@@ -186,8 +186,8 @@ const removeLimbs = (weights: VertexWeights, limbs: readonly LimbIndices[]): rea
   });
 
 /**
- * Redistributes the weights that a vertex has of limbs to their joints. Where several limbs have weights, as the legs at
- * the crotch, each is paired with a part of the trunk's weight.
+ * Redistributes the weights that a vertex has of limbs to their joints. Where several limbs have weights, as the legs
+ * at the crotch, each is paired with a part of the trunk's weight.
  */
 function spread(weights: VertexWeights, limbs: readonly LimbIndices[], place: Vector3): void {
   const owned = removeLimbs(weights, limbs);
@@ -270,8 +270,8 @@ function writeStrongest(ofVertex: VertexWeights, at: number, indices: Uint16Arra
 }
 
 /**
- * Redistributes the skin weights of limbs to their joints, in every mesh under `scene`. The rig must be at rest, with its
- * world matrices up to date.
+ * Redistributes the skin weights of limbs to their joints, in every mesh under `scene`. The rig must be at rest, with
+ * its world matrices up to date.
  */
 export function* spreadLimbs(scene: Object3D, limbs: readonly SpreadLimb[]): Steps<void> {
   scene.updateMatrixWorld(true);
