@@ -11,7 +11,7 @@ import { limitsSeconds, stages, stagesOf } from './test-stages.mjs';
 const reports = join(root, 'artifacts/test-reports');
 
 /** The maximum number of failed tests of a stage that the summary names. */
-const mostNamed = 20;
+const maxNamed = 20;
 
 const seconds = (start) => `${((performance.now() - start) / 1000).toFixed(1)} s`;
 
@@ -85,8 +85,8 @@ function printSummary(outcomes, start) {
     const words = [counted ? countLine(results) : '', ...problems].filter(Boolean).join('; ');
     console.log(`${problems.length === 0 ? '✓' : '✗'} ${name.padEnd(14)}${time.padStart(8)}  ${words}`);
     // The failures are repeated here, because often only the end of a CI log is kept.
-    for (const failure of results.failures.slice(0, mostNamed)) console.log(`✗   ${failure}`);
-    if (results.failures.length > mostNamed) console.log(`✗   and ${results.failures.length - mostNamed} more`);
+    for (const failure of results.failures.slice(0, maxNamed)) console.log(`✗   ${failure}`);
+    if (results.failures.length > maxNamed) console.log(`✗   and ${results.failures.length - maxNamed} more`);
   }
   const failed = outcomes.filter(({ problems }) => problems.length > 0).map(({ name }) => name);
   console.log(`\n${failed.length === 0 ? 'Everything passed' : `Failed: ${failed.join(', ')}`} in ${seconds(start)}.`);

@@ -41,7 +41,7 @@ export function drawText(
 
 /**
  * Writes a text in lines of at most `width` pixels, broken at spaces, the first at (x, y) and each `step` below the one
- * before. `mostLines`: further ones are left out.
+ * before. `maxLines`: further ones are left out.
  */
 export function drawTextLines(
   context: CanvasRenderingContext2D,
@@ -49,10 +49,10 @@ export function drawTextLines(
   [x, y, width]: readonly [number, number, number],
   step: number,
   writing: TextStyle,
-  mostLines?: number,
+  maxLines?: number,
 ): void {
   context.font = `${writing.font} ${vrFont}`;
-  const lines = wrapText(context, text, width).slice(0, mostLines);
+  const lines = wrapText(context, text, width).slice(0, maxLines);
   for (const [index, line] of lines.entries()) drawText(context, line, [x, y + index * step], writing);
 }
 

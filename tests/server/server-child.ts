@@ -17,7 +17,7 @@ export interface ServerState {
   readonly lines: readonly string[];
   readonly rssBytes: number;
   /** Delay of the event loop since the last report [ms]; the first report begins the measurement. */
-  readonly loop: { readonly p99Ms: number; readonly mostMs: number };
+  readonly loop: { readonly p99Ms: number; readonly maxMs: number };
 }
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';

@@ -39,7 +39,7 @@ process.on('message', (message: 'inspect' | { readonly ahead: number }) => {
     faults: lines.filter((line) => line.startsWith('study, a fault: ')),
     lines,
     rssBytes: process.memoryUsage.rss(),
-    loop: { p99Ms: loopDelay.percentile(99) / 1e6, mostMs: loopDelay.max / 1e6 },
+    loop: { p99Ms: loopDelay.percentile(99) / 1e6, maxMs: loopDelay.max / 1e6 },
   };
   process.send?.(state);
   loopDelay.enable();

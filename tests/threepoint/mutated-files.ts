@@ -5,7 +5,7 @@ export const mutatedFiles = (byDay: number): number =>
   Number(process.env.MUTATED_FILES ?? (isNightly ? 100_000 : byDay));
 
 /** A smaller file counts as this many bytes: what a reader allocates for any file is no multiple of it. */
-const leastBytes = 65_536;
+const minBytes = 65_536;
 
 const arrayBuffers = (): number => process.memoryUsage().arrayBuffers;
 
@@ -13,13 +13,13 @@ const arrayBuffers = (): number => process.memoryUsage().arrayBuffers;
 export class ReadingCosts {
   /** Time of the processor [ms]: other programs of the machine do not count. */
   longestMs = 0;
-  /** Growth of all array buffers while one file is read, as a multiple of its size (`leastBytes` at least). */
+  /** Growth of all array buffers while one file is read, as a multiple of its size (`minBytes` at least). */
   largestMultiple = Number.NEGATIVE_INFINITY;
   readonly #collectGarbage: (() => void) | undefined;
   /** What is held before any file is read [bytes]. */
   readonly #held: number;
   /** The largest multiple with garbage. */
-  #mostAllocated = Number.NEGATIVE_INFINITY;
+  #maxAllocated = Number.NEGATIVE_INFINITY;
 
   /**
    * `collectGarbage`: of every file that leaves more garbage than those before it, only what is held after a collection
@@ -43,10 +43,10 @@ export class ReadingCosts {
     } finally {
       const { user, system } = process.cpuUsage(started);
       this.longestMs = Math.max(this.longestMs, (user + system) / 1000);
-      const multiple = () => (arrayBuffers() - before) / Math.max(fileBytes, leastBytes);
+      const multiple = () => (arrayBuffers() - before) / Math.max(fileBytes, minBytes);
       const allocated = multiple();
-      if (allocated > this.#mostAllocated) {
-        this.#mostAllocated = allocated;
+      if (allocated > this.#maxAllocated) {
+        this.#maxAllocated = allocated;
         this.#collectGarbage?.();
         this.largestMultiple = Math.max(this.largestMultiple, multiple());
       }

@@ -48,7 +48,7 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
         reach=LIMB["straightest"],
         least_missing=1e-5 / eye_height,
         straightest=LIMB["straightest"],
-        most_bent=LIMB["mostBent"] / eye_height,
+        most_bent=LIMB["maxBent"] / eye_height,
         swivel_limiter=True,
     )
 

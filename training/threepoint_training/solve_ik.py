@@ -114,7 +114,7 @@ def _turn_chest(points: _Points, k: dict[str, Any]) -> Array:
     forward_z = -1 - k["yaw"][0] * across[:, 0] + k["yaw"][1] * middle[:, 2]
     saturation = LIMITS["yawSaturation"]
     return _yaw_matrix(
-        saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["leastAhead"])) / saturation)
+        saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["minAhead"])) / saturation)
     )
 
 
@@ -211,7 +211,7 @@ def two_bone_elbow(
         across = np.where(short, substitute - _dot(substitute, axis) * axis, across)
     across = normalise(across)
     reach = np.clip(
-        distance, np.abs(upper_arm - forearm) + LIMB["mostBent"], (upper_arm + forearm) * LIMB["straightest"]
+        distance, np.abs(upper_arm - forearm) + LIMB["maxBent"], (upper_arm + forearm) * LIMB["straightest"]
     )
     along = (upper_arm**2 - forearm**2 + reach**2) / (2 * reach)
     return shoulder + along * axis + np.sqrt(np.maximum(upper_arm**2 - along**2, 0)) * across

@@ -16,7 +16,7 @@ export type WorldName = (typeof worldNames)[number];
 export const trackerNames = ['head', 'left', 'right'] as const;
 
 /** Values over these are no measurement of a person at rest, and no frame of a page. */
-const [mostMm, mostDegrees, mostMs] = [1000, 180, 600_000];
+const [maxMm, maxDegrees, maxMs] = [1000, 180, 600_000];
 const share = numberBetween(0, 1);
 const count = integerBetween(0, 1_000_000);
 const rate = numberBetween(1, 1000);
@@ -35,8 +35,8 @@ const noise = v.strictObject({
   frames: count,
   rateHz: rate,
   repeated: share,
-  positionMm: levels(mostMm),
-  rotationDegrees: levels(mostDegrees),
+  positionMm: levels(maxMm),
+  rotationDegrees: levels(maxDegrees),
 });
 
 /** The losses of one hand, in ascending order; `openEnd`: it was lost at the end, for an unknown time. */
@@ -45,14 +45,14 @@ const losses = v.strictObject({
   source: v.picklist(['controller', 'hand']),
   observedSeconds: numberBetween(0, 3600),
   lengthsMs: v.pipe(
-    list(numberBetween(0, mostMs), 10_000),
+    list(numberBetween(0, maxMs), 10_000),
     v.check((lengths) => lengths.every((ms, index) => ms >= (lengths[index - 1] ?? 0)), 'expected ascending lengths'),
   ),
   openEnd: v.boolean(),
 });
 
 const quantiles = v.pipe(
-  v.strictObject({ p50Ms: numberBetween(-mostMs, mostMs), p95Ms: numberBetween(-mostMs, mostMs) }),
+  v.strictObject({ p50Ms: numberBetween(-maxMs, maxMs), p95Ms: numberBetween(-maxMs, maxMs) }),
   v.check(({ p50Ms, p95Ms }) => p50Ms <= p95Ms, 'expected a median (p50Ms) that is no greater than p95Ms'),
 );
 

@@ -5,7 +5,7 @@ import type { RoomPass } from './room-pass';
 /** The limits of a server's avatar store, and this person's file in it. */
 export interface AvatarTerms {
   /** The largest file that it accepts [bytes]; 0: none. */
-  readonly mostBytes: number;
+  readonly maxBytes: number;
   /** A folder on another server with avatars by hash; null: none. */
   readonly elsewhere: string | null;
   /** The stored file of this person; null: none. */
@@ -34,7 +34,7 @@ export interface AvatarExchange {
 }
 
 const terms = v.object({
-  mostBytes: v.pipe(v.number(), v.minValue(0)),
+  maxBytes: v.pipe(v.number(), v.minValue(0)),
   elsewhere: v.nullable(v.pipe(v.string(), v.url(), v.startsWith('https://'), v.endsWith('/'))),
   yours: v.nullable(v.pipe(v.string(), v.regex(avatarHashPattern))),
 });

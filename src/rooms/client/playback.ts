@@ -39,7 +39,7 @@ const freezeSeconds = 0.25;
 /** Packets further apart than this [s] are not interpolated. */
 const longestGap = 0.5;
 /** The most packets that are kept while a hidden page draws no frames. */
-const mostSamples = 256;
+const maxSamples = 256;
 /** Half-life of the playout offset's adaptation [s]. */
 const delayHalfLife = 0.5;
 /** Window of the transit times [s]: clocks drift, routes change. */
@@ -48,7 +48,7 @@ const transitMemory = 5;
 const spare = 0.0115;
 /** Rate of the packets that pages send, and the most missing ones in a row that count as delayed. */
 const posesPerSecond = 30;
-const mostMissing = 15;
+const maxMissing = 15;
 
 /** Returns the mean interval of the packets [s]. */
 function intervalOf(samples: readonly PathSample[]): number {
@@ -131,11 +131,11 @@ export class Playback {
     // The relay may forward only the newest of several packets: the missing ones were late by as much.
     const before = this.samples[this.samples.length - 1];
     if (before) {
-      const missing = Math.min(Math.round((time - before.time) * posesPerSecond) - 1, mostMissing);
+      const missing = Math.min(Math.round((time - before.time) * posesPerSecond) - 1, maxMissing);
       for (let i = missing; i > 0; i--) this.transits.add(arrivedAt, arrivedAt - time + i / posesPerSecond);
     }
     this.samples.push({ time, arrivedAt, packet });
-    if (this.samples.length > mostSamples) this.samples.shift();
+    if (this.samples.length > maxSamples) this.samples.shift();
     this.receivedAt = arrivedAt;
     this.transits.add(arrivedAt, arrivedAt - time);
   }

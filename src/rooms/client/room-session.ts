@@ -27,7 +27,7 @@ import { RoomReplica } from './room-replica';
 const poseSeconds = 1 / 30;
 
 /** The most packets, and the most events, that are kept while the page is hidden and calls no `update`. */
-const mostWaiting = 256;
+const maxWaiting = 256;
 
 /** A page that skips more than this [s] was hidden; slow pages skip less between two frames. */
 const longestSlowFrame = 3;
@@ -219,7 +219,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       const packet = decodePose(bytes, skeleton);
       if (packet) this.#poses.push({ seat, packet, arrivedAt });
     }
-    if (this.#poses.length > mostWaiting) this.#poses = this.#poses.slice(-mostWaiting);
+    if (this.#poses.length > maxWaiting) this.#poses = this.#poses.slice(-maxWaiting);
   }
 
   /** Accounts for a pause that this page's clock skipped [s] and that ended at `now`; the Room's clock ran on. */
@@ -262,7 +262,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         return;
       case 'events':
         this.#events.push(...message.events);
-        if (this.#events.length > mostWaiting) this.#events = this.#events.slice(-mostWaiting);
+        if (this.#events.length > maxWaiting) this.#events = this.#events.slice(-maxWaiting);
     }
   }
 

@@ -32,11 +32,11 @@ const megabytes = (bytes: number): string => `${Math.round(bytes / 2 ** 20)} MB`
 
 /** Uploads a file to the room's store unless it is there. Rejects with a reason if the server refuses it. */
 async function upload(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Promise<void> {
-  const { mostBytes, yours } = await exchange.terms();
+  const { maxBytes, yours } = await exchange.terms();
   if (yours === hash) return;
-  if (mostBytes === 0) throw new Error('this server accepts no avatars');
-  if (file.size > mostBytes)
-    throw new Error(`it has ${megabytes(file.size)}; this server accepts up to ${megabytes(mostBytes)}`);
+  if (maxBytes === 0) throw new Error('this server accepts no avatars');
+  if (file.size > maxBytes)
+    throw new Error(`it has ${megabytes(file.size)}; this server accepts up to ${megabytes(maxBytes)}`);
   await exchange.store(hash, file);
 }
 

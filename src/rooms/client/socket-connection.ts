@@ -30,7 +30,7 @@ const timeoutMs = 4000;
 /** After `leave` the page closes the connection itself after this time [ms], if the server has not. */
 const closingMs = 1000;
 /** After this many refusals of renewed passes the connection ends. */
-const mostRefusals = 3;
+const maxRefusals = 3;
 
 /** Connects to a room on a relay, and reconnects whenever the connection is lost, until it has ended. */
 export const createSocketConnection = <Game extends HostedGame>(
@@ -139,7 +139,7 @@ class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
       return;
     }
     this.#refusals += 1;
-    if (this.#refusals >= mostRefusals) this.#end('refused');
+    if (this.#refusals >= maxRefusals) this.#end('refused');
     else this.#retryLater('refused');
   }
 

@@ -16,7 +16,7 @@ import type { OwnAvatar } from '../client/shared-avatar';
 import type { PoseSource } from '../peers/pose-sender';
 import type { SeatInfo } from '../protocol/messages';
 import { headBits } from '../protocol/pose-steps';
-import { mostSteps, placeUnit } from '../protocol/quantise';
+import { maxSteps, placeUnit } from '../protocol/quantise';
 import type { HostedGame } from '../room/match-policy';
 import type { People } from '../room/people-policy';
 import { PlacedPose } from './placed-pose';
@@ -82,11 +82,11 @@ export interface JoinedRoom<Game extends HostedGame = People> {
 }
 
 /** The number of attempts before `joinRoom` rejects. */
-const mostAttempts = 3;
+const maxAttempts = 3;
 /** The measures of a spectator, which no page draws. */
 const spectatorCalibration: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 /** The largest x and z of a head in a packet [m]. */
-const farthest = mostSteps(headBits) * placeUnit;
+const farthest = maxSteps(headBits) * placeUnit;
 
 /**
  * Joins a room of a server that uses `attachRooms`, and draws the others in a three.js scene. `url`: the server's URL,
@@ -139,7 +139,7 @@ async function connect<Game extends HostedGame>(
     let settled = false;
     const connection = address.connect(visitor, () => {
       const { phase, attempt, reason } = connection.status;
-      if (settled || (phase !== 'joined' && phase !== 'ended' && attempt < mostAttempts)) return;
+      if (settled || (phase !== 'joined' && phase !== 'ended' && attempt < maxAttempts)) return;
       settled = true;
       if (phase === 'joined') {
         resolve(connection);

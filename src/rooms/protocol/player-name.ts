@@ -1,6 +1,6 @@
 /** The most characters of a name, and the most bytes as UTF-8. */
 export const maxNameLength = 20;
-const mostNameBytes = 40;
+const maxNameBytes = 40;
 
 /** Returns the bytes of a character in UTF-8. */
 const utf8Bytes = (character: string): number => {
@@ -35,7 +35,7 @@ export function cleanName(name: string): string {
   for (const character of visible) {
     bytes += utf8Bytes(character);
     count += 1;
-    if (count > maxNameLength || bytes > mostNameBytes) break;
+    if (count > maxNameLength || bytes > maxNameBytes) break;
     kept += character;
   }
   return kept.trim();

@@ -9,7 +9,7 @@ import {
   makeDirectionSteps,
   makeQuatSteps,
   makeVecSteps,
-  mostSteps,
+  maxSteps,
   placeUnit,
   type QuatSteps,
   toQuatSteps,
@@ -188,13 +188,13 @@ export const makePacketSteps = (): PacketSteps => ({
   feet: { left: { pinned: false, at: makeRelativePose() }, right: { pinned: false, at: makeRelativePose() } },
 });
 
-const heightCentre = lowestHead + mostSteps(heightBits) * placeUnit;
+const heightCentre = lowestHead + maxSteps(heightBits) * placeUnit;
 
 export const headPosition = ({ x, y, z }: VecSteps, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, x * placeUnit, y * placeUnit + heightCentre, z * placeUnit);
 
 export const limited = (steps: number, bits: number): number =>
-  clamp(Math.round(steps), -mostSteps(bits), mostSteps(bits));
+  clamp(Math.round(steps), -maxSteps(bits), maxSteps(bits));
 
 /**
  * Writes the nearest steps of a head, floor frame; positions beyond the ranges of `headBits` and `heightBits` are

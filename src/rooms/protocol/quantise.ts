@@ -10,13 +10,13 @@ export const placeUnit = 0.00025;
  * Returns the largest step m = 2^(b−1) − 1 of a signed number of b bits. A step in [−m, m] is written as step + m: zero
  * is exact, and the code 2^b − 1 is invalid.
  */
-export const mostSteps = (bits: number): number => (1 << (bits - 1)) - 1;
+export const maxSteps = (bits: number): number => (1 << (bits - 1)) - 1;
 
 /** Returns the nearest step to a value in [−range, range]; clamped beyond. */
 export const toStep = (value: number, range: number, bits: number): number =>
-  Math.round(clamp(value / range, -1, 1) * mostSteps(bits));
+  Math.round(clamp(value / range, -1, 1) * maxSteps(bits));
 
-export const fromStep = (step: number, range: number, bits: number): number => (step / mostSteps(bits)) * range;
+export const fromStep = (step: number, range: number, bits: number): number => (step / maxSteps(bits)) * range;
 
 /**
  * Returns the step of a non-uniform quantiser for values near 0: half the uniform step at 0, 1.5 times at ±range,
@@ -33,11 +33,11 @@ export function fromCentredStep(step: number, range: number, bits: number): numb
 }
 
 export const writeStep = (writer: BitWriter, step: number, bits: number): void =>
-  writer.write(step + mostSteps(bits), bits);
+  writer.write(step + maxSteps(bits), bits);
 
 /** Returns the step; null for the invalid code. */
 export function readStep(reader: BitReader, bits: number): number | null {
-  const most = mostSteps(bits);
+  const most = maxSteps(bits);
   const step = reader.read(bits) - most;
   return step <= most ? step : null;
 }
@@ -105,7 +105,7 @@ export function readQuat(reader: BitReader, bits: number, target: QuatSteps = ma
   target.a = a;
   target.b = b;
   target.c = c;
-  const most = mostSteps(bits);
+  const most = maxSteps(bits);
   const squares = (a * a + b * b + c * c) / (2 * most * most);
   const others = Math.max(Math.abs(a), Math.abs(b), Math.abs(c)) / most;
   // Rounding moves each of four equal components by half a step; the tolerance of two steps is enough.

@@ -30,7 +30,7 @@ const wide = grid(0.0009, 2318);
 const nearCodes = near.count ** 3;
 const allCodes = nearCodes + wide.count ** 3;
 /** Smaller steps on all axes belong to the finer grid. */
-const leastWide = Math.round(((near.most + 0.5) * near.unit) / wide.unit);
+const minWideStep = Math.round(((near.most + 0.5) * near.unit) / wide.unit);
 /** Bits of each half of a code, which is written as two numbers. */
 const halfBits = 20;
 const half = 2 ** halfBits;
@@ -82,5 +82,5 @@ export function readRelativePosition(reader: BitReader, target: RelativePosition
   target.z = (rest % count) - most;
   target.y = (row % count) - most;
   target.x = Math.floor(row / count) - most;
-  return !target.far || Math.max(Math.abs(target.x), Math.abs(target.y), Math.abs(target.z)) >= leastWide;
+  return !target.far || Math.max(Math.abs(target.x), Math.abs(target.y), Math.abs(target.z)) >= minWideStep;
 }

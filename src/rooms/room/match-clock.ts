@@ -14,7 +14,7 @@ export interface MatchClockListener<Game extends HostedGame> {
 }
 
 /** Shifts of the match start below this [s] are rounding. */
-const leastShift = 1e-3;
+const minShift = 1e-3;
 
 /** Starts, pauses and steps one match after another, and keeps the match clock in room time [s]. */
 export class MatchClock<Game extends HostedGame> {
@@ -130,7 +130,7 @@ export class MatchClock<Game extends HostedGame> {
   /** Moves the match start if the match has skipped a time in which its host was suspended. */
   #adjustStart(time: number): void {
     const start = time - this.#match.lead - this.state.tick * this.#policy.tickSeconds;
-    if (Math.abs(start - this.#matchStart) <= leastShift) return;
+    if (Math.abs(start - this.#matchStart) <= minShift) return;
     this.#matchStart = start;
     this.#listener.onStartShift();
   }

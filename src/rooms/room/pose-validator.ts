@@ -10,11 +10,11 @@ export const maxHeadSpeed = 20;
 /** A head may be moved this far [m] by rounding and by a hiccup of its device. */
 const headTolerance = 0.1;
 /** The most packets of a seat that wait to be forwarded: more arrive together only after the host was blocked. */
-const mostFresh = 16;
+const maxWaitingPackets = 16;
 /** After this long without an accepted pose [s] any position is accepted: a device has found its place again. */
 const speedCheckSeconds = 1;
 /** A packet's time may lie this far ahead of the room clock [s]: a sender knows that clock to half a round trip. */
-const mostAhead = 0.25;
+const maxLeadSeconds = 0.25;
 /**
  * How often a space may be re-anchored, per second on average and at once: snap turns, recentring, change of devices.
  */
@@ -43,7 +43,7 @@ export class PoseValidator {
     return this.#lastSeenAt;
   }
 
-  /** The newest pose's time by the sender's clock, limited to `mostAhead`; NaN before the first. */
+  /** The newest pose's time by the sender's clock, limited to `maxLeadSeconds`; NaN before the first. */
   get packetTime(): number {
     return this.#packetTime ?? Number.NaN;
   }
@@ -66,7 +66,7 @@ export class PoseValidator {
    */
   accept(packet: PointsPacket, bytes: Uint8Array, time: number): 'accepted' | 'old' | 'too-fast' {
     // A time in the future would permit a jump later.
-    const packetTime = time + Math.min(packetSecondsBetween(time * 1000, packet.timeMs), mostAhead);
+    const packetTime = time + Math.min(packetSecondsBetween(time * 1000, packet.timeMs), maxLeadSeconds);
     const { position } = packet.pose.head;
     if (time - this.#lastSeenAt <= speedCheckSeconds && this.#packetTime !== null) {
       const elapsed = packetTime - this.#packetTime;
@@ -81,7 +81,7 @@ export class PoseValidator {
     this.#lastSeenAt = time;
     this.#posedAt = time;
     this.#fresh.push(bytes);
-    if (this.#fresh.length > mostFresh) this.#fresh.shift();
+    if (this.#fresh.length > maxWaitingPackets) this.#fresh.shift();
     return 'accepted';
   }
 

@@ -94,7 +94,7 @@ type QuestionnaireStep = Extract<StudyStep, { kind: 'questionnaire' }>;
 /** Seconds between the starts of two participants. */
 const slotSeconds = 7200;
 /** Guards against a schedule that never ends. */
-const mostSteps = 10_000;
+const maxSteps = 10_000;
 
 /**
  * Yields the simulated participants of a whole study one after the other. They use the same sessions as people, with
@@ -196,7 +196,7 @@ class SimulatedSession {
 
   run(): SimulatedParticipant {
     const { participant } = this.#schedule;
-    for (let steps = 0; steps < mostSteps; steps++) {
+    for (let steps = 0; steps < maxSteps; steps++) {
       const step = currentStep(this.#schedule, this.#progress);
       if (step.kind === 'end') return { participant, progress: this.#progress, records: this.#records };
       this.#now += 5 + Math.round(10 * this.#random.uniform());

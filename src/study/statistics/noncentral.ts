@@ -65,8 +65,8 @@ export function noncentralF(f: number, df1: number, df2: number): (noncentrality
 }
 
 /** Beyond these noncentralities the first weight of a series is 0. */
-const mostOfT = 37;
-const mostOfF = 1400;
+const maxNoncentralityT = 37;
+const maxNoncentralityF = 1400;
 
 /** Finds the point between two ends at which a falling probability is `share`, or returns null if it is not reached. */
 function reached(probability: (at: number) => number, share: number, low: number, high: number): number | null {
@@ -79,9 +79,10 @@ const between = (low: number | null, high: number | null): Interval | null =>
 
 /** Returns the confidence interval of the noncentrality of a t, or null if t or an end is too far out to compute it. */
 export function noncentralityOfT(t: number, df: number, confidence = 0.95): Interval | null {
-  if (Math.abs(t) > mostOfT / 2) return null;
+  if (Math.abs(t) > maxNoncentralityT / 2) return null;
   const below = noncentralT(t, df);
-  const at = (share: number) => (below(-mostOfT) < share ? null : reached(below, share, -mostOfT, mostOfT));
+  const at = (share: number) =>
+    below(-maxNoncentralityT) < share ? null : reached(below, share, -maxNoncentralityT, maxNoncentralityT);
   return between(at((1 + confidence) / 2), at((1 - confidence) / 2));
 }
 
@@ -90,8 +91,8 @@ export function noncentralityOfT(t: number, df: number, confidence = 0.95): Inte
  * compute it.
  */
 export function noncentralityOfF(f: number, df1: number, df2: number, confidence: number): Interval | null {
-  if (f * df1 > mostOfF / 2) return null;
+  if (f * df1 > maxNoncentralityF / 2) return null;
   const below = noncentralF(f, df1, df2);
-  const at = (share: number) => (below(0) < share ? 0 : reached(below, share, 0, mostOfF));
+  const at = (share: number) => (below(0) < share ? 0 : reached(below, share, 0, maxNoncentralityF));
   return between(at((1 + confidence) / 2), at((1 - confidence) / 2));
 }

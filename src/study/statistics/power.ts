@@ -98,15 +98,15 @@ export interface PowerRow extends Power {
 }
 
 /** The most participants (between: in each cohort) of a simulated study. */
-export const mostSimulated = 1000;
+export const maxSimulated = 1000;
 
 /**
  * Returns the power of growing studies, from few participants to the first at which both tests reach `power`, or to
- * `mostSimulated`. Beyond a hundred, steps are a twentieth of the number.
+ * `maxSimulated`. Beyond a hundred, steps are a twentieth of the number.
  */
 export function powerTable(planned: PlannedTest, power: number, simulation: Simulation): readonly PowerRow[] {
   const rows: PowerRow[] = [];
-  for (let n = 4; n <= mostSimulated; n += n < 100 ? 1 : Math.floor(n / 20)) {
+  for (let n = 4; n <= maxSimulated; n += n < 100 ? 1 : Math.floor(n / 20)) {
     const row = { n, ...simulatedPower(planned, n, simulation) };
     rows.push(row);
     if (Math.min(row.t, row.wilcoxon) >= power) break;

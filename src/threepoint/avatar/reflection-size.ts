@@ -15,10 +15,10 @@ const size = { width: 0, height: 0 };
 
 /**
  * Returns the size of the reflection in an image of this many pixels. `heightToWidth`: the aspect of the mirror;
- * `mostWidth`: the limit [pixels]. The next call overwrites the result.
+ * `maxWidth`: the limit [pixels]. The next call overwrites the result.
  */
-export function reflectionSize(pixels: number, heightToWidth: number, mostWidth: number): TextureSize {
-  const width = Math.floor(Math.min(mostWidth, Math.sqrt((pixelShare * pixels) / heightToWidth)));
+export function reflectionSize(pixels: number, heightToWidth: number, maxWidth: number): TextureSize {
+  const width = Math.floor(Math.min(maxWidth, Math.sqrt((pixelShare * pixels) / heightToWidth)));
   size.width = width;
   size.height = Math.floor(width * heightToWidth);
   return size;

@@ -6,7 +6,7 @@ import {
   fromDirectionSteps,
   fromQuatSteps,
   fromStep,
-  mostSteps,
+  maxSteps,
   readDirection,
   readQuat,
   readStep,
@@ -26,7 +26,7 @@ test('a number is off by half a step at most, zero and both ends by nothing', ()
   fc.assert(
     fc.property(number(-3, 3), fc.integer({ min: 3, max: 16 }), (value, bits) => {
       expect(Math.abs(fromStep(toStep(value, 3, bits), 3, bits) - value)).toBeLessThanOrEqual(
-        1.5 / mostSteps(bits) + 1e-12,
+        1.5 / maxSteps(bits) + 1e-12,
       );
       for (const exact of [0, 3, -3]) expect(fromStep(toStep(exact, 3, bits), 3, bits)).toBeCloseTo(exact, 12);
     }),
@@ -36,8 +36,8 @@ test('a number is off by half a step at most, zero and both ends by nothing', ()
 
 test('the code beyond the last step means nothing', () => {
   const writer = createBitWriter();
-  writeStep(writer, -mostSteps(5), 5);
-  writeStep(writer, mostSteps(5), 5);
+  writeStep(writer, -maxSteps(5), 5);
+  writeStep(writer, maxSteps(5), 5);
   writer.write(31, 5);
   const reader = createBitReader(writer.bytes());
   expect([readStep(reader, 5), readStep(reader, 5), readStep(reader, 5)]).toEqual([-15, 15, null]);
@@ -62,7 +62,7 @@ test('rotations survive the wire, both signs alike: 0.14° at 11 bits, 1.11° at
   for (const bits of [11, 8] as const) {
     // Each of three components is half a step off at most, and the largest by as much again as all of them: half the
     // angle's sine.
-    const halfStep = Math.SQRT1_2 / mostSteps(bits) / 2;
+    const halfStep = Math.SQRT1_2 / maxSteps(bits) / 2;
     expect(worst[bits]).toBeLessThan(2 * 2 * Math.sqrt(3) * halfStep * degrees);
     expect(worst[bits]).toBeGreaterThan(Math.sqrt(3) * halfStep * degrees);
   }

@@ -249,7 +249,7 @@ test('a page finds what it needs to know by its pass: once more with a new one w
   const bytes = file();
   await exchange.store(hashOf(bytes), new Blob([bytes as Uint8Array<ArrayBuffer>]));
   expect(asked).toBe(2);
-  expect(await exchange.terms()).toEqual({ mostBytes: 8 * megabyte, elsewhere: null, yours: hashOf(bytes) });
+  expect(await exchange.terms()).toEqual({ maxBytes: 8 * megabyte, elsewhere: null, yours: hashOf(bytes) });
   const stranger = createAvatarExchange(relay.url, 'exchange', createRoomPass(relay.url, 'exchange', 'ball'));
   await expect(stranger.store(hashOf(bytes), new Blob([bytes as Uint8Array<ArrayBuffer>]))).rejects.toThrow(
     'only people on a seat of the room may upload avatars',

@@ -1,12 +1,7 @@
 import fc from 'fast-check';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { checkedRecord, longestRecord } from 'threepoint-study/model/records/study-record';
-import {
-  checkedOutcome,
-  DurationStatistics,
-  mostTrialEvents,
-  TrialLog,
-} from 'threepoint-study/model/records/trial-log';
+import { checkedOutcome, DurationStatistics, maxTrialEvents, TrialLog } from 'threepoint-study/model/records/trial-log';
 import { describe, expect, test } from 'vitest';
 import { number, seed } from '../../threepoint/core/arbitraries';
 import { outcomeOf, paperPlan, session } from './studies';
@@ -80,7 +75,7 @@ describe('the log of a trial', () => {
       log.event({ time: i / 100, type: 'hit', points: 1 });
     }
     const outcome = log.finish(end);
-    expect(outcome.events).toHaveLength(mostTrialEvents);
+    expect(outcome.events).toHaveLength(maxTrialEvents);
     expect(outcome.eventCount).toBe(5000);
     expect(outcome.hits).toBe(5000);
     expect(JSON.stringify(outcome).length).toBeLessThan(longestRecord / 2);

@@ -1,6 +1,6 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { parseRecording } from 'threepoint/core/tracking/recording';
-import { mostMotionBytes } from 'threepoint-study/model/progress/study-api';
+import { maxMotionBytes } from 'threepoint-study/model/progress/study-api';
 import { recordingTime } from 'threepoint-study/model/records/trial-clock';
 import { PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
 import { describe, expect, test } from 'vitest';
@@ -74,6 +74,6 @@ test('of a round that is longer than the server takes at once, the first frames 
   >;
   expect(outcome.motionFrames).toBeLessThan(played);
   expect(outcome.motionFrames).toBeGreaterThan(30_000);
-  expect(Buffer.byteLength(recording as string)).toBeLessThanOrEqual(mostMotionBytes);
+  expect(Buffer.byteLength(recording as string)).toBeLessThanOrEqual(maxMotionBytes);
   expect(parseRecording(recording as string).frames).toHaveLength(outcome.motionFrames);
 });

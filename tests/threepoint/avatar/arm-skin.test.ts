@@ -92,12 +92,12 @@ describe('our mannequin’s arm', () => {
   });
 
   test.each([
-    { elbow: 0, leastMean: 0.95, leastAside: 0.92 },
-    { elbow: 90, leastMean: 0.9, leastAside: 0.87 },
-    { elbow: 140, leastMean: 0.87, leastAside: 0.74 },
+    { elbow: 0, minMean: 0.95, minAcross: 0.92 },
+    { elbow: 90, minMean: 0.9, minAcross: 0.87 },
+    { elbow: 140, minMean: 0.87, minAcross: 0.74 },
   ])(
     'keeps its sleeve round however the hand is rolled, the elbow bent by $elbow°',
-    ({ elbow, leastMean, leastAside }) => {
+    ({ elbow, minMean, minAcross }) => {
       const found = rolls.map((roll) => {
         body.show({ elbow, roll });
         return body.thinnest(body.forearm);
@@ -108,8 +108,8 @@ describe('our mannequin’s arm', () => {
         mean: mean.toFixed(3),
         least: least.toFixed(3),
       });
-      expect(mean).toBeGreaterThan(leastMean);
-      expect(least).toBeGreaterThan(leastAside);
+      expect(mean).toBeGreaterThan(minMean);
+      expect(least).toBeGreaterThan(minAcross);
     },
   );
 

@@ -74,7 +74,7 @@ export class AvatarRoutes {
     const { room, identity } = await requirePass(call, this.#options.tokens);
     const taken = Math.min(maxAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
     return jsonResponse({
-      mostBytes: taken,
+      maxBytes: taken,
       elsewhere: configuration.avatarsFrom,
       yours: store.hashOf(room, identity),
     });

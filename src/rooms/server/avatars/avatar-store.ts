@@ -86,8 +86,8 @@ export class AvatarStore {
     const freed = before?.bytes.length ?? 0;
     if (this.bytes - freed + length > maxBytes) return 'full';
     const freedHere = before?.address === address ? freed : 0;
-    const mostHere = Math.max(maxAvatarBytes, shareOfAddress * maxBytes);
-    if (this.#bytesFrom(address) - freedHere + length > mostHere) return 'crowded';
+    const maxOfAddress = Math.max(maxAvatarBytes, shareOfAddress * maxBytes);
+    if (this.#bytesFrom(address) - freedHere + length > maxOfAddress) return 'crowded';
     this.#uploads.set(owner, { address, length });
     return {
       keep: (hash, bytes) => {

@@ -15,7 +15,7 @@ export interface MessageHandlerOptions {
 
 const badMessagesAllowed = 3;
 /** The most messages in a row beyond the limit; more count as an attack. */
-const mostRefusedInARow = 60;
+const maxRefusedInARow = 60;
 
 /** Returns whether a message is a join with another protocol version, from a page that was loaded before an update. */
 const isOtherVersion = (value: unknown): boolean => {
@@ -110,7 +110,7 @@ export class MessageHandler {
   /** Returns whether a message is within the client's limit. */
   #isWithin(client: Client, bucket: TokenBucket, at: number): boolean {
     if (bucket.take(at)) return true;
-    if (bucket.refusedInARow > mostRefusedInARow) this.kick(client, 'misbehaved', 'budget');
+    if (bucket.refusedInARow > maxRefusedInARow) this.kick(client, 'misbehaved', 'budget');
     return false;
   }
 

@@ -2,7 +2,7 @@ import type { Socket } from 'socket.io';
 
 /** A connection is too slow if it accepts no frame for this long [s], or if more packets than this wait. */
 const slowSeconds = 5;
-const mostWaiting = 256;
+const maxWaiting = 256;
 /** The most bytes that may wait on a connection that still receives poses: with TLS each write takes a moment. */
 export const maxQueuedBytes = 4096;
 /** Interval of the check [ms]. */
@@ -41,7 +41,7 @@ export class SlowReaders {
     for (const [conn, writableAt] of this.#writableAt) {
       const isFree = conn.transport.writable && conn.request.socket.writableLength <= maxQueuedBytes;
       if (isFree) this.#writableAt.set(conn, now);
-      if ((isFree || now - writableAt <= slowSeconds) && packetsWaiting(conn) <= mostWaiting) continue;
+      if ((isFree || now - writableAt <= slowSeconds) && packetsWaiting(conn) <= maxWaiting) continue;
       this.#writableAt.delete(conn);
       this.#end(conn);
     }

@@ -1,6 +1,6 @@
 import { checked, integerBetween, numberBetween, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { mostSimulated, type PowerRow, powerTable } from '../../statistics/power';
+import { maxSimulated, type PowerRow, powerTable } from '../../statistics/power';
 
 const given = <Schema extends v.GenericSchema<number, number>>(schema: Schema, otherwise: string) =>
   v.pipe(v.optional(v.string(), otherwise), v.transform(Number), schema);
@@ -24,7 +24,7 @@ const closeToIt = 0.05;
 /** Returns the first row at which a test reaches the power, in words. */
 function needed(rows: readonly PowerRow[], test: 't' | 'wilcoxon', power: number): string {
   const row = rows.find((one) => one[test] >= power);
-  return row ? `${row.n}` : `more than ${mostSimulated}`;
+  return row ? `${row.n}` : `more than ${maxSimulated}`;
 }
 
 function tell(): void {

@@ -9,7 +9,7 @@ import { verifyExport } from './verify-export';
 const [path = ''] = process.argv.slice(2);
 const file = basename(path);
 /** More complaints than this have one cause. */
-const mostShown = 50;
+const maxShown = 50;
 
 try {
   await loadStudyPlugins(process.env);
@@ -24,8 +24,8 @@ try {
       `${file} was exported by version ${exportedBy.version}; this is ${here.version}, which may write other columns.`,
     );
   }
-  for (const complaint of complaints.slice(0, mostShown)) console.log(`${file}: ${complaint}`);
-  if (complaints.length > mostShown) console.log(`… and ${complaints.length - mostShown} more.`);
+  for (const complaint of complaints.slice(0, maxShown)) console.log(`${file}: ${complaint}`);
+  if (complaints.length > maxShown) console.log(`… and ${complaints.length - maxShown} more.`);
   const what = `${files} files, recomputed from ${records} records`;
   console.log(complaints.length === 0 ? `${file}: sound: ${what}.` : `${file}: ${complaints.length} faults; ${what}.`);
   process.exitCode = complaints.length === 0 ? 0 : 1;

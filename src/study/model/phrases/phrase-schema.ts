@@ -39,12 +39,12 @@ const fieldOf = (language: string, key: string, form: string | null): string =>
 const braced = (names: Iterable<string>) => [...names].map((name) => `{${name}}`).join(', ');
 
 /** The letters of a keyboard, limited to the rows and keys that fit the sheet. */
-const mostKeys = { rows: 4, inRow: 12 };
+const maxKeys = { rows: 4, inRow: 12 };
 
 function refuseRows(rows: string, field: string): void {
   const found = rows.split(' ');
-  if (found.length <= mostKeys.rows && found.every((row) => [...row].length <= mostKeys.inRow)) return;
-  throw new ValidationError(field, `expected at most ${mostKeys.rows} rows of at most ${mostKeys.inRow} letters`);
+  if (found.length <= maxKeys.rows && found.every((row) => [...row].length <= maxKeys.inRow)) return;
+  throw new ValidationError(field, `expected at most ${maxKeys.rows} rows of at most ${maxKeys.inRow} letters`);
 }
 
 /** A plural form may leave the number out, as in "one record"; other texts need all their placeholders. */

@@ -19,7 +19,7 @@ export type StudyTask = StudyPlan['tasks'][number];
 export type StudyCondition = StudyPlan['conditions'][number];
 export type StudyCohort = NonNullable<StudyPlan['cohorts']>[number];
 
-const mostOrdersListed = 4;
+const maxOrdersListed = 4;
 /** Properties that all conditions set if one does: the default of the page depends on the headset. */
 const saidByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
 
@@ -198,7 +198,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   const plan = checked(planSchema, value);
   refuseRepeatedIds(plan.conditions, 'conditions');
   refuseRepeatedIds(plan.tasks, 'tasks');
-  if (plan.orders === 'all' && plan.conditions.length > mostOrdersListed) {
+  if (plan.orders === 'all' && plan.conditions.length > maxOrdersListed) {
     throw new ValidationError(
       'orders',
       `all orders of ${plan.conditions.length} conditions are more than a study can run: expected williams`,

@@ -28,7 +28,7 @@ export const commandSchema = v.variant('type', [
 export type StudyCommand = v.InferOutput<typeof commandSchema>;
 
 /** The largest recording that the server accepts [bytes]. */
-export const mostMotionBytes = 16 * 2 ** 20;
+export const maxMotionBytes = 16 * 2 ** 20;
 
 /** The receipt of a deletion, without any deleted data. */
 export interface Receipt {

@@ -2,7 +2,7 @@ import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 
 /** The most pauses of a trial; a trial with more has no clock, because gaps would make the conversion wrong. */
-export const mostTrialPauses = 200;
+export const maxTrialPauses = 200;
 
 const seconds = numberBetween(0, 1e11);
 
@@ -14,7 +14,7 @@ export const trialClockSchema = v.object({
   /** The second of the trial and the duration of each pause, in ascending order. */
   pauses: v.pipe(
     v.array(v.object({ time: seconds, seconds })),
-    v.maxLength(mostTrialPauses, `expected at most ${mostTrialPauses} pauses`),
+    v.maxLength(maxTrialPauses, `expected at most ${maxTrialPauses} pauses`),
   ),
 });
 
@@ -60,7 +60,7 @@ export class TrialSeconds {
 
   /** null: the trial has not begun, or had too many pauses. */
   get clock(): TrialClock | null {
-    if (!this.#clock || this.#pauses.length > mostTrialPauses) return null;
+    if (!this.#clock || this.#pauses.length > maxTrialPauses) return null;
     return { ...this.#clock, pauses: this.#pauses };
   }
 }

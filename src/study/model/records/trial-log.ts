@@ -6,8 +6,8 @@ import { type TrialClock, trialClockSchema } from './trial-clock';
 /** The version of trial outcomes, which increases with every change of meaning. */
 export const trialVersion = 1;
 /** The most scoring events that are kept per trial; a trial with more keeps the first ones and their number. */
-export const mostTrialEvents = 200;
-export const mostTrialStages = 16;
+export const maxTrialEvents = 200;
+export const maxTrialStages = 16;
 
 const count = integerBetween(0, 10_000_000);
 const milliseconds = numberBetween(0, 600_000);
@@ -63,7 +63,7 @@ export const outcomeSchema = v.object({
         points: numberBetween(0, 100_000),
       }),
     ),
-    v.maxLength(mostTrialEvents, `expected at most ${mostTrialEvents} events`),
+    v.maxLength(maxTrialEvents, `expected at most ${maxTrialEvents} events`),
   ),
   /** The number of events, including those that are not kept. */
   eventCount: count,
@@ -77,7 +77,7 @@ export const outcomeSchema = v.object({
         v.pipe(v.string(), v.regex(/^[a-z][a-z-]{0,31}$/, 'expected a name of small letters and hyphens')),
         stageSchema,
       ),
-      v.check((stages) => Object.keys(stages).length <= mostTrialStages, `expected at most ${mostTrialStages} stages`),
+      v.check((stages) => Object.keys(stages).length <= maxTrialStages, `expected at most ${maxTrialStages} stages`),
     ),
   }),
   device: v.object({
@@ -186,8 +186,8 @@ export class TrialLog {
     for (const [name, ms] of Object.entries(parts)) {
       let statistics = this.#stages.get(name);
       if (!statistics) {
-        if (this.#stages.size >= mostTrialStages)
-          throw new Error(`a trial logs at most ${mostTrialStages} stages, "${name}" is one more`);
+        if (this.#stages.size >= maxTrialStages)
+          throw new Error(`a trial logs at most ${maxTrialStages} stages, "${name}" is one more`);
         statistics = new DurationStatistics();
         this.#stages.set(name, statistics);
       }
@@ -216,7 +216,7 @@ export class TrialLog {
   event(event: TrialEvent): void {
     this.#counts.eventCount += 1;
     if (event.type === 'hit') this.#counts.hits += 1;
-    if (this.#events.length < mostTrialEvents) this.#events.push(event);
+    if (this.#events.length < maxTrialEvents) this.#events.push(event);
   }
 
   assist(name: string): void {

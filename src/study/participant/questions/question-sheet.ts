@@ -4,11 +4,11 @@ import { inner, margin, type Target, width } from './sheet-target';
 import type { ScreenQuestion } from './study-screen';
 
 /** The most questions for which each has a dot; otherwise their number is in the corner. */
-const mostDots = 10;
+const maxDots = 10;
 const usualTextBottom = 390;
 
 function dotTargets(question: ScreenQuestion): readonly Target[] {
-  if (question.all.length > mostDots) return [];
+  if (question.all.length > maxDots) return [];
   const step = 52;
   const left = width - margin - question.all.length * step;
   return question.all.map(({ id, state }, index) => ({
@@ -53,7 +53,7 @@ export function paintQuestion(
     optional ? `${text} ${phrases.say('question.mayStayOpen')}` : text,
     sheet.textBottom?.(field) ?? usualTextBottom,
   );
-  if (all.length > mostDots) {
+  if (all.length > maxDots) {
     context.textAlign = 'right';
     context.fillStyle = vrColors.inkSoft;
     context.font = `600 32px ${vrFont}`;

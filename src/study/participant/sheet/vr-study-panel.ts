@@ -19,9 +19,9 @@ const below = 0.12;
 /**
  * The sheet is moved in front of a participant who turns [rad], steps [m], sits down or rises [m] by more than this.
  */
-const mostTurn = 0.7;
-const mostStep = 0.8;
-const mostRise = 0.3;
+const maxTurn = 0.7;
+const maxStep = 0.8;
+const maxRise = 0.3;
 
 /** The sheet of the study in the headset, a little beyond arm's length, with targets as large as a palm. */
 export class VrStudyPanel {
@@ -107,9 +107,7 @@ export class VrStudyPanel {
     const fromZ = position.z + reach * Math.cos(rotation.y);
     const rise = y - below - position.y;
     return (
-      Math.abs(wrapAngle(turn)) >= mostTurn ||
-      Math.hypot(fromX - x, fromZ - z) >= mostStep ||
-      Math.abs(rise) >= mostRise
+      Math.abs(wrapAngle(turn)) >= maxTurn || Math.hypot(fromX - x, fromZ - z) >= maxStep || Math.abs(rise) >= maxRise
     );
   }
 

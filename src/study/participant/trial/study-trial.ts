@@ -3,7 +3,7 @@ import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { writeRecordingWithin } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
-import { mostMotionBytes } from '../../model/progress/study-api';
+import { maxMotionBytes } from '../../model/progress/study-api';
 import { TrialSeconds } from '../../model/records/trial-clock';
 import { type FrameListener, TrialLog, type TrialOutcome } from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
@@ -38,7 +38,7 @@ const afterglow = 2.5;
 const headAndWrists = ({ fingers: _, deviceBody: __, ...frame }: TrackingFrame): TrackingFrame => frame;
 
 /** The most tracking frames that are kept per trial while it is played. Uploads are limited by their size. */
-const mostMotionFrames = 40_000;
+const maxMotionFrames = 40_000;
 /** The drop of the eyes below their calibrated height that indicates a seated participant [m]. */
 const seatedDrop = 0.25;
 
@@ -171,7 +171,7 @@ export class PlayedTrial {
       this.#log.assist(`estimator fell back to ${drawn}`);
     }
     const frames = this.#frames;
-    if (frame && frames && frames.length < mostMotionFrames && time > this.#lastTime) frames.push(headAndWrists(frame));
+    if (frame && frames && frames.length < maxMotionFrames && time > this.#lastTime) frames.push(headAndWrists(frame));
     this.#lastTime = time;
   }
 
@@ -190,7 +190,7 @@ export class PlayedTrial {
     const { name: device, refreshRateHz } = this.#device;
     return writeRecordingWithin(
       { device, rateHz: refreshRateHz ?? 60, calibration: this.#calibration, frames },
-      mostMotionBytes,
+      maxMotionBytes,
     );
   }
 }

@@ -23,9 +23,9 @@ export interface ExportOrder {
 export type Exporter = (order: ExportOrder) => Promise<Uint8Array>;
 
 /** The most exports that wait for the present one. Each holds a connection and an answer. */
-const mostWaiting = 8;
+const maxWaiting = 8;
 /** The most that is read of the error output of a process [characters]. */
-const mostComplaint = 10_000;
+const maxErrorOutput = 10_000;
 
 function started(file: string, order: ExportOrder): ChildProcess {
   const script = fileURLToPath(new URL('./study-export-worker.mjs', import.meta.url));
@@ -42,7 +42,7 @@ function zipInProcess(file: string, order: ExportOrder): Promise<Uint8Array> {
   let complaint = '';
   child.stdout?.on('data', (chunk: Buffer) => chunks.push(chunk));
   child.stderr?.on('data', (chunk: Buffer) => {
-    complaint = `${complaint}${chunk}`.slice(-mostComplaint);
+    complaint = `${complaint}${chunk}`.slice(-maxErrorOutput);
   });
   return new Promise((resolve, reject) => {
     const fail = (error: Error) => {
@@ -64,7 +64,7 @@ export function createExporter(file: string): Exporter {
   let last: Promise<unknown> = Promise.resolve();
   let waiting = 0;
   return async (order) => {
-    if (waiting >= mostWaiting) {
+    if (waiting >= maxWaiting) {
       throw new StoreRefusal('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
     }
     waiting += 1;

@@ -12,13 +12,13 @@ import type { StudyStore } from '../storage/store';
 import { exporting, exportOf } from './export-routes';
 import { bodyLimits, type Handle, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
 
-export const mostRecordsAtOnce = 200;
+export const maxRecordsAtOnce = 200;
 
 const batchSchema = v.object({
   records: v.pipe(
     v.array(v.unknown(), 'expected a list'),
     v.minLength(1, 'expected at least one record'),
-    v.maxLength(mostRecordsAtOnce, `expected at most ${mostRecordsAtOnce} records`),
+    v.maxLength(maxRecordsAtOnce, `expected at most ${maxRecordsAtOnce} records`),
   ),
 });
 

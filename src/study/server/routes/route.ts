@@ -2,14 +2,14 @@ import type { ClientAddress } from 'threepoint-http/client-address';
 import type { HttpResponse } from 'threepoint-http/response';
 import type { Route } from 'threepoint-http/router';
 import type { Software } from 'threepoint-http/software-version';
-import { mostMotionBytes } from '../../model/progress/study-api';
+import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
 import type { StudyStore } from '../storage/store';
 import type { Concerned, StudyAccess, StudyGuard } from './guard';
 import type { StudySeats } from './seats';
 
 /** The largest bodies [bytes]. */
-export const bodyLimits = { json: 512 * 1024, motion: mostMotionBytes } as const;
+export const bodyLimits = { json: 512 * 1024, motion: maxMotionBytes } as const;
 
 const prefix = '/api/studies';
 

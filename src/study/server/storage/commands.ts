@@ -3,7 +3,7 @@ import type { StudyPlaces } from './places';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
 
-export const mostCommandsPerParticipant = 10_000;
+export const maxCommandsPerParticipant = 10_000;
 
 /** The commands of experimenters to participants' pages. */
 export class StudyCommands {
@@ -22,8 +22,8 @@ export class StudyCommands {
         'SELECT count(*) AS count FROM commands WHERE study = ? AND participant = ?',
         ...[study, participant],
       );
-      if (count >= mostCommandsPerParticipant) {
-        throw new StoreRefusal('full', `${participant} was sent ${mostCommandsPerParticipant} commands already`);
+      if (count >= maxCommandsPerParticipant) {
+        throw new StoreRefusal('full', `${participant} was sent ${maxCommandsPerParticipant} commands already`);
       }
       const { number } = this.#database.getOne<{ number: number }>(
         'INSERT INTO commands (study, participant, command, at) VALUES (?, ?, ?, ?) RETURNING number',

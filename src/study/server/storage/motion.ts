@@ -25,7 +25,7 @@ export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionF
 });
 
 /** The limit of compressed recordings per participant [bytes]. */
-export const mostMotionPerParticipant = 256 * 2 ** 20;
+export const maxMotionPerParticipant = 256 * 2 ** 20;
 
 /** The recordings of trials of participants who consented to them. */
 export class StudyMotion {
@@ -55,7 +55,7 @@ export class StudyMotion {
         'SELECT coalesce(sum(length(gzipped)), 0) AS bytes FROM motion WHERE study = ? AND participant = ?',
         ...[study, participant],
       );
-      if (bytes + gzipped.length > mostMotionPerParticipant) {
+      if (bytes + gzipped.length > maxMotionPerParticipant) {
         throw new StoreRefusal('full', `${participant} has ${bytes} bytes of motion already`);
       }
       this.#database.run(

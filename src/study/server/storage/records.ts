@@ -4,7 +4,7 @@ import type { StudyPlans } from './plans';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
 
-export const mostRecordsPerParticipant = 10_000;
+export const maxRecordsPerParticipant = 10_000;
 
 /** The prefix of the ids of the experimenter's remarks. */
 const remarkPrefix = 'experimenter-';
@@ -111,8 +111,8 @@ export class StudyRecords {
       if (stored.record === text) return false;
       throw new StoreRefusal('conflict', `${participant} has stored something else as "${id}" already`);
     }
-    if (this.count(study, participant) >= mostRecordsPerParticipant) {
-      throw new StoreRefusal('full', `${participant} has ${mostRecordsPerParticipant} records already`);
+    if (this.count(study, participant) >= maxRecordsPerParticipant) {
+      throw new StoreRefusal('full', `${participant} has ${maxRecordsPerParticipant} records already`);
     }
     this.#database.run(
       'INSERT INTO records (study, participant, id, record, received_at) VALUES (?, ?, ?, ?, ?)',

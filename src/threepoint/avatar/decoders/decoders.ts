@@ -5,7 +5,7 @@ import type { Decoders } from '../load-avatar';
 import type { DracoRequest, DracoResponse } from './draco-worker';
 import { WorkerClient } from './worker-client';
 
-const mostNumbers = avatarLimits.triangles * 3;
+const maxNumbers = avatarLimits.triangles * 3;
 
 type DracoWorker = WorkerClient<DracoRequest, DracoResponse>;
 
@@ -42,7 +42,7 @@ function dracoInWorker() {
   return {
     preload: () => undefined,
     decodeDracoFile(...[packed, onLoad, ids, types, , onError]: DracoCall): void {
-      geometryOf(worker, { packed, ids, types, maxNumbers: mostNumbers }).then(onLoad, onError);
+      geometryOf(worker, { packed, ids, types, maxNumbers }).then(onLoad, onError);
     },
   };
 }

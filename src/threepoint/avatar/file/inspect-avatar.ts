@@ -52,7 +52,7 @@ const numbersOf: Readonly<Record<string, number>> = {
   MAT4: 16,
 };
 /** The largest fraction of JSON in a file's bytes. */
-const mostJson = 0.25;
+const maxJsonFraction = 0.25;
 
 const ktx2Advice =
   'has KTX2 textures, which this page does not read. Convert them to PNG, JPEG or WebP and save it again.';
@@ -97,7 +97,7 @@ export function inspectAvatar(
   limit('MB', bytes.length / 2 ** 20, limits.megabytes);
   const chunks = readGlbChunks(bytes);
   if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
-  limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * mostJson);
+  limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * maxJsonFraction);
   let json: unknown;
   let uris: readonly string[];
   try {

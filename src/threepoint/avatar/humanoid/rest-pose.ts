@@ -11,7 +11,7 @@ const up = new Vector3(0, 1, 0);
 const down = new Vector3(0, -1, 0);
 
 /** The largest lean of a body at rest [rad]; a larger one is a rotated scene. */
-const mostLean = 0.6;
+const maxLean = 0.6;
 /** The range of plausible heights [m]; other bodies are in another unit and are scaled to the default height. */
 const smallest = 0.4;
 const largest = 4;
@@ -47,7 +47,7 @@ function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
   const x = toLeft.clone().addScaledVector(y, -toLeft.dot(y)).normalize();
   const exact = new Matrix4().makeBasis(x, y, x.clone().cross(y)).transpose();
   const [nearest = exact] = axisRotations().sort((a, b) => between(a, exact) - between(b, exact));
-  return between(nearest, exact) < mostLean ? nearest : exact;
+  return between(nearest, exact) < maxLean ? nearest : exact;
 }
 
 /**

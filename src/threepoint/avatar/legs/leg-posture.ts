@@ -182,9 +182,9 @@ export class LegPosture {
     copyVec3(hips.position, lastHips);
     this.lastHipsYaw = hipsYaw;
     this.lastHeadYaw = headYaw;
-    const mostTurn = Math.min(fastestTurn * Math.max(deltaSeconds, shortestFrame), furthestTurn);
+    const maxTurn = Math.min(fastestTurn * Math.max(deltaSeconds, shortestFrame), furthestTurn);
     // The heading of head or hips alone may jump where it is badly defined.
-    return Math.sqrt(x * x + z * z) > longestWay * this.stance.legLength || Math.min(hipsTurn, headTurn) > mostTurn;
+    return Math.sqrt(x * x + z * z) > longestWay * this.stance.legLength || Math.min(hipsTurn, headTurn) > maxTurn;
   }
 
   private standUp(): void {

@@ -51,7 +51,7 @@ const shortestStance = 0.04;
 /** The longest time of a foot in the air: with arms held high the estimate is a jump that never ends. */
 const longestSwing = 0.8;
 /** The distance of a goal [leg lengths] below which a foot takes no step. */
-const leastWay = 0.05;
+const minStepDistance = 0.05;
 /**
  * The distance of a goal [leg lengths], or its turn [rad], beyond which a foot is left behind, and the duration of its
  * step.
@@ -69,7 +69,7 @@ const liftShare = 0.09;
 /** The time [s] in which a lifted foot reaches its full speed. */
 const takeOff = 0.12;
 /** The smallest lift of a foot in the air: one that moves along the floor skates. */
-const leastLift = 0.4;
+const minLift = 0.4;
 const velocityHalfLife = 0.05;
 const liftHalfLife = 0.03;
 /**
@@ -77,7 +77,7 @@ const liftHalfLife = 0.03;
  * toes.
  */
 const ballAhead = 1.6;
-const mostTilt = 0.35;
+const maxTilt = 0.35;
 
 const makeFoot = (): FootState => ({
   position: vec3(0, 0, 0),
@@ -130,7 +130,7 @@ function advance(foot: FootState, goal: ExpectedFoot, stance: Stance, deltaSecon
   // Toes point down while the foot rises and up before it lands.
   const tilt = clamp((foot.height - before) / deltaSeconds, -0.4, 0.8) * 0.6;
   const free = (0.5 * foot.height) / (ballAhead * stance.ankleHeight);
-  foot.pitch = Math.min(damp(foot.pitch, clamp(tilt, -mostTilt, mostTilt), velocityHalfLife, deltaSeconds), free);
+  foot.pitch = Math.min(damp(foot.pitch, clamp(tilt, -maxTilt, maxTilt), velocityHalfLife, deltaSeconds), free);
   if (foot.planted) foot.pitch = Math.max(foot.pitch, -free);
 }
 
@@ -138,7 +138,7 @@ function liftWhereDue(foot: FootState, goal: ExpectedFoot, { legLength }: Stance
   const x = goal.x - foot.position.x;
   const z = goal.z - foot.position.z;
   const way = Math.sqrt(x * x + z * z) / legLength;
-  const lifts = foot.standing < liftBelow && foot.seconds > shortestStance && way > leastWay;
+  const lifts = foot.standing < liftBelow && foot.seconds > shortestStance && way > minStepDistance;
   const far = way > farthest || Math.abs(wrapAngle(goal.yaw - foot.yaw)) > turnLimit;
   if (!lifts && !far) return;
   foot.planted = false;
@@ -157,7 +157,7 @@ function plantWhereDue(foot: FootState): void {
 function liftOf(foot: FootState, { legLength }: Stance): number {
   const highest = liftShare * legLength;
   if (foot.leftBehind) return 0.6 * highest * Math.sin(Math.PI * Math.min(1, foot.seconds / ownStep));
-  return highest * clamp((1.5 * (plantAbove - foot.standing)) / plantAbove, leastLift, 1);
+  return highest * clamp((1.5 * (plantAbove - foot.standing)) / plantAbove, minLift, 1);
 }
 
 function swing(foot: FootState, goal: ExpectedFoot, deltaSeconds: number): void {

@@ -83,7 +83,7 @@ function endsOfPart({ geometry }: Mesh, part: SkinPart | 'hips'): Readonly<Recor
 }
 
 /** The maximum number of vertices that are read for a head's height; hair has many. */
-const mostCorners = 1500;
+const maxCorners = 1500;
 
 /** Returns the height of the head's skin and its descendants at rest [m], in the rig's frame. */
 function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): number {
@@ -91,7 +91,7 @@ function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): numbe
   const place = new Vector3();
   for (const { mesh, ends } of meshes) {
     if (mesh instanceof SkinnedMesh) {
-      const step = Math.max(1, Math.ceil((ends.head - ends.hands) / mostCorners));
+      const step = Math.max(1, Math.ceil((ends.head - ends.hands) / maxCorners));
       for (let corner = ends.hands; corner < ends.head; corner += step) {
         const vertex = mesh.geometry.index?.getX(corner) ?? 0;
         top = Math.max(top, mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).y);

@@ -73,8 +73,8 @@ const trunkBones: ReadonlySet<string> = new Set([
 /** The rotation from a VRM at rest, facing +Z, to the T-pose facing −Z. */
 const ourFacing: Quat = fromAxisAngle(up, Math.PI);
 /** The limits of a bone's stretch [fraction of its length]. */
-const mostStretch = 3;
-const leastStretch = 0.3;
+const maxStretch = 3;
+const minStretch = 0.3;
 
 const unitScale = new Vector3(1, 1, 1);
 const scaling = new Vector3();
@@ -150,7 +150,7 @@ export class Rig {
     const bone = this.bones.get(name);
     if (!bone) return;
     const { stretch, direction, ownLength, restScale } = bone;
-    const factor = ownLength <= 1e-4 ? 1 : Math.min(mostStretch, Math.max(leastStretch, length / ownLength));
+    const factor = ownLength <= 1e-4 ? 1 : Math.min(maxStretch, Math.max(minStretch, length / ownLength));
     setStretch(stretch, direction, factor, this.scale).multiply(restScale);
   }
 

@@ -6,7 +6,7 @@ import type { Vec3 } from '../../core/math/vec3';
 /** The time step of hair and skirts [s]; the bones that carry them move in every frame. */
 const stepSeconds = 1 / 30;
 /** The maximum number of steps in one frame: on a slow page hair moves slower, and a pause adds no motion. */
-const mostSteps = 2;
+const maxSteps = 2;
 /** VRM's drag is a fraction per step, and files are made for 60 steps a second. */
 const authoredSteps = 60;
 /** The largest motion of a head in the world in one frame [m, rad]; a larger one is a teleport or recentring. */
@@ -84,8 +84,8 @@ export class Springs {
       springs.reset();
       return;
     }
-    this.#due = Math.min(this.#due + deltaSeconds, (mostSteps + 1) * stepSeconds);
-    for (let step = 0; step < mostSteps && this.#due >= stepSeconds; step++) {
+    this.#due = Math.min(this.#due + deltaSeconds, (maxSteps + 1) * stepSeconds);
+    for (let step = 0; step < maxSteps && this.#due >= stepSeconds; step++) {
       this.#due -= stepSeconds;
       springs.update(stepSeconds);
     }

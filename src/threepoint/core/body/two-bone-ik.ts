@@ -47,7 +47,7 @@ export function elbowCircle(
 ): ElbowCircle {
   const { axis, centre } = target;
   subtract(wrist, shoulder, axis);
-  const span = clamp(length(axis), Math.abs(upper - lower) + limits.mostBent, (upper + lower) * limits.straightest);
+  const span = clamp(length(axis), Math.abs(upper - lower) + limits.maxBent, (upper + lower) * limits.straightest);
   normalise(axis, fallbackAxis, axis);
   const along = (upper * upper - lower * lower + span * span) / (2 * span);
   target.span = span;

@@ -25,11 +25,11 @@ const longestChain = 16;
 /** A limb has at least this share of the skeleton's longest chain. */
 const shortestLimb = 0.12;
 /** Pairs that are compared with one another. */
-const mostPairs = 24;
-const mostBranches = 60;
+const maxPairs = 24;
+const maxBranches = 60;
 
 /** A chain bends at a joint by less than this where the joint only divides a bone [rad]. */
-const leastBend = 0.02;
+const minBend = 0.02;
 
 /** Whether a joint of a chain only divides a bone, as twist bones do: the chain is straight there. */
 function isInLine(tree: JointTree, chain: readonly number[], at: number): boolean {
@@ -39,7 +39,7 @@ function isInLine(tree: JointTree, chain: readonly number[], at: number): boolea
     subtract(tree.position(here), tree.position(before)),
     subtract(tree.position(after), tree.position(here)),
   ];
-  return dot(near, far) > 0 && length(cross(near, far)) < leastBend * length(near) * length(far);
+  return dot(near, far) > 0 && length(cross(near, far)) < minBend * length(near) * length(far);
 }
 
 /** The three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
@@ -175,7 +175,7 @@ export function findPairs(tree: JointTree, kind: LimbKind, short = false): reado
     );
     if (branches.length < 2) continue;
     const limbs = branches
-      .slice(0, mostBranches)
+      .slice(0, maxBranches)
       .flatMap((child) => (short ? shortLimb(tree, child) : findLimb(tree, child, kind)) ?? []);
     for (const [i, a] of limbs.entries())
       for (const b of limbs.slice(i + 1)) {
@@ -183,5 +183,5 @@ export function findPairs(tree: JointTree, kind: LimbKind, short = false): reado
         if (pair) pairs.push(pair);
       }
   }
-  return pairs.sort((a, b) => b.score - a.score).slice(0, mostPairs);
+  return pairs.sort((a, b) => b.score - a.score).slice(0, maxPairs);
 }

@@ -43,7 +43,7 @@ export interface HumanoidMatch {
 }
 
 /** Below this confidence a skeleton is refused. */
-export const leastConfidence = 0.45;
+export const minConfidence = 0.45;
 
 /** The confidence of a bone whose name means another part. */
 const contradicted = 0.3;
@@ -339,7 +339,7 @@ export const matchHumanoid = (joints: readonly SkeletonJoint[]): HumanoidMatch =
 /** Returns why a skeleton is refused, as a sentence with what was found and what is missing; null: it is taken. */
 export function humanoidComplaint({ missing, confidence, found }: HumanoidMatch): string | null {
   if (missing.length > 0) return `its bones could not be matched to a humanoid: ${found}; no ${missing.join(', no ')}`;
-  return confidence < leastConfidence
+  return confidence < minConfidence
     ? `its bones could not be matched to a humanoid with confidence: ${found}, against their names`
     : null;
 }

@@ -30,11 +30,11 @@ export interface StandingJoints {
 }
 
 /** A body at rest leans or slouches less than this [rad]: more is another pose. */
-const mostLean = 0.6;
+const maxLean = 0.6;
 /** The cosine to the vertical above which a trunk stands. */
 const standing = 0.7;
 /** Frames that are looked at to find how a clip stands. */
-const mostSamples = 300;
+const maxSamples = 300;
 
 const axisNames = Object.keys(directions) as FileAxis[];
 
@@ -72,13 +72,13 @@ export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turne
     if (!(length(across) > 0.05 * size)) continue;
     const vertical = nearestAxis(above);
     if (turned) {
-      const upward = dot(vertical, above) > Math.cos(mostLean) ? vertical : above;
+      const upward = dot(vertical, above) > Math.cos(maxLean) ? vertical : above;
       const level = normalise(reject(across, upward), zero);
       return { turn: floorFromAxes(upward, cross(upward, level)), axes: null };
     }
     const exact = floorFromAxes(above, cross(above, normalise(across, zero)));
     const nearest = rightAngles.reduce((a, b) => (angleBetween(b.turn, exact) < angleBetween(a.turn, exact) ? b : a));
-    return angleBetween(nearest.turn, exact) < mostLean
+    return angleBetween(nearest.turn, exact) < maxLean
       ? { turn: nearest.turn, axes: { above: nearest.above, ahead: nearest.ahead } }
       : { turn: exact, axes: null };
   }
@@ -90,7 +90,7 @@ export const trunkWay = (positions: readonly Vec3[], { hips, neck }: StandingJoi
   normalise(subtract(positions[neck]!, positions[hips]!), zero);
 
 /** Yields some frames of a clip, evenly. */
-export function* sampledFrames(frameCount: number, most = mostSamples): Generator<number> {
+export function* sampledFrames(frameCount: number, most = maxSamples): Generator<number> {
   const step = Math.max(1, Math.ceil(frameCount / most));
   for (let frame = 0; frame < frameCount; frame += step) yield frame;
 }

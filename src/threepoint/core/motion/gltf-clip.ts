@@ -33,8 +33,8 @@ import { createJointPoses, type FileMotion, type JointPoses } from './file-motio
 /** A clip of glTF has no rate of its own: it is read at this one [Hz]. */
 const rateHz = 60;
 /** Two and a half hours. */
-const mostFrames = 540_000;
-const mostNodes = 5000;
+const maxFrames = 540_000;
+const maxNodes = 5000;
 
 /** By how much a time in single precision may be too small, as a share of it. */
 const precision = 2 ** -23;
@@ -78,7 +78,7 @@ export function decompose(matrix: readonly number[]): Pick<Node, 'translation' |
 
 function nodesOf(description: Json): Node[] {
   const given = objects(description.nodes);
-  if (given.length > mostNodes) throw new Error(`more than ${mostNodes} nodes: not a human skeleton`);
+  if (given.length > maxNodes) throw new Error(`more than ${maxNodes} nodes: not a human skeleton`);
   const nodes = given.map(({ translation, rotation, scale, matrix }, i): Node => {
     const place =
       matrix === undefined
@@ -262,7 +262,7 @@ export class GltfClip {
     this.#scene = new Scene(this.nodes, this.order);
     const duration = readTracks(description, binary, this.nodes, animation);
     this.frameCount = Math.floor(duration * (1 + precision) * rateHz + 1e-6) + 1;
-    if (!(this.frameCount <= mostFrames))
+    if (!(this.frameCount <= maxFrames))
       throw new Error(`it lasts ${Math.round(duration)} s; a person's motion here may last 9000`);
   }
 

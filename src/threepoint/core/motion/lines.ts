@@ -1,9 +1,9 @@
-const mostShown = 40;
+const maxShown = 40;
 /** No line of a motion file is longer [characters]. */
 const longestLine = 2 ** 20;
 
 /** What a file says, as sentences quote it. */
-export const shown = (text: string): string => `“${text.length > mostShown ? `${text.slice(0, mostShown)}…` : text}”`;
+export const shown = (text: string): string => `“${text.length > maxShown ? `${text.slice(0, maxShown)}…` : text}”`;
 
 /** A word of a line and the column [from 1] at which it begins. */
 export interface Word {

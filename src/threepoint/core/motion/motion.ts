@@ -52,7 +52,7 @@ export function poseBones(motion: Motion, frame: number, target: JointPoses): Jo
 }
 
 /** Frames that a file of an even rate may have: two and a half hours at 120 Hz. */
-const mostFrames = 1_080_000;
+const maxFrames = 1_080_000;
 const framesPerStep = 64;
 
 /**
@@ -64,8 +64,8 @@ export function* resampleMotion(motion: Motion, rateHz: number): Generator<numbe
   if (!(rateHz >= 1 && rateHz <= 1000)) throw new Error(`A rate of ${rateHz} Hz is not one from 1 to 1000.`);
   const duration = times.at(-1)!;
   const count = Math.floor(duration * rateHz + 1e-6) + 1;
-  if (!(count <= mostFrames))
-    throw new Error(`The motion lasts ${Math.round(duration)} s, at ${rateHz} Hz more than ${mostFrames} frames.`);
+  if (!(count <= maxFrames))
+    throw new Error(`The motion lasts ${Math.round(duration)} s, at ${rateHz} Hz more than ${maxFrames} frames.`);
   const even: Motion = {
     ...motion,
     rateHz,

@@ -28,7 +28,7 @@ export interface AsfSkeleton {
 }
 
 /** No skeleton of a person has as many. */
-const mostBones = 2000;
+const maxBones = 2000;
 const axes = { x: right, y: up, z: backward };
 const turn = quat(0, 0, 0, 1);
 
@@ -91,7 +91,7 @@ class Sections {
       const bone = rawBone(this.#lines, words[0]!, this.#block);
       this.bones.set(bone.name, bone);
       this.#block = null;
-      if (this.bones.size > mostBones) this.#lines.fail(1, `more than ${mostBones} bones: not a human skeleton`);
+      if (this.bones.size > maxBones) this.#lines.fail(1, `more than ${maxBones} bones: not a human skeleton`);
     } else if (['direction', 'length', 'axis'].includes(first)) {
       this.#block?.set(first, words);
       numbersOf(this.#lines, words, first === 'length' ? 1 : 3);

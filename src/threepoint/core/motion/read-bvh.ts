@@ -35,7 +35,7 @@ export interface BvhMotion {
 }
 
 /** No skeleton of a person has as many. */
-const mostJoints = 5000;
+const maxJoints = 5000;
 const linesPerStep = 64;
 
 interface OpenJoint {
@@ -100,7 +100,7 @@ function readHierarchy(lines: Lines): readonly OpenJoint[] {
       pending = `${top(column, 'End Site').name}:end`;
     } else if (keyword === '{') {
       if (pending === null) lines.fail(column, '“{” without a joint before it');
-      if (joints.length >= mostJoints) lines.fail(column, `more than ${mostJoints} joints: not a human skeleton`);
+      if (joints.length >= maxJoints) lines.fail(column, `more than ${maxJoints} joints: not a human skeleton`);
       joints.push({ name: pending, parent: stack.at(-1) ?? -1, offset: vec3(0, 0, 0), channels: [] });
       stack.push(joints.length - 1);
       pending = null;

@@ -36,7 +36,7 @@ const deadZone = 0.02;
  */
 const grownDeadZone = 0.005;
 /** The largest growth as a share of the measured eye height: a user who rises further stands on something. */
-const mostGrowth = 0.08;
+const maxGrowth = 0.08;
 /** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
 
@@ -63,7 +63,7 @@ export function createGrowthDetector(): GrowthDetector {
     current = calibration;
     measured = calibration.eyeHeight;
     // The height of a user with the default body is unknown if they have been sitting: any height is possible.
-    highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + mostGrowth);
+    highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + maxGrowth);
     const { eyesInHead } = skeletonFromCalibration(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
     levelRise = eyesInHead.y;

@@ -63,12 +63,12 @@ export const writeRecording = (recording: Replayable): string =>
   writeRecordingWithin(recording, Number.POSITIVE_INFINITY).text;
 
 /**
- * Returns a recording file with as many of the first frames as fit into `mostBytes` bytes of UTF-8, at least one, and
+ * Returns a recording file with as many of the first frames as fit into `maxBytes` bytes of UTF-8, at least one, and
  * their number.
  */
 export function writeRecordingWithin(
   { device, rateHz, calibration, frames }: Replayable,
-  mostBytes: number,
+  maxBytes: number,
 ): { readonly text: string; readonly frames: number } {
   let hasBody = false;
   const pose = (tracked: TrackedPose | null) =>
@@ -95,7 +95,7 @@ export function writeRecordingWithin(
   for (const frame of frames) {
     const written = line(frame);
     bytes += written.length + ',\n'.length;
-    if (lines.length > 0 && bytes > mostBytes) break;
+    if (lines.length > 0 && bytes > maxBytes) break;
     hasBody ||= frame.deviceBody !== undefined;
     lines.push(written);
   }

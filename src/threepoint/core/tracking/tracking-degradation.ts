@@ -10,7 +10,7 @@ import type { TrackingFrame } from './tracking-frame';
 
 /** The degradation of tracking that a study applies on purpose, to measure its effect on people. */
 export interface TrackingImpairments {
-  /** The added latency [ms], up to `mostLatencyMs`. */
+  /** The added latency [ms], up to `maxLatencyMs`. */
   readonly latencyMs?: number;
   /** Normal noise, drawn for every frame: standard deviation along and about each axis. */
   readonly trackerNoise?: { readonly positionMm: number; readonly rotationDegrees: number };

@@ -19,18 +19,18 @@ export const settled = 144;
 /** Frames that are looked at after those. */
 export const watched = 30;
 /** The largest step of a joint of a still person from frame to frame after two seconds [m]. */
-const mostTremble = 1e-4;
+const maxTremble = 1e-4;
 /**
  * An elbow whose side is hardly defined still settles then, with a half-life of at most 0.35 s: the largest of its
  * first steps [m].
  */
-const mostSettling = 5e-4;
+const maxSettling = 5e-4;
 /** The largest distance of a hand within reach from its controller [m]. */
-const mostOff = 1e-3;
+const maxHandError = 1e-3;
 /**
  * A joint of a person whose hands move slowly goes at most this much further [m] in a frame than three times the hands.
  */
-const mostBeyond = 0.002;
+const maxBeyond = 0.002;
 
 const tracked = (position: Vec3, orientation: Quat): TrackedPose => ({ position, orientation, tracking: 'tracked' });
 
@@ -150,13 +150,13 @@ export function expectStill(drawn: readonly Joints[], { withinReach, frame }: St
   for (const joint of jointNames) {
     const steps = drawn.slice(1).map((joints, i) => distance(joints[joint].position, drawn[i]![joint].position));
     const most = Math.max(...steps);
-    const settles = joint.endsWith('LowerArm') && most < mostSettling && steps.at(-1)! < 0.6 * steps[0]!;
-    if (!settles) expect(most, joint).toBeLessThan(mostTremble);
+    const settles = joint.endsWith('LowerArm') && most < maxSettling && steps.at(-1)! < 0.6 * steps[0]!;
+    if (!settles) expect(most, joint).toBeLessThan(maxTremble);
   }
   if (!withinReach) return;
   const { leftHand, rightHand } = frame(0);
-  expect(distance(drawn[0]!.leftHand.position, leftHand!.position)).toBeLessThan(mostOff);
-  expect(distance(drawn[0]!.rightHand.position, rightHand!.position)).toBeLessThan(mostOff);
+  expect(distance(drawn[0]!.leftHand.position, leftHand!.position)).toBeLessThan(maxHandError);
+  expect(distance(drawn[0]!.rightHand.position, rightHand!.position)).toBeLessThan(maxHandError);
 }
 
 /**
@@ -164,5 +164,5 @@ export function expectStill(drawn: readonly Joints[], { withinReach, frame }: St
  */
 export function expectSlow(drawn: readonly Joints[]): void {
   const steps = drawn.slice(1).map((joints, i) => apart(joints, drawn[i]!));
-  expect(Math.max(...steps)).toBeLessThan(3 * slowStep + mostBeyond);
+  expect(Math.max(...steps)).toBeLessThan(3 * slowStep + maxBeyond);
 }

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { neededBones } from 'threepoint/core/humanoid/bones';
 import type { SkeletonJoint } from 'threepoint/core/humanoid/joint-tree';
-import { humanoidComplaint, leastConfidence, matchHumanoid } from 'threepoint/core/humanoid/match-humanoid';
+import { humanoidComplaint, matchHumanoid, minConfidence } from 'threepoint/core/humanoid/match-humanoid';
 import { normaliseQuat, quat, rotate } from 'threepoint/core/math/quat';
 import { distance, lerp, scale } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
@@ -25,7 +25,7 @@ describe.each(rigs)('the skeleton of $name', ({ name, joints, bones }) => {
     expect(named(joints)).toMatchObject(expected);
     expect(humanoidComplaint(match)).toBeNull();
     expect(match.notes).toEqual([]);
-    expect(match.confidence).toBeGreaterThan(leastConfidence + 0.1);
+    expect(match.confidence).toBeGreaterThan(minConfidence + 0.1);
   });
 
   test('has its hips, spine, head, arms and legs under any names', () => {

@@ -133,10 +133,10 @@ describe('a recording', () => {
 
   test('that is cut begins as the whole does, in no more bytes than are allowed but for its first frame', () => {
     fc.assert(
-      fc.property(recording, fc.integer({ min: 0, max: 8000 }), (whole, mostBytes) => {
-        const { text, frames } = writeRecordingWithin(whole, mostBytes);
+      fc.property(recording, fc.integer({ min: 0, max: 8000 }), (whole, maxBytes) => {
+        const { text, frames } = writeRecordingWithin(whole, maxBytes);
         expect(parseRecording(text).frames).toEqual(parseRecording(writeRecording(whole)).frames.slice(0, frames));
-        if (frames > 1) expect(new TextEncoder().encode(text).length).toBeLessThanOrEqual(mostBytes);
+        if (frames > 1) expect(new TextEncoder().encode(text).length).toBeLessThanOrEqual(maxBytes);
       }),
       { seed },
     );

@@ -13,7 +13,7 @@ import {
   scaleInWords,
 } from './scale-kind';
 
-const mostPoints = 101;
+const maxPoints = 101;
 
 const schema = v.strictObject({
   kind: v.literal('likert'),
@@ -51,7 +51,7 @@ export const likert: QuestionKind<LikertForm> = {
   kind: 'likert',
   schema,
   check(form, field) {
-    checkSteps(scaleOf(form), mostPoints - 1, field);
+    checkSteps(scaleOf(form), maxPoints - 1, field);
     const points = likertPoints(form).length;
     if (form.labels && form.labels.length !== points) {
       throw new ValidationError(

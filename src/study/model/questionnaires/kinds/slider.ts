@@ -13,7 +13,7 @@ import {
   scaleInWords,
 } from './scale-kind';
 
-const mostSteps = 200;
+const maxSteps = 200;
 
 const schema = v.strictObject({
   kind: v.literal('slider'),
@@ -41,7 +41,7 @@ export const sliderValues = (form: SliderForm): readonly number[] => pointsOn(sc
 export const slider: QuestionKind<SliderForm> = {
   kind: 'slider',
   schema,
-  check: (form, field) => checkSteps(scaleOf(form), mostSteps, field),
+  check: (form, field) => checkSteps(scaleOf(form), maxSteps, field),
   answer: (form) => numberOn(scaleOf(form)),
   range: ({ from, to }) => [from, to],
   options: () => null,

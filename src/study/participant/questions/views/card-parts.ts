@@ -14,7 +14,7 @@ export interface ScreenEnds {
 }
 
 /** A scale with more points shows no numbers, on the card as on the sheet, as on the paper form of NASA-TLX. */
-export const mostNumbered = 11;
+export const maxNumberedPoints = 11;
 
 /** Returns the node with the texts below the ends of a scale. */
 export const endNodes = ({ low, high }: ScreenEnds): HTMLElement =>

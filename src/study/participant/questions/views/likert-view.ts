@@ -3,7 +3,7 @@ import { inLanguage } from '../../../model/phrases/words';
 import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
-import { endNodes, mostNumbered, radios, type ScreenEnds, type ScreenPoint } from './card-parts';
+import { endNodes, maxNumberedPoints, radios, type ScreenEnds, type ScreenPoint } from './card-parts';
 import { paintEnds } from './sheet-parts';
 
 /** A row of points. */
@@ -36,7 +36,7 @@ export const likertView: QuestionView<LikertForm, LikertField> = {
     choose,
   }),
   card({ points, ends, answer, choose }, id) {
-    const many = points.length > mostNumbered;
+    const many = points.length > maxNumberedPoints;
     const endOf = (index: number) => (index === 0 ? ends?.low : index === points.length - 1 ? ends?.high : undefined);
     const choices = radios({
       ...{ name: id, points, answer, choose },
@@ -55,13 +55,13 @@ export const likertView: QuestionView<LikertForm, LikertField> = {
   },
   sheet: {
     targets({ points, ends, answer, choose }) {
-      const gap = points.length > mostNumbered ? 6 : 18;
+      const gap = points.length > maxNumberedPoints ? 6 : 18;
       const wide = (inner - gap * (points.length - 1)) / points.length;
       return points.map(({ value, label }, index) => ({
         kind: 'scale',
         id: `answer-${value}`,
         label,
-        figure: points.length > mostNumbered ? '' : String(value).replace('-', '−'),
+        figure: points.length > maxNumberedPoints ? '' : String(value).replace('-', '−'),
         look: answer === value ? 'chosen' : 'plain',
         at: [margin + index * (wide + gap), 410, wide, ends ? 150 : 190],
         act: () => choose(value),

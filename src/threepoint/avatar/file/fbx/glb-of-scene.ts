@@ -36,7 +36,7 @@ const shortType = 5123;
 const wideType = 5125;
 /** Vertices that are closer than this are one [share of the size of their mesh, at most as much in its unit]. */
 const sameVertex = 1e-6;
-const mostApart = 1e-4;
+const maxVertexDistance = 1e-4;
 /** Skin and cloth, where the file has no such measure. */
 const roughness = 0.8;
 
@@ -269,7 +269,7 @@ function whole(geometry: BufferGeometry): BufferGeometry | null {
     .setFromBufferAttribute(position as BufferAttribute)
     .getSize(new Vector3())
     .length();
-  return mergeVertices(geometry, Math.min(mostApart, size * sameVertex) || mostApart);
+  return mergeVertices(geometry, Math.min(maxVertexDistance, size * sameVertex) || maxVertexDistance);
 }
 
 function boundsOf(attribute: BufferAttribute): object {

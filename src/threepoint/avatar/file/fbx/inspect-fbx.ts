@@ -5,18 +5,18 @@ const headerLength = 27;
 const latin = new TextDecoder('latin1');
 
 /** What an FBX file may hold; the converted body is checked again. */
-const mostNumbers = 40e6;
+const maxNumbers = 40e6;
 /** An array takes 65 µs in all, as measured: the tables for unpacking it have 130 kB, here and in the loader. */
-const mostPackedArrays = 100_000;
+const maxPackedArrays = 100_000;
 const deepestNesting = 32;
 /** The largest polygon that is cut into triangles [corners]. */
-const mostCorners = 1000;
+const maxCorners = 1000;
 /** Turns of a curve by more than half a circle are subdivided by the loader, so many in all. */
-const mostSubdivisions = 2e6;
-/** The number of packed bytes that are unpacked at once: at most `mostExpansion` times as many come out. */
+const maxSubdivisions = 2e6;
+/** The number of packed bytes that are unpacked at once: at most `maxExpansion` times as many come out. */
 const packedAtOnce = 2 ** 12;
 /** The most bytes that one packed byte of DEFLATE can hold (zlib.net, "Maximum Compression Factor"). */
-const mostExpansion = 1032;
+const maxExpansion = 1032;
 
 /** The reader asks a window for what these need; a body needs none of them. */
 const unneeded = /^(Camera|Light|NurbsCurve)$/;
@@ -44,7 +44,7 @@ class ArrayChecks {
 
   count(numbers: number): void {
     this.#numbers += numbers;
-    if (this.#numbers > mostNumbers) throw new Error(`holds more than ${mostNumbers / 1e6} million numbers`);
+    if (this.#numbers > maxNumbers) throw new Error(`holds more than ${maxNumbers / 1e6} million numbers`);
   }
 
   /** Whether the values of a node must be looked at. */
@@ -62,7 +62,7 @@ class ArrayChecks {
     let count = 0;
     for (const corner of corners) {
       count += 1;
-      if (count > mostCorners) throw new Error(`has a polygon of more than ${mostCorners} corners`);
+      if (count > maxCorners) throw new Error(`has a polygon of more than ${maxCorners} corners`);
       if (corner < 0) count = 0;
     }
   }
@@ -74,13 +74,13 @@ class ArrayChecks {
       this.#subdivisions += before === null ? 0 : Math.abs(value - before) / 180;
       before = value;
     }
-    if (this.#subdivisions > mostSubdivisions) throw new Error('has an animation that turns without end');
+    if (this.#subdivisions > maxSubdivisions) throw new Error('has an animation that turns without end');
   }
 }
 
 /** Returns an array of an FBX file as it is unpacked. Throws where it is not as long as the file says. */
 function unpack(packed: Uint8Array, length: number, keep: boolean): Uint8Array | null {
-  if (length > mostExpansion * packed.length) throw new Error('has an array that is shorter than it says');
+  if (length > maxExpansion * packed.length) throw new Error('has an array that is shorter than it says');
   const kept = keep ? new Uint8Array(length) : null;
   let count = 0;
   const stream = new Unzlib((chunk) => {
@@ -131,7 +131,7 @@ class BinaryWalk {
     while (this.#at < this.#bytes.length && this.#node(this.#bytes.length, 0) !== null) end = this.#at;
     if (end === headerLength) throw new Error('holds nothing');
     const packed = this.#arrays.filter(({ isPacked }) => isPacked).length;
-    if (packed > mostPackedArrays) throw new Error(`holds more than ${mostPackedArrays} packed arrays`);
+    if (packed > maxPackedArrays) throw new Error(`holds more than ${maxPackedArrays} packed arrays`);
     for (const array of this.#arrays) this.#checkArray(array);
     return end;
   }

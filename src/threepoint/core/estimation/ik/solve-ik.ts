@@ -170,7 +170,7 @@ function turnChest(): void {
   const aheadX = acrossWeight * across.z + middleWeight * middle.x;
   const aheadZ = -1 - acrossWeight * across.x + middleWeight * middle.z;
   const most = bounds.yawSaturation;
-  fromAxisAngle(up, most * Math.tanh(Math.atan2(-aheadX, Math.max(-aheadZ, bounds.leastAhead)) / most), yaw);
+  fromAxisAngle(up, most * Math.tanh(Math.atan2(-aheadX, Math.max(-aheadZ, bounds.minAhead)) / most), yaw);
 }
 
 /** 2. Lean of thorax and lower back. 3. Thorax frame. */

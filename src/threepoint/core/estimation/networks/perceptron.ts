@@ -3,7 +3,7 @@ import { type Tensor, tensorOf } from './model-weights';
 /** The number of outputs that one pass over the inputs computes, so that each input is read once for all of them. */
 const rowsAtOnce = 4;
 /** The largest input in standard deviations of the training data; larger ones are clamped. */
-const mostDeviations = 4;
+const maxDeviations = 4;
 
 /** One layer's weights as its loop reads them. */
 interface Layer {
@@ -76,7 +76,7 @@ export class Perceptron {
     for (let index = 0; index < 2 * count; index++) {
       const column = index < count ? index : index - count;
       const deviations = (this.input[index]! - this.#mean[column]!) * this.#inverseScale[column]!;
-      this.input[index] = Math.min(mostDeviations, Math.max(-mostDeviations, deviations));
+      this.input[index] = Math.min(maxDeviations, Math.max(-maxDeviations, deviations));
     }
   }
 }
