@@ -235,8 +235,10 @@ export async function newPage(browser: Browser, base: string, kept = false): Pro
 export function collectErrors(page: Page, home: string): { readonly errors: readonly string[]; stop(): void } {
   const errors: string[] = [];
   const onConsole = (message: ConsoleMessage) => {
-    // A blocked resource is a console error too, so this includes violations of the policy.
-    if (message.type() === 'error') errors.push(`console: ${message.text()} (${message.location().url})`);
+    // A blocked resource is a console error too, so this includes violations of the policy. Chromium only warns of a
+    // call that the graphics device refuses, after which a part of the picture stays black.
+    if (message.type() === 'error' || /GL_INVALID|WebGL: INVALID/.test(message.text()))
+      errors.push(`console: ${message.text()} (${message.location().url})`);
   };
   const onError = (error: Error) => errors.push(`exception: ${error.stack ?? error.message}`);
   const onRequest = (request: Request) => {

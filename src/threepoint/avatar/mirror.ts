@@ -201,6 +201,9 @@ export class Mirror {
     // bits.
     Object.assign(target, { isXRRenderTarget: true });
     target.texture.type = UnsignedByteType;
+    // The shaders encode the colours, hence no sRGB format, which would encode them again. Multisampled and resolved
+    // pixels must have one format.
+    target.texture.internalFormat = 'RGBA8';
     // In first person the head is on this layer alone, and the mirror shows it. Objects on the layers of the eyes are
     // not shown. The reflecting camera is a copy made by a method that three.js's types leave out.
     const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
