@@ -137,11 +137,7 @@ export default {
       severity: 'error',
       from: { path: pure },
       to: {
-        pathNot: [
-          pure,
-          '^src/rooms/client/(client-policy|connection|loopback-host)\\.ts$',
-          packagePath('valibot'),
-        ],
+        pathNot: [pure, '^src/rooms/client/(client-policy|connection|loopback-host)\\.ts$', packagePath('valibot')],
       },
     },
     {

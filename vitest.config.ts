@@ -5,12 +5,15 @@ import { withSourceCondition } from './scripts/source-condition.mjs';
 // Child processes of tests resolve packages to their sources too.
 process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
 
-/** Tests of pages with dynamic imports. A file may end while an import is pending, which would fail the next file. */
-const loading = 'tests/page/shell/**/*.test.ts';
+/**
+ * Tests in processes of their own: pages with dynamic imports, because a file may end while an import is pending, which
+ * would fail the next file; and a count of allocations, because compiled code depends on what ran before.
+ */
+const apart = ['tests/page/shell/**/*.test.ts', 'tests/ui/vr-touch.test.ts'];
 
 const projects: TestProjectConfiguration[] = [
-  { extends: true, test: { name: 'shared', include: ['tests/**/*.test.ts'], exclude: [loading], isolate: false } },
-  { extends: true, test: { name: 'apart', include: [loading] } },
+  { extends: true, test: { name: 'shared', include: ['tests/**/*.test.ts'], exclude: apart, isolate: false } },
+  { extends: true, test: { name: 'apart', include: apart } },
 ];
 
 export default defineConfig({

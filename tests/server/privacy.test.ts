@@ -94,9 +94,11 @@ test('nothing that carries poses can write to a disk: relay, sockets, rooms and 
   const writers = carriers.filter((file) =>
     /node:fs|sqlite|study-(store|database)|node:child_process/.test(readFileSync(file, 'utf8')),
   );
-  // relay.ts keeps the key that signs tokens, once, and nothing else.
-  expect(writers.map(({ pathname }) => pathname.split('/').at(-1))).toEqual(['relay.ts']);
-  expect(readFileSync(new URL('server/relay.ts', rooms), 'utf8').match(/writeFileSync\(.*/g)).toHaveLength(1);
+  // stored-secret.ts keeps the key that signs tokens, once, and nothing else.
+  expect(writers.map(({ pathname }) => pathname.split('/').at(-1))).toEqual(['stored-secret.ts']);
+  expect(
+    readFileSync(new URL('server/settings/stored-secret.ts', rooms), 'utf8').match(/writeFileSync\(.*/g),
+  ).toHaveLength(1);
   reportFigures('privacy', {
     'modules with poses that know a disk': `${writers.length} of ${carriers.length}, for the key of the tokens`,
   });
