@@ -20,7 +20,7 @@ export const faultRows = {
     sees: 'The body freezes and fades; nothing is NaN',
     target: 'whole again within 2 frames',
     shows: ['studio'],
-    tests: ['tests/threepoint/avatar/head-loss.test.ts', 'e2e/page/faults.spec.ts'],
+    tests: ['tests/threepoint/avatar/head-loss-fade.test.ts', 'e2e/page/faults.spec.ts'],
     manual: 'Cover every camera for three seconds: the world stays, the body fades and returns.',
   },
   'hand-lost': {
@@ -127,7 +127,7 @@ export const faultRows = {
     sees: 'A sentence with the reason, and the desktop mode',
     target: 'within 1 s',
     shows: ['session refused'],
-    tests: ['tests/threepoint/xr/session.test.ts', 'e2e/page/faults.spec.ts'],
+    tests: ['tests/threepoint/xr/session-support.test.ts', 'e2e/page/faults.spec.ts'],
   },
   'graphics-lost': {
     inject: 'The WebGL context is lost and restored',
