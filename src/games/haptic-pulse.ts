@@ -1,15 +1,7 @@
-import type { Side } from 'threepoint/core/math/side';
-
-/** A haptic pulse for one hand. */
-export interface HapticPulse {
-  readonly side: Side;
-  /** 0 to 1. */
-  readonly strength: number;
-  readonly seconds: number;
-}
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 
 /** Returns the same pulse for both hands. */
-export const inBothHands = (strength: number, seconds: number): readonly HapticPulse[] => [
+export const pulseBothHands = (strength: number, seconds: number): readonly HapticPulse[] => [
   { side: 'left', strength, seconds },
   { side: 'right', strength, seconds },
 ];

@@ -1,5 +1,5 @@
 """One frame's features for the learned network, and their window in time; the twin of
-src/threepoint/core/estimation/networks/features.ts.
+src/threepoint/core/estimation/networks/frame-features.ts.
 
 The one function for training and for golden vectors; docs/estimation.md lists the columns.
 """

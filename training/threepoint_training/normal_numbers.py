@@ -1,4 +1,4 @@
-"""Seeded normal numbers that the page draws alike (normalNumbers in src/threepoint/core/math/random.ts)."""
+"""Seeded normal numbers that the page draws alike (createNormalRandom in src/threepoint/core/math/random.ts)."""
 
 from typing import Any, Protocol
 

@@ -8,13 +8,13 @@ import {
   pressureOf,
   releasedBelow,
 } from 'threepoint/core/input/button-presses';
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import { copyPose, makePose, type TrackedPose } from 'threepoint/core/math/pose';
 import { otherSide, type Side, sides } from 'threepoint/core/math/side';
 import { addScaled, copyVec3, distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { maxStepSeconds } from 'threepoint/core/tracking/page-clock';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fistOf } from '../fist';
-import type { HapticPulse } from '../haptic-pulse';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, maximumDraw, minimumDraw } from './bow';
 import { bowDirection, nockingPointOf, turnBow } from './bow-pose';

@@ -8,6 +8,7 @@ import {
   pressureOf,
   releasedBelow,
 } from 'threepoint/core/input/button-presses';
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import {
   type MutablePose,
   makePose,
@@ -22,7 +23,6 @@ import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 't
 import type { Mutable } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballInPalm, fistOf } from '../fist';
-import type { HapticPulse } from '../haptic-pulse';
 import { slowestThrow } from './action-rules';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';
 import { ballRadius } from './flight';

@@ -1,6 +1,7 @@
 import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
 import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { PointerTarget } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
 import { identity, rotate } from 'threepoint/core/math/quat';
@@ -8,7 +9,6 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, up, vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { HapticPulse } from 'threepoint/xr/haptics';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';

@@ -1,6 +1,7 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { chestSpaceBody } from 'threepoint/core/body/skeleton';
 import type { Buttons } from 'threepoint/core/input/button-presses';
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { TrackedPose } from 'threepoint/core/math/pose';
 import { add, subtract, type Vec3, zero } from 'threepoint/core/math/vec3';
@@ -11,7 +12,6 @@ import { ArcheryGestures, type BowCue, defaultArcheryGestureSettings } from 'thr
 import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
 import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/archery/simulated-archer';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
-import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import { createMatch, type Match } from 'threepoint-games/match';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivitySettings } from '../activity/activity-context';

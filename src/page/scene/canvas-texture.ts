@@ -7,7 +7,7 @@ export function createCanvasTexture(width: number, height: number, quality: Qual
   canvas.width = width;
   canvas.height = height;
   const context = canvas.getContext('2d');
-  if (!context) throw new Error('scene/drawn-texture: this browser does not support 2D canvas');
+  if (!context) throw new Error('scene/canvas-texture: this browser does not support 2D canvas');
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;

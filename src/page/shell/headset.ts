@@ -1,10 +1,11 @@
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import { type BoundarySize, readBoundary } from 'threepoint/xr/boundary';
 import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
 import type { DeviceCommands } from 'threepoint/xr/device-commands';
 import { drawSession, endSession } from 'threepoint/xr/draw-session';
 import { defaultSavings, FrameRateControl, type Savings } from 'threepoint/xr/frame-rate';
-import { type HapticPulse, playPulses } from 'threepoint/xr/haptics';
+import { playPulses } from 'threepoint/xr/haptics';
 import { Pointing } from 'threepoint/xr/pointing';
 import { requestPassthroughSession, requestVrSession } from 'threepoint/xr/request-session';
 import { describeXrSupport, isSessionOffered, type XrFault } from 'threepoint/xr/session-support';

@@ -15,7 +15,7 @@ export class RoomVoices {
   readonly #enabled: boolean;
   readonly #host: Pick<RoomHost<HostedGame>, 'send'>;
 
-  /** `wanted`: the room's host allows voices; a room with more than `maxVoices` seats has none even then. */
+  /** `wanted`: the room's host allows voices; a room with more than `maxVoiceSeats` seats has none even then. */
   constructor(seats: Seats, wanted: boolean, host: Pick<RoomHost<HostedGame>, 'send'>) {
     this.#seats = seats;
     this.#enabled = wanted && seats.count <= maxVoiceSeats;

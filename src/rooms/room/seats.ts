@@ -191,7 +191,7 @@ export class Seats {
   retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Member, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
-    // To the rules a player who has left joins again; within `awayAfter` the player keeps everything.
+    // To the rules a player who has left joins again; within `awayAfterSeconds` the player keeps everything.
     this.#listener.act({ type: seat.playing ? 'reconnect' : 'join', player: index });
     const changes: Partial<Seat> = {
       client,

@@ -56,7 +56,7 @@ export interface BodyEvents {
    * elsewhere, or the measures are another person's. Called once until the body reaches it.
    */
   trackermismatch?(mismatch: TrackerMismatch): void;
-  /** A session starts: frames of its wearer follow. */
+  /** A session starts: frames of its user follow. */
   sessionstart?(): void;
   /** The session is over: `pose` is null. Stop showing the last pose to others. */
   sessionend?(): void;

@@ -1,25 +1,18 @@
-import type { Side } from '../core/math/side';
+import type { HapticPulse } from '../core/input/haptic-pulse';
 
-/** A vibration for one hand: strength 0 to 1, duration in seconds. */
-export interface HapticPulse {
-  readonly side: Side;
-  readonly strength: number;
-  readonly seconds: number;
-}
-
-/** Plays vibrations on the controllers; devices without an actuator stay silent. */
+/** Plays pulses on the controllers; devices without an actuator stay silent. */
 export function playPulses(session: XRSession, pulses: readonly HapticPulse[]): void {
   for (const { side, strength, seconds } of pulses) {
     for (const { handedness, gamepad } of session.inputSources) {
       if (handedness !== side) continue;
       // Quest and Vive offer `pulse` on the first actuator, which no type knows yet.
-      const [actuator] = (gamepad as { hapticActuators?: readonly HapticPulser[] } | undefined)?.hapticActuators ?? [];
+      const [actuator] = (gamepad as { hapticActuators?: readonly PulseActuator[] } | undefined)?.hapticActuators ?? [];
       if (actuator) void tryPulse(actuator, Math.min(1, Math.max(0, strength)), 1000 * seconds);
     }
   }
 }
 
-async function tryPulse(actuator: HapticPulser, strength: number, milliseconds: number): Promise<void> {
+async function tryPulse(actuator: PulseActuator, strength: number, milliseconds: number): Promise<void> {
   try {
     await actuator.pulse?.(strength, milliseconds);
   } catch {
@@ -27,6 +20,6 @@ async function tryPulse(actuator: HapticPulser, strength: number, milliseconds: 
   }
 }
 
-interface HapticPulser {
+interface PulseActuator {
   pulse?(strength: number, milliseconds: number): Promise<boolean>;
 }

@@ -1,5 +1,6 @@
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { ArcheryEvent } from 'threepoint-games/archery/archery-state';
-import { type HapticPulse, inBothHands } from 'threepoint-games/haptic-pulse';
+import { pulseBothHands } from 'threepoint-games/haptic-pulse';
 
 /**
  * Returns the haptic pulses of events: a hit in the bow hand, stronger for more points, a warning and the bell in both
@@ -11,8 +12,8 @@ export function eventHaptics(events: readonly ArcheryEvent[], bowSide: HapticPul
       const strength = event.landing.points > 0 ? 0.25 + 0.5 * Math.min(1, event.landing.points / 20) : 0.15;
       return [{ side: bowSide, strength, seconds: 0.04 }];
     }
-    if (event.type === 'left-zone') return inBothHands(0.6, 0.18);
-    if (event.type === 'ended') return inBothHands(0.4, 0.3);
+    if (event.type === 'left-zone') return pulseBothHands(0.6, 0.18);
+    if (event.type === 'ended') return pulseBothHands(0.4, 0.3);
     return [];
   });
 }

@@ -1,10 +1,10 @@
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallRole, BallState } from 'threepoint-games/ball/ball-state';
 import type { Opening } from 'threepoint-games/ball/basket';
 import type { BallCue } from 'threepoint-games/ball/gestures';
 import type { Launch } from 'threepoint-games/ballistics';
-import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import type { RemotePerson } from 'threepoint-rooms/client/room-client';
 

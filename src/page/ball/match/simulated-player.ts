@@ -1,5 +1,6 @@
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import { zero } from 'threepoint/core/math/vec3';
 import type { BallBot } from 'threepoint-games/ball/ball-bot';
 import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
@@ -12,7 +13,6 @@ import {
   type SteeredPlayer,
 } from 'threepoint-games/ball/steered-players';
 import type { Launch } from 'threepoint-games/ballistics';
-import type { HapticPulse } from 'threepoint-games/haptic-pulse';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { CourtView } from './simulated-seat';
 import {

@@ -1,5 +1,6 @@
+import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { BallEvent, BallRole } from 'threepoint-games/ball/ball-state';
-import { type HapticPulse, inBothHands } from 'threepoint-games/haptic-pulse';
+import { pulseBothHands } from 'threepoint-games/haptic-pulse';
 
 /**
  * Haptic pulses of events away from the user's hands. The holder feels a catch in both hands, the thrower lightly; the
@@ -9,16 +10,16 @@ export function eventHaptics(events: readonly BallEvent[], me: number, role: Bal
   return events.flatMap((event) => {
     switch (event.type) {
       case 'started':
-        return inBothHands(0.35, 0.12);
+        return pulseBothHands(0.35, 0.12);
       case 'ended':
-        return inBothHands(0.4, 0.3);
+        return pulseBothHands(0.4, 0.3);
       case 'caught':
-        if (role === 'holder') return inBothHands(0.75, 0.07);
-        return event.player === me ? inBothHands(0.25, 0.05) : [];
+        if (role === 'holder') return pulseBothHands(0.75, 0.07);
+        return event.player === me ? pulseBothHands(0.25, 0.05) : [];
       case 'bounced':
-        return event.off === 'basket' && role === 'holder' ? inBothHands(0.4, 0.03) : [];
+        return event.off === 'basket' && role === 'holder' ? pulseBothHands(0.4, 0.03) : [];
       case 'refused':
-        return event.player === me && event.reason !== 'seen-before' ? inBothHands(0.2, 0.03) : [];
+        return event.player === me && event.reason !== 'seen-before' ? pulseBothHands(0.2, 0.03) : [];
       default:
         return [];
     }

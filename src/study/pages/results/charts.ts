@@ -46,7 +46,7 @@ function headed(
   { title, labels, simulated }: ChartOptions,
   note: string,
 ): SVGSVGElement {
-  if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
+  if (!(plot instanceof SVGSVGElement)) throw new Error('results/charts: expected a plain SVG from the plot');
   const width = Number(plot.getAttribute('width'));
   // Plots centre their labels by default.
   const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink, 'text-anchor': 'start' };
@@ -253,7 +253,7 @@ async function pngOf(svg: SVGSVGElement): Promise<Blob> {
     canvas.width = 2 * width;
     canvas.height = 2 * height;
     const context = canvas.getContext('2d');
-    if (!context) throw new Error('ui/charts: this browser offers no 2D canvas');
+    if (!context) throw new Error('results/charts: this browser offers no 2D canvas');
     context.drawImage(image, 0, 0, canvas.width, canvas.height);
     return await new Promise((resolve, reject) =>
       canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be made'))), 'image/png'),
