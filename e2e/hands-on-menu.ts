@@ -8,6 +8,8 @@ export interface Written {
   readonly text: string;
   readonly x: number;
   readonly y: number;
+  /** The width of the canvas, which differs between sheets. */
+  readonly width: number;
 }
 declare global {
   interface Window {
@@ -22,13 +24,19 @@ export function recordCanvasText(): void {
   const written: Written[] = [];
   window.canvasTexts = written;
   CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
-    written.push({ text, x, y });
+    written.push({ text, x, y, width: this.canvas.width });
     fillText.call(this, text, x, y, ...rest);
   };
 }
 
-export const waitForCanvasText = (page: Page, text: string) =>
-  page.waitForFunction((wanted) => window.canvasTexts?.findLast(({ text }) => text === wanted), text);
+/** Waits until a sheet of this width, by default the menu, shows a text; returns where it was drawn last. */
+export async function waitForCanvasText(page: Page, text: string, width: number = menuWidth): Promise<Written> {
+  const found = await page.waitForFunction(
+    (wanted) => window.canvasTexts?.findLast(({ text, width }) => text === wanted.text && width === wanted.width),
+    { text, width },
+  );
+  return (await found.jsonValue()) as Written;
+}
 
 /** The menu's centre [m] and yaw in the floor frame, as set in the page's shell/vr-menu. */
 const menuAt = [1.1, 1.3, -1.15] as const;
@@ -70,7 +78,7 @@ async function pullAt(page: Page, place: Written): Promise<void> {
 
 /** Presses the item with this label on the headset's menu. */
 export async function pressInMenu(page: Page, label: string): Promise<void> {
-  await pullAt(page, (await (await waitForCanvasText(page, label)).jsonValue()) as Written);
+  await pullAt(page, await waitForCanvasText(page, label));
 }
 
 /** Presses the button with this label below this player's name in the menu's list of players, as drawn last. */

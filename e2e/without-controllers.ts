@@ -1,8 +1,9 @@
 import type { Page } from '@playwright/test';
 import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
 import { right, up } from 'threepoint/core/math/vec3';
+import { lobbySize } from 'threepoint-page/ball/view/lobby-drawing';
 import { type EmulatedHeadset, frames, type Point, type Rotation, type Side } from './emulated-headset';
-import { menuPoint, type Written, waitForCanvasText } from './hands-on-menu';
+import { menuPoint, waitForCanvasText } from './hands-on-menu';
 
 /** Returns the orientation whose −Z points from one place to another. */
 export function pointingFrom(from: Point, to: Point): Rotation {
@@ -14,7 +15,18 @@ export function pointingFrom(from: Point, to: Point): Rotation {
 
 /** Returns where the item with this label lies, floor frame; waits until the menu shows it. */
 export async function inMenu(page: Page, label: string): Promise<Point> {
-  return menuPoint((await (await waitForCanvasText(page, label)).jsonValue()) as Written);
+  return menuPoint(await waitForCanvasText(page, label));
+}
+
+/**
+ * Returns where the button with this label lies on the ball game's sheet for eyes at 1.6 m, floor frame; waits until
+ * the sheet shows it. Its place and size are set in the page's ball/view/lobby-sheet.
+ */
+export async function inLobby(page: Page, label: string): Promise<Point> {
+  const { width, height } = lobbySize;
+  const { x, y } = await waitForCanvasText(page, label, width);
+  const metres = 1.3 / width;
+  return [(x - width / 2) * metres, 1.44 + (height / 2 - y) * metres, -1.9];
 }
 
 /** Pinches with a bare hand that points at a place from here, for a number of frames. */

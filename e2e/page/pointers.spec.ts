@@ -1,10 +1,12 @@
 import type { Page } from '@playwright/test';
 import { archeryRules } from 'threepoint-games/archery/rules';
+import { stations } from 'threepoint-games/ball/stations';
 import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import type { BallActivityProbe } from 'threepoint-page/ball/ball-activity';
 import { type EmulatedHeadset, frames, type Point } from '../emulated-headset';
 import { recordCanvasText } from '../hands-on-menu';
 import { enterVr, expect, keepPicture, openWithHeadset, probe, freshTest as test } from '../page-fixture';
-import { inMenu, pinchAt, pinchByEyes, pointingFrom } from '../without-controllers';
+import { inLobby, inMenu, pinchAt, pinchByEyes, pointingFrom } from '../without-controllers';
 
 const eyes: Point = [0, 1.6, 0];
 /** The targets of the round with this seed, farther than one can miss by a centimetre of eye height. */
@@ -19,6 +21,11 @@ const target = (index: number): Point => {
 async function round(page: Page): Promise<ArcheryProbe | null> {
   const { game } = await probe(page);
   return game?.name === 'archery' ? game : null;
+}
+
+async function match(page: Page): Promise<BallActivityProbe | null> {
+  const { game } = await probe(page);
+  return game?.name === 'ball' ? game : null;
 }
 
 /** Enters VR at the mirror; records what the menu shows. */
@@ -77,7 +84,7 @@ test('pinches that aim by the eyes, as on a Vision Pro, use the menu and shoot @
   await expect.poll(async () => (await probe(page)).game).toBeNull();
 });
 
-test('a user without hands is offered the gaze, and uses menu and archery by it @full', async ({ page }) => {
+test('a user without hands is offered the gaze, and uses menu, archery and ball game by it @full', async ({ page }) => {
   const headset = await enter(page);
   for (const side of ['left', 'right'] as const) await headset.setConnected(side, false);
   await frames(page, 150);
@@ -91,6 +98,25 @@ test('a user without hands is offered the gaze, and uses menu and archery by it 
   await expect.poll(async () => (await round(page))?.phase, { timeout: 60_000 }).toBe('ready');
   await lookAt(headset, target(0));
   await expect.poll(async () => (await round(page))?.hits).toEqual([0]);
+
+  await lookAt(headset, await inMenu(page, 'To the mirror'));
+  await expect.poll(async () => (await probe(page)).game).toBeNull();
+  // The button of archery now lies where the gaze rests, and is not pressed.
+  await frames(page, 60);
+  await lookAt(headset, await inMenu(page, 'Ball game'));
+  await expect.poll(async () => (await match(page))?.phase, { timeout: 60_000 }).toBe('ready');
+  await lookAt(headset, await inLobby(page, 'Ready'));
+  await expect.poll(async () => (await match(page))?.phase).toBe('running');
+  // The first ball is taken without a pointer's action.
+  await expect
+    .poll(async () => Object.values((await match(page))?.held ?? {}).some((ball) => ball !== null))
+    .toBe(true);
+  const { basket, seat } = (await match(page))!;
+  const station = stations[seat!]!.position;
+  await lookAt(headset, [basket[0] - station.x, basket[1], basket[2] - station.z]);
+  await frames(page, 30);
+  await picture(page, 'gaze-throw');
+  await expect.poll(async () => (await match(page))?.caught, { timeout: 40_000 }).toBeGreaterThan(0);
 
   await lookAt(headset, await inMenu(page, 'Comfort'));
   await inMenu(page, 'Turn left');

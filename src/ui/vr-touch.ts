@@ -29,11 +29,11 @@ export interface PanelTouch<Target extends PanelTarget> {
   follow(pointers: readonly Pointer[], targets: readonly Target[]): Touched<Target>;
 }
 
-function targetAt<Target extends PanelTarget>(targets: readonly Target[], { x, y }: PanelPoint): Target | null {
-  for (const target of targets) {
-    const { at } = target;
-    if (x >= at[0] && x <= at[0] + at[2] && y >= at[1] && y <= at[1] + at[3]) return target;
-  }
+const contains = ({ at }: PanelTarget, { x, y }: PanelPoint): boolean =>
+  x >= at[0] && x <= at[0] + at[2] && y >= at[1] && y <= at[1] + at[3];
+
+function targetAt<Target extends PanelTarget>(targets: readonly Target[], point: PanelPoint): Target | null {
+  for (const target of targets) if (contains(target, point)) return target;
   return null;
 }
 
@@ -47,6 +47,8 @@ export function createPanelTouch<Target extends PanelTarget>(
   countsRay: (pointer: Pointer) => boolean = () => true,
 ): PanelTouch<Target> {
   const behind = new WeakMap<Pointer, boolean>();
+  /** The target that a gaze has pressed and whose place it has not left since. */
+  const pressedPlace = new WeakMap<Pointer, Target>();
   const point: PanelPoint = { x: 0, y: 0, distance: 0 };
   const met: Mutable<PointerTarget> = { distance: 0, owner, id: null };
   const pressed: Target[] = [];
@@ -56,16 +58,32 @@ export function createPanelTouch<Target extends PanelTarget>(
     if (!pressed.includes(target)) pressed.push(target);
   }
 
-  function followRay(pointer: Pointer, targets: readonly Target[]): void {
-    if (!panel.meet(pointer, point)) return;
+  /** Returns the target at `point`; null for one that has replaced the target that this gaze pressed here. */
+  function rayTarget(pointer: Pointer, targets: readonly Target[]): Target | null {
     const target = targetAt(targets, point);
+    const last = pressedPlace.get(pointer);
+    if (!last) return target;
+    if (contains(last, point)) return target?.id === last.id ? target : null;
+    pressedPlace.delete(pointer);
+    return target;
+  }
+
+  function followRay(pointer: Pointer, targets: readonly Target[]): void {
+    if (!panel.meet(pointer, point)) {
+      pressedPlace.delete(pointer);
+      return;
+    }
+    const target = rayTarget(pointer, targets);
     // The sheet itself covers what lies behind it; nothing on it can be rested on but a target.
     met.distance = point.distance;
     met.id = target?.id ?? null;
     pointer.pointAt(met);
     if (!target) return;
     touched.pointedAt = target;
-    if (pointer.pressed) press(target);
+    if (!pointer.pressed) return;
+    press(target);
+    // A gaze cannot end its hold: without this it would go on to press what replaces the target.
+    if (!pointer.releases) pressedPlace.set(pointer, target);
   }
 
   function followTip(pointer: Pointer, targets: readonly Target[]): void {

@@ -1,4 +1,6 @@
+import { GazePointer } from 'threepoint/core/input/gaze-pointer';
 import { MutablePointer } from 'threepoint/core/input/pointer';
+import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { createPanelTouch, type PanelTarget } from 'threepoint-ui/vr-touch';
@@ -46,6 +48,35 @@ test('a ray presses the target that it meets, at its distance; beside the sheet 
 test('two pointers press two targets', () => {
   const { pressed } = sheet().follow([aiming(0.1, 0, true), aiming(-0.1, 0, true)], targets);
   expect(pressed.map(({ id }) => id)).toEqual(['right', 'left']);
+});
+
+test('a gaze presses what its press has put under it only after it has looked away', () => {
+  const touch = sheet();
+  const gaze = new GazePointer();
+  const pressed: string[] = [];
+  let shown = targets;
+  let time = 0;
+  const look = (x: number, seconds: number) => {
+    for (const end = time + seconds; time < end; time += 1 / 72) {
+      gaze.follow(time, { position: vec3(x, 0, 0), orientation: identity });
+      for (const { id } of touch.follow([gaze], shown).pressed) {
+        pressed.push(id);
+        shown = [
+          { id: `${id} again`, at: [0, 0, 50, 100] },
+          { id: 'other', at: [50, 0, 50, 100] },
+        ];
+      }
+    }
+  };
+  look(-0.1, 1.5);
+  // The new button is larger than a head moves; neither is a frame without the head a look away.
+  look(-0.05, 3);
+  gaze.cancel();
+  look(-0.1, 3);
+  expect(pressed).toEqual(['left']);
+  look(0.1, 0.5);
+  look(-0.1, 1.5);
+  expect(pressed).toEqual(['left', 'left again']);
 });
 
 // Measured: 170 to 420 bytes of numbers and of an emptied list; 4,100 with hits and a map in each frame.

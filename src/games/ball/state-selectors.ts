@@ -27,6 +27,10 @@ export function ballsLeft({ balls }: BallState): number {
 const isOpen = (place: BallPlace): boolean =>
   place.on === 'rack' || place.on === 'hand' || (place.on === 'air' && !place.missed);
 
+/** Returns the number of balls that a player's throws have brought into the basket. */
+export const catchesOf = ({ balls }: BallState, player: number): number =>
+  balls.filter((place) => place.on === 'basket' && place.thrower === player).length;
+
 /** Returns the ball in a hand of a player; −1: none. */
 export function ballInHand({ balls }: BallState, player: number, side: Side): number {
   for (let ball = 0; ball < balls.length; ball++) {

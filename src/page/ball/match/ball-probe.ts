@@ -1,7 +1,7 @@
 import { length } from 'threepoint/core/math/vec3';
 import type { BallConnection } from 'threepoint-games/ball/ball-client';
 import type { BallPlace } from 'threepoint-games/ball/ball-state';
-import { ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-selectors';
+import { ballSecondsLeft, ballsLeft, catchesOf } from 'threepoint-games/ball/state-selectors';
 import type { BallFrame } from './ball-frame';
 
 /** Returns the state of a match as plain data, for tests and tools. */
@@ -28,6 +28,8 @@ export function probeOf(
     held,
     /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
     aim: aim && length(aim.velocity),
+    /** The number of balls that the user's own throws have brought into the basket. */
+    caught: me === null ? 0 : catchesOf(state, me),
     connection: connection.status.phase,
     /** Rounds cut short because the room had forgotten them. */
     voided: connection.room?.voidedRounds ?? 0,

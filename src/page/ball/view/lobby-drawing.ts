@@ -1,14 +1,10 @@
-import type { BallState } from 'threepoint-games/ball/ball-state';
+import { catchesOf } from 'threepoint-games/ball/state-selectors';
 import { drawText, type TextStyle, textWidth } from 'threepoint-ui/canvas-drawing';
 import { ink, paintCard } from '../../scene/boards/board-style';
 import { paintButton, type SheetButton } from '../../scene/boards/sheet';
 import { roleTexts, seatLooks } from '../seat-looks';
 import { type DisplayedMatch, displayName, ownName } from './displayed-match';
 import { waitingSentence } from './match-texts';
-
-/** Balls that each player's throws have brought into the basket. */
-export const catchesOf = (state: BallState, player: number): number =>
-  state.balls.filter((place) => place.on === 'basket' && place.thrower === player).length;
 
 export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';
 export const lobbySize = { width: 1024, height: 900 } as const;
