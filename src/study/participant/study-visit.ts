@@ -1,13 +1,13 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { formatSentence } from 'threepoint-ui/text-format';
 import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
+import { inLanguage } from '../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
-import { inLanguage } from '../model/phrases/words';
 import type { PublicStudy } from '../model/progress/study-api';
-import { reasonFor } from './reasons';
-import { RunningStudy } from './running-study';
+import { reasonFor } from './localized-reasons';
+import { forgetSession, type Opened, openSession } from './open-session';
 import type { ParticipantSession } from './session/participant-session';
-import { forgetSession, type Opened, openSession } from './study-opening';
+import { RunningStudy } from './session-flow';
 import type { StudyPage } from './study-page';
 import type { StudyHost } from './trial/study-host';
 

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { swarm } from 'threepoint-study/pages/results/swarm';
+import { swarm } from 'threepoint-study/pages/results/swarm-layout';
 import { expect, test } from 'vitest';
 
 const apart = (values: readonly number[], beside: readonly number[]) => {

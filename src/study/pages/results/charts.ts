@@ -2,7 +2,7 @@ import * as Plot from '@observablehq/plot';
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
 import type { Comparison } from '../../model/results/compare-conditions';
-import { swarm } from './swarm';
+import { swarm } from './swarm-layout';
 
 /** The labels of the two conditions or cohorts that are compared. */
 interface ComparedLabels {

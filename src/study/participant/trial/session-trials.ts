@@ -3,7 +3,7 @@ import { PhrasedError } from '../../model/phrases/phrases';
 import { isPlayed, type PlayedStep } from '../../model/plan/schedule';
 import { randomFor } from '../../model/plan/shuffle';
 import { placeOf } from '../../model/progress/progress';
-import { reasonFor } from '../reasons';
+import { reasonFor } from '../localized-reasons';
 import type { ParticipantSession } from '../session/participant-session';
 import type { StudyHost } from './study-host';
 import { type FinishedTrial, lastPlayedBefore, PlayedTrial } from './study-trial';

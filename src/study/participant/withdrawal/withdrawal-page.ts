@@ -5,11 +5,11 @@ import { button, element, pageElement } from 'threepoint-ui/element';
 import { labelled } from 'threepoint-ui/fields';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
+import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
-import { inLanguage } from '../../model/phrases/words';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
 import { languageChoice } from '../forms/language-choice';
-import { reasonFor } from '../reasons';
+import { reasonFor } from '../localized-reasons';
 import { openStudyVault } from '../session/study-vault';
 
 const client = createWithdrawalClient(pageFolder());

@@ -1,13 +1,13 @@
 import { otherSide } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { ProgressEvent } from '../model/progress/apply-event';
-import { Answering } from './answering';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
+import { reasonFor, refusalFor } from './localized-reasons';
+import { RaisedHands } from './pause-gesture';
+import { Answering } from './questionnaire-state';
 import type { ScreenActions } from './questions/study-situation';
-import { RaisedHands } from './raised-hands';
-import { reasonFor, refusalFor } from './reasons';
 import { lockedOutScreen, screenOf } from './screens/study-screens';
 import type { ParticipantSession } from './session/participant-session';
 import type { StudyPage } from './study-page';
