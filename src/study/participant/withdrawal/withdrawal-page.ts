@@ -9,7 +9,7 @@ import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
 import { languageChoice } from '../forms/language-choice';
-import { reasonFor } from '../localized-reasons';
+import { localizedReason } from '../localized-reasons';
 import { openStudyVault } from '../session/study-vault';
 
 const client = createWithdrawalClient(pageFolder());
@@ -163,7 +163,7 @@ function show({ about, fault }: Found, languages: readonly [string, ...string[]]
   pageElement('title', HTMLElement).textContent = say('withdrawal.title');
   const choice = languageChoice(languages, language, (chosen) => show({ about, fault }, languages, chosen));
   choice.label(say('language'));
-  const complaint = fault === null ? null : `“${asked}”: ${reasonFor(fault, phrases)}.`;
+  const complaint = fault === null ? null : `“${asked}”: ${localizedReason(fault, phrases)}.`;
   content.replaceChildren(
     ...(languages.length > 1 ? [element('div', { class: 'bar', style: 'margin-bottom:14px' }, choice.node)] : []),
     ...(complaint === null ? [] : [paragraph(complaint, { class: 'complaint', role: 'alert' })]),
