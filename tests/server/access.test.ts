@@ -14,7 +14,7 @@ import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-c
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';
 import { checkedRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { reportFigures } from '../reliability/report-figures';

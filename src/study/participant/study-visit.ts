@@ -1,13 +1,13 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { formatSentence } from 'threepoint-ui/text-format';
 import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
+import { inLanguage } from '../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
-import { inLanguage } from '../model/phrases/words';
 import type { PublicStudy } from '../model/progress/study-api';
-import { reasonFor } from './reasons';
-import { RunningStudy } from './running-study';
+import { localizedReason } from './localized-reasons';
+import { forgetSession, type OpenedSession, openSession } from './open-session';
 import type { ParticipantSession } from './session/participant-session';
-import { forgetSession, type Opened, openSession } from './study-opening';
+import { SessionFlow } from './session-flow';
 import type { StudyPage } from './study-page';
 import type { StudyHost } from './trial/study-host';
 
@@ -28,7 +28,7 @@ export interface VisitState {
   readonly online: boolean;
 }
 
-type NewSession = Extract<Opened, { kind: 'new' }>;
+type NewSession = Extract<OpenedSession, { kind: 'new' }>;
 
 /** A visit of the page for a study: participant, invitation and consent, then the session until the page closes. */
 export class StudyVisit {
@@ -36,7 +36,7 @@ export class StudyVisit {
   readonly #client: ParticipantClient;
   readonly #host: StudyHost;
   readonly #page: StudyPage;
-  #running: RunningStudy | null = null;
+  #running: SessionFlow | null = null;
 
   constructor(asked: AskedStudy, client: ParticipantClient, host: StudyHost, page: StudyPage) {
     this.#asked = asked;
@@ -108,7 +108,7 @@ export class StudyVisit {
     };
   }
 
-  #open(participant: string): Promise<Opened> {
+  #open(participant: string): Promise<OpenedSession> {
     return openSession(
       { study: this.#asked.study, participant },
       {
@@ -124,7 +124,7 @@ export class StudyVisit {
   #begin(session: ParticipantSession): void {
     const { participant } = session.progress;
     const forget = () => forgetSession({ study: this.#asked.study, participant });
-    this.#running = new RunningStudy(session, { host: this.#host, page: this.#page, forget });
+    this.#running = new SessionFlow(session, { host: this.#host, page: this.#page, forget });
     this.#running.begin();
   }
 
@@ -140,7 +140,9 @@ export class StudyVisit {
   #fault(error: unknown): { readonly phrases: Phrases; readonly text: string } {
     const phrases = this.#phrasesOf(null);
     const unknown = error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer);
-    const text = unknown ? phrases.say('entrance.noStudy', { study: this.#asked.study }) : reasonFor(error, phrases);
+    const text = unknown
+      ? phrases.say('entrance.noStudy', { study: this.#asked.study })
+      : localizedReason(error, phrases);
     return { phrases, text };
   }
 
@@ -187,7 +189,7 @@ export class StudyVisit {
           return null;
         }
         if ('why' in taken) {
-          return `${formatSentence(reasonFor(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
+          return `${formatSentence(localizedReason(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
         }
         this.#begin(taken);
         return null;

@@ -9,8 +9,8 @@ import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
 import type { StudyRequest, StudyRoute } from './routes/route';
 import { createStudyRoutes } from './routes/routes';
 import { createStudySeats, type SignSeat } from './routes/seats';
-import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/folder';
-import type { StudyStore } from './storage/store';
+import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/study-folder';
+import type { StudyStore } from './storage/study-store';
 
 // The thread of the studies has their database, their secrets and their access rules. Slow work and a hanging disk do
 // not block the thread of the sockets.

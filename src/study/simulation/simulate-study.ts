@@ -1,5 +1,5 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
-import type { Words } from '../model/phrases/words';
+import type { Words } from '../model/phrases/localized-text';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';
 import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';

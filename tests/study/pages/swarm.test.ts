@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { swarm } from 'threepoint-study/pages/results/swarm';
+import { swarmOffsets } from 'threepoint-study/pages/results/swarm-layout';
 import { expect, test } from 'vitest';
 
 const apart = (values: readonly number[], beside: readonly number[]) => {
@@ -14,11 +14,11 @@ const apart = (values: readonly number[], beside: readonly number[]) => {
 };
 
 test('dots that are far from each other stand in the middle of their strip', () => {
-  expect(swarm([7, 1, 3], 5)).toEqual([0, 0, 0]);
+  expect(swarmOffsets([7, 1, 3], 5)).toEqual([0, 0, 0]);
 });
 
 test('alike values stand side by side, one to the right and one to the left of the first', () => {
-  expect(swarm([4, 4, 4], 5)).toEqual([0, 1, -1]);
+  expect(swarmOffsets([4, 4, 4], 5)).toEqual([0, 1, -1]);
 });
 
 test('no dot hides another where the strip is wide enough', () => {
@@ -26,13 +26,13 @@ test('no dot hides another where the strip is wide enough', () => {
   fc.assert(
     fc.property(values, (sevenths) => {
       const given = sevenths.map((value) => value / 7);
-      expect(apart(given, swarm(given, 100))).toBeGreaterThan(1 - 1e-6);
+      expect(apart(given, swarmOffsets(given, 100))).toBeGreaterThan(1 - 1e-6);
     }),
   );
 });
 
 test('a swarm that is wider than its strip is pushed together, and stays in it', () => {
-  const beside = swarm(
+  const beside = swarmOffsets(
     Array.from({ length: 30 }, () => 4),
     5,
   );

@@ -1,6 +1,6 @@
 import { planJsonSchema } from 'threepoint-study/cli/check/plan-json-schema';
+import { inLanguage, words } from 'threepoint-study/model/phrases/localized-text';
 import { phrasesOf } from 'threepoint-study/model/phrases/phrases';
-import { inLanguage, words } from 'threepoint-study/model/phrases/words';
 import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';

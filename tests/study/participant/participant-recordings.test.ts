@@ -1,7 +1,7 @@
 import { request as httpRequest } from 'node:http';
 import { writeRecording } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { unpacked } from 'threepoint-study/server/storage/motion';
+import { unpacked } from 'threepoint-study/server/storage/study-motion';
 import { expect, test } from 'vitest';
 import { answeringHost } from '../../rooms/client/answering-host';
 import { calibration, device, toTheFirstQuestion } from './participant-device';

@@ -4,7 +4,7 @@ import { serve, type WebServer } from 'threepoint-http/web-server';
 import { createExperimenterClient } from 'threepoint-study/client/study-client';
 import type { StudyPlan } from 'threepoint-study/model/plan/plan';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';

@@ -10,7 +10,7 @@ import { StudyDispatcher } from 'threepoint-study/server/routes/dispatcher';
 import { createStudyRoutes } from 'threepoint-study/server/routes/routes';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { createStudyService } from 'threepoint-study/server/service';
-import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished } from 'vitest';
 import { testSecret } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';

@@ -6,7 +6,7 @@ import { gzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';

@@ -1,4 +1,4 @@
-import { unpacked } from 'threepoint-study/server/storage/motion';
+import { unpacked } from 'threepoint-study/server/storage/study-motion';
 import { describe, expect, test } from 'vitest';
 import { paperPlan } from '../model/studies';
 import { now } from './running-studies';

@@ -4,7 +4,7 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { openStudyService } from 'threepoint-study/server/service';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { hasFileModes } from '../../platform';
 import { testSecret, until } from '../../rooms/server/running-relay';

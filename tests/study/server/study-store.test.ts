@@ -4,7 +4,7 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin, reported } from 'threepoint-study/model/progress/progress';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';

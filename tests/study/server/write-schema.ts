@@ -8,7 +8,7 @@ import { gzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { checkedRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { latencyPlan, session } from '../model/studies';
 
 const now = 1_800_000_000;

@@ -11,7 +11,7 @@ import { compareConditions } from '../../model/results/compare-conditions';
 import { measuresIn, overallComparisons, type StudyMeasures } from '../../model/results/exported-results';
 import { exportFiles, exportName, exportZip } from '../../server/export/export-zip';
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
-import { openStudyStore } from '../../server/storage/store';
+import { openStudyStore } from '../../server/storage/study-store';
 import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../simulation/simulate-study';
 import { simulateOptions } from './options';
 

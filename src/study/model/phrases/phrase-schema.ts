@@ -2,8 +2,8 @@ import { text, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { GivenPhrases, Phrase, PhraseKey } from './catalogue';
 import { english } from './english';
+import { languageTag } from './localized-text';
 import { gapsIn, phraseKeys } from './phrases';
-import { languageTag } from './words';
 
 const longest = 600;
 const form = v.exactOptional(text(longest));

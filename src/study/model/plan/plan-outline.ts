@@ -1,4 +1,4 @@
-import { inLanguage } from '../phrases/words';
+import { inLanguage } from '../phrases/localized-text';
 import { questionKind } from '../questionnaires/question-kinds';
 import type { Question } from '../questionnaires/questionnaire-schema';
 import { languagesOf, type StudyPlan, taskTitle } from './plan';

@@ -1,7 +1,7 @@
 import { identifier, integerBetween, numberBetween, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
+import { languageTag, words } from '../phrases/localized-text';
 import { phrasesSchema } from '../phrases/phrase-schema';
-import { languageTag, words } from '../phrases/words';
 import { questionnaireSchema } from '../questionnaires/questionnaire-schema';
 import { stoppingRuleSchema } from '../questionnaires/stopping-rule';
 import { embodimentFields, estimatorSchema } from './embodiment';

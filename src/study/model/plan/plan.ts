@@ -1,7 +1,7 @@
 import { checked, complaintsAbout, ValidationError } from 'threepoint/core/validation/validation';
 import type * as v from 'valibot';
+import { inLanguage, missingLanguage, type Words } from '../phrases/localized-text';
 import { refusePhrases } from '../phrases/phrase-schema';
-import { inLanguage, missingLanguage, type Words } from '../phrases/words';
 import {
   type Questionnaire,
   questionnaireNamed,

@@ -8,7 +8,7 @@ import {
   ValidationError,
 } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { languageTag } from '../phrases/words';
+import { languageTag } from '../phrases/localized-text';
 import type { Schedule, StudyStep } from '../plan/schedule';
 import { checkedDraft } from '../questionnaires/questionnaires';
 import type { Place } from '../records/study-record';

@@ -1,5 +1,5 @@
 import type * as v from 'valibot';
-import type { Words } from '../phrases/words';
+import type { Words } from '../phrases/localized-text';
 
 /** An answer as it is recorded: a number, or a text (typed by the participant, or the value of the chosen option). */
 export type Answer = number | string;

@@ -1,6 +1,6 @@
 import { identifier, text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { words } from '../phrases/words';
+import { words } from '../phrases/localized-text';
 import { code, flag, limitedNumber } from './kinds/limits';
 import type { AnswerForm } from './question-kind';
 import { answerFormSchema } from './question-kinds';

@@ -1,6 +1,6 @@
 import { checked, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { missingLanguage, type Words } from '../phrases/words';
+import { missingLanguage, type Words } from '../phrases/localized-text';
 import type { Answer, AnswerForm } from './question-kind';
 import { questionKind } from './question-kinds';
 import type { Question, QuestionnaireFile, Scale } from './questionnaire-schema';

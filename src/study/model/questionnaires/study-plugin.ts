@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { inLanguage, words } from '../phrases/words';
+import { inLanguage, words } from '../phrases/localized-text';
 import type { QuestionKind } from './question-kind';
 import { registerQuestionKind } from './question-kinds';
 

@@ -1,6 +1,6 @@
 import { checked, numberBetween, text, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { languageTag } from '../phrases/words';
+import { languageTag } from '../phrases/localized-text';
 
 export const consentSchema = v.object({
   /** The version of the text that was shown. */

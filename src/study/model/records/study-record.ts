@@ -9,7 +9,7 @@ import {
   ValidationError,
 } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { languageTag } from '../phrases/words';
+import { languageTag } from '../phrases/localized-text';
 import type { StudyPlan } from '../plan/plan';
 import { checkedAnswers, questionnaireNamed } from '../questionnaires/questionnaires';
 import { consentSchema } from './consent';

@@ -32,7 +32,7 @@ export class TrialSeconds {
   readonly #now: () => number;
   #clock: { readonly epoch: number; readonly start: number } | null = null;
   readonly #pauses: { readonly time: number; readonly seconds: number }[] = [];
-  #stood = 0;
+  #pausedSeconds = 0;
   #stoppedAt: number | null = null;
 
   /** `now` returns seconds since 1970. */
@@ -41,7 +41,7 @@ export class TrialSeconds {
   }
 
   /** Counts a frame in a pause. */
-  stand(pageTime: number): void {
+  pause(pageTime: number): void {
     if (this.#clock) this.#stoppedAt ??= pageTime;
   }
 
@@ -50,12 +50,12 @@ export class TrialSeconds {
     this.#clock ??= { epoch: this.#now(), start: pageTime };
     const { start } = this.#clock;
     if (this.#stoppedAt !== null) {
-      const stood = pageTime - this.#stoppedAt;
-      this.#pauses.push({ time: this.#stoppedAt - this.#stood - start, seconds: stood });
-      this.#stood += stood;
+      const paused = pageTime - this.#stoppedAt;
+      this.#pauses.push({ time: this.#stoppedAt - this.#pausedSeconds - start, seconds: paused });
+      this.#pausedSeconds += paused;
       this.#stoppedAt = null;
     }
-    return pageTime - this.#stood - start;
+    return pageTime - this.#pausedSeconds - start;
   }
 
   /** null: the trial has not begun, or had too many pauses. */

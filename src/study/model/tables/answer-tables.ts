@@ -1,4 +1,4 @@
-import { inLanguage, type Words } from '../phrases/words';
+import { inLanguage, type Words } from '../phrases/localized-text';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
 import type { Answer } from '../questionnaires/question-kind';
 import { questionKind, questionKindNames } from '../questionnaires/question-kinds';

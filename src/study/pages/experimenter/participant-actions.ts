@@ -1,8 +1,8 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import type { ExperimenterClient } from '../../client/study-client';
-import { askForSentence, type SentenceQuestion } from './ask-in-dialog';
 import { type OpenStudy, receiptText } from './experimenter-view';
+import { askForSentence, type SentenceQuestion } from './input-dialog';
 import type { ParticipantActions } from './participant-row';
 import { askHowToVoid, isIn } from './void-block-dialog';
 

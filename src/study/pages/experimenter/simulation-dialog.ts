@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import { labelled } from 'threepoint-ui/fields';
 import type { StudyPlan } from '../../model/plan/plan';
-import { askInDialog } from './ask-in-dialog';
+import { askInDialog } from './input-dialog';
 import type { Simulation } from './store-simulation';
 
 function numberField(label: string, attributes: Record<string, string | number>) {

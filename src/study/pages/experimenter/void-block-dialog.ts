@@ -1,8 +1,8 @@
 import { element } from 'threepoint-ui/element';
 import { scheduleFor } from '../../model/plan/schedule';
 import type { TargetBlock } from '../../model/progress/study-api';
-import { askForSentence } from './ask-in-dialog';
 import { type OpenStudy, planOf } from './experimenter-view';
+import { askForSentence } from './input-dialog';
 
 /** The block to void. */
 export interface VoidedBlock {

@@ -2,7 +2,7 @@ import * as Plot from '@observablehq/plot';
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
 import type { Comparison } from '../../model/results/compare-conditions';
-import { swarm } from './swarm';
+import { swarmOffsets } from './swarm-layout';
 
 /** The labels of the two conditions or cohorts that are compared. */
 interface ComparedLabels {
@@ -212,7 +212,7 @@ export function stripChart(
   const dots = comparisons.flatMap((comparison) =>
     sides.flatMap((side) => {
       const values = comparison.values[side];
-      const beside = swarm(
+      const beside = swarmOffsets(
         values.map((value) => value / diameter),
         (strip.width * comparisonWidth) / dotDiameter,
       );

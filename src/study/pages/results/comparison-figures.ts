@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import { inLanguage } from '../../model/phrases/words';
+import { inLanguage } from '../../model/phrases/localized-text';
 import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';

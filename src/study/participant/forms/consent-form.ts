@@ -1,6 +1,6 @@
 import { button, element } from 'threepoint-ui/element';
+import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { inLanguage } from '../../model/phrases/words';
 import { complaintLine, type FormOf, paragraphs, row } from './form-parts';
 import { languageChoice } from './language-choice';
 

@@ -1,7 +1,7 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
+import { inLanguage } from '../../model/phrases/localized-text';
 import type { Phrases } from '../../model/phrases/phrases';
-import { inLanguage } from '../../model/phrases/words';
 import { consentForm } from './consent-form';
 import { demographicsForm } from './demographics-form';
 import { complaintLine, type FormOf, heading, paragraphs, row } from './form-parts';

@@ -1,4 +1,4 @@
-import { inLanguage } from '../../model/phrases/words';
+import { inLanguage } from '../../model/phrases/localized-text';
 import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
 import { blindLabel, type StudyStep, scheduleFor } from '../../model/plan/schedule';

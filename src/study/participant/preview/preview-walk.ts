@@ -5,11 +5,11 @@ import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
 import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
-import { Answering } from '../answering';
 import type { StudyForm } from '../forms/study-form';
+import { localizedRefusal } from '../localized-reasons';
+import { QuestionnaireState } from '../questionnaire-state';
 import type { StudyScreen } from '../questions/study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from '../questions/study-situation';
-import { refusalFor } from '../reasons';
 import { screenOf } from '../screens/study-screens';
 import type { UploadStatus } from '../session/participant-session';
 import { type PreviewStop, previewStops } from './preview-stops';
@@ -96,7 +96,7 @@ export interface PreviewWalkOptions {
 export class PreviewWalk {
   readonly stops: readonly PreviewStop[];
   readonly #session: PreviewSession;
-  readonly #answering: Answering;
+  readonly #questionnaireState: QuestionnaireState;
   readonly #onChange: () => void;
   readonly #actions: ScreenActions;
   readonly #participant: string;
@@ -111,15 +111,16 @@ export class PreviewWalk {
     this.#participant = participant;
     this.#withdrawalPage = withdrawalPage;
     this.#session = new PreviewSession(plan, participant, languagesOf(plan)[0]);
-    this.#answering = new Answering(this.#session);
+    this.#questionnaireState = new QuestionnaireState(this.#session);
     this.#onChange = onChange;
     const next = () => this.next();
     this.#actions = {
       apply: (event) => this.#apply(event),
       goTo: (index) => this.#goToQuestion(index),
-      choose: (question, value) => this.#showRefusal(this.#answering.choose(question, value)),
-      type: (question, typed) => this.#showRefusal(this.#answering.type(question, typed)),
-      submit: () => (this.#answering.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion()),
+      choose: (question, value) => this.#showRefusal(this.#questionnaireState.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#questionnaireState.type(question, typed)),
+      submit: () =>
+        this.#questionnaireState.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion(),
       calibrate: next,
       enterVr: next,
       prepareAgain: next,
@@ -173,7 +174,7 @@ export class PreviewWalk {
     const { paused, unwell } = this.#session.progress;
     const leaves = this.#session.step.id !== step;
     if (leaves || paused || unwell) this.#session.goTo(step);
-    if (leaves) this.#answering.enterStep();
+    if (leaves) this.#questionnaireState.enterStep();
     this.#stand(index);
   }
 
@@ -185,7 +186,7 @@ export class PreviewWalk {
   #stand(index: number): void {
     this.#at = this.#nearest(index);
     this.#stopping = false;
-    this.#answering.goTo(this.stop.question);
+    this.#questionnaireState.goTo(this.stop.question);
     this.#showRefusal(null);
   }
 
@@ -243,9 +244,9 @@ export class PreviewWalk {
     return {
       session: this.#session,
       inSession: kind !== 'enter',
-      question: this.#answering.question,
-      typed: this.#answering.typed,
-      triedToSubmit: this.#answering.triedToSubmit,
+      question: this.#questionnaireState.question,
+      typed: this.#questionnaireState.typed,
+      triedToSubmit: this.#questionnaireState.triedToSubmit,
       calibration: kind === 'measuring' ? measuring : null,
       prepared: { state: 'ready', reason: '' },
       refusal: this.#refusal,
@@ -277,7 +278,7 @@ export class PreviewWalk {
       return;
     }
     const { id } = this.#session.step;
-    const refusal = refusalFor(this.#session.apply(event), this.#session.phrases);
+    const refusal = localizedRefusal(this.#session.apply(event), this.#session.phrases);
     const { step } = this.#session;
     if (step.id === id) this.#showRefusal(refusal);
     // Not by goTo, because the answers that were handed in may lead to the question whether to stop.
@@ -285,14 +286,16 @@ export class PreviewWalk {
   }
 
   #goToQuestion(index: number): void {
-    this.#answering.goTo(index);
+    this.#questionnaireState.goTo(index);
     this.#followQuestion();
   }
 
   /** Moves the position in the list to the question on display. */
   #followQuestion(): void {
     const { step } = this.stop;
-    this.#at = this.stops.findIndex((stop) => stop.step === step && stop.question === this.#answering.question);
+    this.#at = this.stops.findIndex(
+      (stop) => stop.step === step && stop.question === this.#questionnaireState.question,
+    );
     this.#showRefusal(null);
   }
 

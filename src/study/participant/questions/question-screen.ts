@@ -1,4 +1,4 @@
-import { inLanguage } from '../../model/phrases/words';
+import { inLanguage } from '../../model/phrases/localized-text';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
 import { typedAnswer, unanswered } from '../../model/questionnaires/questionnaires';
 import { questionView } from './question-views';

@@ -1,10 +1,10 @@
+import { inLanguage } from '../../model/phrases/localized-text';
 import type { Phrases } from '../../model/phrases/phrases';
-import { inLanguage } from '../../model/phrases/words';
 import { taskTitle } from '../../model/plan/plan';
 import type { RemoteTerms } from '../../model/plan/remote-setup';
 import type { StudyStep } from '../../model/plan/schedule';
 import { clockText, type Progress } from '../../model/progress/progress';
-import { screenQuestions } from '../answering';
+import { screenQuestions } from '../questionnaire-state';
 import { questionPart } from '../questions/question-screen';
 import type { StudyScreen } from '../questions/study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from '../questions/study-situation';

@@ -3,7 +3,7 @@ import { PhrasedError } from '../../model/phrases/phrases';
 import { isPlayed, type PlayedStep } from '../../model/plan/schedule';
 import { randomFor } from '../../model/plan/shuffle';
 import { placeOf } from '../../model/progress/progress';
-import { reasonFor } from '../reasons';
+import { localizedReason } from '../localized-reasons';
 import type { ParticipantSession } from '../session/participant-session';
 import type { StudyHost } from './study-host';
 import { type FinishedTrial, lastPlayedBefore, PlayedTrial } from './study-trial';
@@ -123,7 +123,7 @@ export class SessionTrials {
       if (!runner) throw new PhrasedError('round.game');
       await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
     } catch (error) {
-      throw new Error(reasonFor(error, this.#session.phrases));
+      throw new Error(localizedReason(error, this.#session.phrases));
     }
   }
 

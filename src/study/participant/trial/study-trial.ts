@@ -119,7 +119,7 @@ export class PlayedTrial {
   follow(pageTime: number, frame: TrackingFrame | null): FinishedTrial | null {
     if (this.#runner.waitingFor !== null) return null;
     if (this.#stands) {
-      this.#seconds.stand(pageTime);
+      this.#seconds.pause(pageTime);
       return null;
     }
     const time = this.#seconds.run(pageTime);

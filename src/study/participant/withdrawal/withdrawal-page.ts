@@ -5,11 +5,11 @@ import { button, element, pageElement } from 'threepoint-ui/element';
 import { labelled } from 'threepoint-ui/fields';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
+import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
-import { inLanguage } from '../../model/phrases/words';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
 import { languageChoice } from '../forms/language-choice';
-import { reasonFor } from '../reasons';
+import { localizedReason } from '../localized-reasons';
 import { openStudyVault } from '../session/study-vault';
 
 const client = createWithdrawalClient(pageFolder());
@@ -163,7 +163,7 @@ function show({ about, fault }: Found, languages: readonly [string, ...string[]]
   pageElement('title', HTMLElement).textContent = say('withdrawal.title');
   const choice = languageChoice(languages, language, (chosen) => show({ about, fault }, languages, chosen));
   choice.label(say('language'));
-  const complaint = fault === null ? null : `“${asked}”: ${reasonFor(fault, phrases)}.`;
+  const complaint = fault === null ? null : `“${asked}”: ${localizedReason(fault, phrases)}.`;
   content.replaceChildren(
     ...(languages.length > 1 ? [element('div', { class: 'bar', style: 'margin-bottom:14px' }, choice.node)] : []),
     ...(complaint === null ? [] : [paragraph(complaint, { class: 'complaint', role: 'alert' })]),

@@ -12,7 +12,7 @@ import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { DemographicsRecord, StudyRecord, TrialRecord } from '../../model/records/study-record';
 import { recordingTime } from '../../model/records/trial-clock';
 import { voidedBlocks } from '../../model/tables/study-tables';
-import type { MotionFile } from '../storage/motion';
+import type { MotionFile } from '../storage/study-motion';
 
 /** The content of a data set. */
 export interface BidsContent {

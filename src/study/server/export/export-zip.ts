@@ -7,8 +7,8 @@ import type { StudyRecord } from '../../model/records/study-record';
 import { resultTables } from '../../model/results/exported-results';
 import { studyTables } from '../../model/tables/study-tables';
 import { codebookOf, type Table, tidyCsv } from '../../model/tables/tidy-csv';
-import type { MotionFile } from '../storage/motion';
 import type { ServedSoftware } from '../storage/software';
+import type { MotionFile } from '../storage/study-motion';
 import { bidsDataset } from './bids';
 
 /** The content of an export. */

@@ -1,7 +1,7 @@
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { loadStudyPlugins } from '../plugins/load-plugins';
-import { unpacked } from '../storage/motion';
-import { openStudyStore, type StudyStore } from '../storage/store';
+import { unpacked } from '../storage/study-motion';
+import { openStudyStore, type StudyStore } from '../storage/study-store';
 import { type ExportContent, exportZip } from './export-zip';
 import type { ExportOrder } from './exporter';
 

@@ -1,6 +1,6 @@
 import type { HttpResponse } from 'threepoint-http/response';
-import type { StudyStore } from '../storage/store';
 import { StoreRefusal } from '../storage/store-refusal';
+import type { StudyStore } from '../storage/study-store';
 import type { StudyRequest, StudyRoute } from './route';
 import { refusalOf, type StudyRoutes } from './routes';
 

@@ -9,7 +9,7 @@ import {
 import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
 import { HttpError } from 'threepoint-http/http-error';
 import { normalisedCode } from '../storage/schema';
-import type { StudyStore } from '../storage/store';
+import type { StudyStore } from '../storage/study-store';
 
 /**
  * The access to a route. participant: the token of this participant or of an experimenter; invited: the invitation to

@@ -8,7 +8,7 @@ import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
 import { checkedRecord, within } from '../../model/records/study-record';
-import type { StudyStore } from '../storage/store';
+import type { StudyStore } from '../storage/study-store';
 import { exporting, exportOf } from './export-routes';
 import { bodyLimits, type Handle, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
 

@@ -4,7 +4,7 @@ import type { Route } from 'threepoint-http/router';
 import type { Software } from 'threepoint-http/software-version';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
-import type { StudyStore } from '../storage/store';
+import type { StudyStore } from '../storage/study-store';
 import type { Concerned, StudyAccess, StudyGuard } from './guard';
 import type { StudySeats } from './seats';
 

@@ -4,7 +4,7 @@ import { jsonOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import type { StudyStore } from '../storage/store';
+import type { StudyStore } from '../storage/study-store';
 import { exporting, exportOf } from './export-routes';
 import { bodyLimits, route, type StudyParts, type StudyRoute } from './route';
 

@@ -1,13 +1,13 @@
 import type { Receipt } from '../../model/progress/study-api';
-import type { StudyCommands } from './commands';
-import type { StudyMotion } from './motion';
-import type { StudyPlaces } from './places';
 import type { PlanPlaces } from './plan-places';
-import type { StudyPlans } from './plans';
-import type { StudyRecords } from './records';
 import { newCode } from './schema';
 import { StoreRefusal } from './store-refusal';
+import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
+import type { StudyMotion } from './study-motion';
+import type { StudyPlaces } from './study-places';
+import type { StudyPlans } from './study-plans';
+import type { StudyRecords } from './study-records';
 
 interface ReceiptRow extends Omit<Receipt, 'motionFiles'> {
   readonly motion_files: number;

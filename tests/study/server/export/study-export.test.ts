@@ -1,7 +1,7 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { exportZip } from 'threepoint-study/server/export/export-zip';
-import { unpacked } from 'threepoint-study/server/storage/motion';
-import type { StudyStore } from 'threepoint-study/server/storage/store';
+import { unpacked } from 'threepoint-study/server/storage/study-motion';
+import type { StudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, test } from 'vitest';
 import { now, testSoftware } from '../running-studies';
 import { completed, withPaperStudy } from '../stored-studies';

@@ -8,7 +8,7 @@ import { participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan
 import { type Schedule, scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
 import { sourceResolution } from '../../../../scripts/source-condition.mjs';
 import { heardFrom, isAlive, kill } from '../../../server/child-process';

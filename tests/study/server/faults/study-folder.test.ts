@@ -4,7 +4,7 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { openStudyService } from 'threepoint-study/server/service';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { hasFileModes, movesOpenFiles } from '../../../platform';
 import { reportFigures } from '../../../reliability/report-figures';

@@ -3,7 +3,7 @@ import { Agent, request as httpRequest, type IncomingMessage } from 'node:http';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/store';
+import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test } from 'vitest';
 import { withSourceCondition } from '../../../../scripts/source-condition.mjs';
 import { reportFigures } from '../../../reliability/report-figures';

@@ -1,6 +1,6 @@
 import { integerBetween, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { words } from '../../phrases/words';
+import { words } from '../../phrases/localized-text';
 import type { QuestionKind } from '../question-kind';
 import {
   checkSteps,

@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { words } from '../../phrases/words';
+import { words } from '../../phrases/localized-text';
 import type { QuestionKind } from '../question-kind';
 import { flag, limitedNumber } from './limits';
 import { checkRange } from './scale-kind';

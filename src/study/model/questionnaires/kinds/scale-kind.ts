@@ -1,6 +1,6 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { type Words, words } from '../../phrases/words';
+import { type Words, words } from '../../phrases/localized-text';
 
 /** Numbers at equal distances from one end to the other. */
 export interface SteppedScale {

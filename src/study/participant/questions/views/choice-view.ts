@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import { inLanguage } from '../../../model/phrases/words';
+import { inLanguage } from '../../../model/phrases/localized-text';
 import type { ChoiceForm } from '../../../model/questionnaires/kinds/choice';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';

@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import { inLanguage } from '../../../model/phrases/words';
+import { inLanguage } from '../../../model/phrases/localized-text';
 import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';

@@ -1,6 +1,6 @@
 import { fillRoundedRect, vrColors } from 'threepoint-ui/canvas-drawing';
 import { element } from 'threepoint-ui/element';
-import { inLanguage } from '../../../model/phrases/words';
+import { inLanguage } from '../../../model/phrases/localized-text';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
 import type { QuestionView } from '../question-view';
 import { inner, margin, type Target, width } from '../sheet-target';

@@ -1,7 +1,7 @@
 import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
 import { element } from 'threepoint-ui/element';
+import { inLanguage } from '../../../model/phrases/localized-text';
 import type { Phrases } from '../../../model/phrases/phrases';
-import { inLanguage } from '../../../model/phrases/words';
 import type { NumberForm } from '../../../model/questionnaires/kinds/number';
 import type { TextForm } from '../../../model/questionnaires/kinds/text';
 import type { FieldContext, QuestionView, SheetView } from '../question-view';

@@ -1,13 +1,13 @@
 import { otherSide } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { ProgressEvent } from '../model/progress/apply-event';
-import { Answering } from './answering';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
+import { localizedReason, localizedRefusal } from './localized-reasons';
+import { PauseGesture } from './pause-gesture';
+import { QuestionnaireState } from './questionnaire-state';
 import type { ScreenActions } from './questions/study-situation';
-import { RaisedHands } from './raised-hands';
-import { reasonFor, refusalFor } from './reasons';
 import { lockedOutScreen, screenOf } from './screens/study-screens';
 import type { ParticipantSession } from './session/participant-session';
 import type { StudyPage } from './study-page';
@@ -18,7 +18,7 @@ import type { FinishedTrial } from './trial/study-trial';
 /** The interval at which the screen follows the clock [ms]. */
 const tickEveryMs = 250;
 
-export interface RunningStudyOptions {
+export interface SessionFlowOptions {
   readonly host: StudyHost;
   readonly page: StudyPage;
   /** Removes everything of this participant from the device. */
@@ -29,7 +29,7 @@ export interface RunningStudyOptions {
  * The flow of a participant's session: shows the present step, passes on the participant's actions and exchanges with
  * the server.
  */
-export class RunningStudy {
+export class SessionFlow {
   readonly session: ParticipantSession;
   readonly #host: StudyHost;
   readonly #page: StudyPage;
@@ -37,22 +37,22 @@ export class RunningStudy {
   readonly #exchanges: ExchangeTimer;
   readonly #measurement: BodyMeasurement;
   readonly #trials: SessionTrials;
-  readonly #answering: Answering;
+  readonly #questionnaireState: QuestionnaireState;
   readonly #actions: ScreenActions;
-  readonly #raised = new RaisedHands();
+  readonly #pauseGesture = new PauseGesture();
   /** Why the last action changed nothing; null: it did. */
   #refusal: string | null = null;
   /** Whether the participant wants to stop and has not confirmed it yet. */
   #stopping = false;
   #shownStep = '';
 
-  constructor(session: ParticipantSession, { host, page, forget }: RunningStudyOptions) {
+  constructor(session: ParticipantSession, { host, page, forget }: SessionFlowOptions) {
     this.session = session;
     this.#host = host;
     this.#page = page;
     this.#forget = forget;
     const onChange = () => this.show();
-    this.#answering = new Answering(session);
+    this.#questionnaireState = new QuestionnaireState(session);
     this.#exchanges = new ExchangeTimer(session, page.after);
     this.#measurement = new BodyMeasurement(session, host, onChange);
     this.#trials = new SessionTrials({ session, host, now: page.now, onChange });
@@ -88,7 +88,7 @@ export class RunningStudy {
   frame(time: number, frame: TrackingFrame | null): void {
     if (frame) this.#measurement.observe(frame);
     // No sheet is shown while a round is played, so raised hands pause it.
-    if (this.#raised.follow(this.playing ? frame : null)) this.#apply({ type: 'pause' });
+    if (this.#pauseGesture.update(this.playing ? frame : null)) this.#apply({ type: 'pause' });
     if (this.#trials.current?.interrupted) this.#apply({ type: 'reload' });
     this.#finish(this.#trials.follow(time, frame));
   }
@@ -128,13 +128,13 @@ export class RunningStudy {
     return {
       apply: (event) => this.#apply(event),
       goTo: (index) => {
-        this.#answering.goTo(index);
+        this.#questionnaireState.goTo(index);
         this.#showRefusal(null);
       },
-      choose: (question, value) => this.#showRefusal(this.#answering.choose(question, value)),
-      type: (question, typed) => this.#showRefusal(this.#answering.type(question, typed)),
+      choose: (question, value) => this.#showRefusal(this.#questionnaireState.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#questionnaireState.type(question, typed)),
       submit: () => {
-        if (this.#answering.readyToSubmit()) this.#apply({ type: 'submit' });
+        if (this.#questionnaireState.readyToSubmit()) this.#apply({ type: 'submit' });
         else this.#showRefusal(null);
       },
       calibrate: () => this.#measurement.start(),
@@ -156,9 +156,9 @@ export class RunningStudy {
       {
         session: this.session,
         inSession: this.#host.inSession(),
-        question: this.#answering.question,
-        typed: this.#answering.typed,
-        triedToSubmit: this.#answering.triedToSubmit,
+        question: this.#questionnaireState.question,
+        typed: this.#questionnaireState.typed,
+        triedToSubmit: this.#questionnaireState.triedToSubmit,
         calibration: this.#measurement.step,
         withdrawalPage: this.#page.address.withdrawalPage(),
         setupFaults: this.#measurement.faults,
@@ -224,7 +224,7 @@ export class RunningStudy {
     this.#refusal = null;
     this.#stopping = false;
     this.#measurement.reset();
-    this.#answering.enterStep();
+    this.#questionnaireState.enterStep();
     void this.#restoreBody();
   }
 
@@ -234,7 +234,7 @@ export class RunningStudy {
       await this.#trials.restoreBody();
     } catch (error) {
       if (this.session.step !== step) return;
-      this.#refusal = reasonFor(error, this.session.phrases);
+      this.#refusal = localizedReason(error, this.session.phrases);
       this.show();
     }
   }
@@ -245,21 +245,21 @@ export class RunningStudy {
     const { session } = this;
     const { attempt } = this.#trials;
     const refusal = session.apply({ type: 'trial-finished', outcome });
-    this.#refusal = refusalFor(refusal, session.phrases);
+    this.#refusal = localizedRefusal(refusal, session.phrases);
     if (recording !== null && refusal === null) session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 
   #apply(event: ProgressEvent): void {
     this.conclude();
-    this.#refusal = refusalFor(this.session.apply(event), this.session.phrases);
+    this.#refusal = localizedRefusal(this.session.apply(event), this.session.phrases);
     void this.exchange();
     this.show();
   }
 
   /** Shows why an action changed nothing; null: it did. */
   #showRefusal(refusal: string | null): void {
-    this.#refusal = refusalFor(refusal, this.session.phrases);
+    this.#refusal = localizedRefusal(refusal, this.session.phrases);
     this.show();
   }
 
@@ -271,7 +271,7 @@ export class RunningStudy {
       this.#setBowSide();
     }
     this.show();
-    return refusalFor(complaint, this.session.phrases);
+    return localizedRefusal(complaint, this.session.phrases);
   }
 
   /** Puts the bow into the hand that does not draw it. */

@@ -10,7 +10,7 @@ export const screenQuestions = ({ step }: Pick<ParticipantSession, 'step'>): rea
   step.kind === 'questionnaire' ? step.questionnaire.questions : [];
 
 /** The position of a participant in the questionnaire of the present step. */
-export class Answering {
+export class QuestionnaireState {
   readonly #session: Answered;
   #question = 0;
   #typed: string | null = null;

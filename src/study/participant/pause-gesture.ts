@@ -5,7 +5,7 @@ const above = 0.1;
 const holdSeconds = 1.5;
 
 /** Detects the gesture that pauses a round, with controllers and bare hands: every visible hand held above the head. */
-export class RaisedHands {
+export class PauseGesture {
   /** The time since the hands are up [s]; null: they are not. */
   #since: number | null = null;
   #reported = false;
@@ -14,7 +14,7 @@ export class RaisedHands {
    * Takes a frame into account; null: the gesture does not apply. Returns true once, when the hands were up for long
    * enough.
    */
-  follow(frame: TrackingFrame | null): boolean {
+  update(frame: TrackingFrame | null): boolean {
     const height = (frame?.head.position.y ?? 0) + above;
     const hands = frame ? [frame.leftHand, frame.rightHand].filter((hand) => hand !== null) : [];
     if (!frame || hands.length === 0 || hands.some(({ position }) => position.y < height)) {

@@ -3,7 +3,7 @@
  * the middle as possible. Values and results are in diameters. If the strip is narrower than the swarm, all dots move
  * closer together and overlap.
  */
-export function swarm(values: readonly number[], width: number): readonly number[] {
+export function swarmOffsets(values: readonly number[], width: number): readonly number[] {
   const placed: { readonly value: number; readonly beside: number }[] = [];
   const offsets = values.map(() => 0);
   const ascending = values.map((_, index) => index).sort((a, b) => (values[a] as number) - (values[b] as number));

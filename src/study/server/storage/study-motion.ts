@@ -1,7 +1,7 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
-import type { StudyPlaces } from './places';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
+import type { StudyPlaces } from './study-places';
 
 /** A recording of tracking frames in the format of recording.ts. */
 export interface MotionFile {

@@ -1,15 +1,15 @@
 import { scheduleFor } from '../../model/plan/schedule';
 import { currentStep, remainingSeconds, resumed, sinceReport } from '../../model/progress/progress';
 import type { ParticipantState, PlanVersion } from '../../model/progress/study-api';
-import { StudyCommands } from './commands';
 import { StudyDeletion } from './deletion';
-import { StudyMotion } from './motion';
-import { type PlaceRow, StudyPlaces } from './places';
 import { PlanPlaces } from './plan-places';
-import { StudyPlans } from './plans';
-import { StudyRecords } from './records';
 import { StudySoftware } from './software';
+import { StudyCommands } from './study-commands';
 import { type DatabaseOptions, StudyDatabase } from './study-database';
+import { StudyMotion } from './study-motion';
+import { type PlaceRow, StudyPlaces } from './study-places';
+import { StudyPlans } from './study-plans';
+import { StudyRecords } from './study-records';
 
 /**
  * The store of studies and records. Results are stored when a call returns and survive the end of the process. They

@@ -8,8 +8,8 @@ import type { Software } from 'threepoint-http/software-version';
 import { FolderInUse, FolderLock } from './folder-lock';
 import { DatabaseProblem } from './schema';
 import { sqliteCodeOf } from './sqlite-errors';
-import { openStudyStore, type StudyStore } from './store';
 import { StoreRefusal } from './store-refusal';
+import { openStudyStore, type StudyStore } from './study-store';
 
 /** The open folder of the studies, which no other server uses. */
 export interface StudyFolder {

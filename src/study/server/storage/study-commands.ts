@@ -1,7 +1,7 @@
 import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
-import type { StudyPlaces } from './places';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
+import type { StudyPlaces } from './study-places';
 
 export const maxCommandsPerParticipant = 10_000;
 

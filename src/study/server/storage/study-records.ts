@@ -1,8 +1,8 @@
 import { recordVersion, type StudyRecord } from '../../model/records/study-record';
-import { notConsented, type StudyPlaces } from './places';
-import type { StudyPlans } from './plans';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
+import { notConsented, type StudyPlaces } from './study-places';
+import type { StudyPlans } from './study-plans';
 
 export const maxRecordsPerParticipant = 10_000;
 

@@ -1,10 +1,10 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import { scheduleFor } from '../../model/plan/schedule';
 import { isLater, type Progress, resumed, sinceReport } from '../../model/progress/progress';
-import type { StudyPlans } from './plans';
 import { newCode, normalisedCode } from './schema';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
+import type { StudyPlans } from './study-plans';
 
 /** A stored place. */
 export interface PlaceRow {

@@ -9,7 +9,7 @@ import type { Unsent } from './session/session-store';
 import { type KeptSession, openStudyVault, type StudyVault } from './session/study-vault';
 
 /** A session that this device has stored is resumed; otherwise consent is asked for first. */
-export type Opened =
+export type OpenedSession =
   | { readonly kind: 'resumed'; readonly session: ParticipantSession }
   | {
       readonly kind: 'new';
@@ -97,7 +97,7 @@ async function reportedProgress(client: ParticipantClient, session: KeptSession)
  * Opens a participant's session on this device, from its storage whether the server answers or not, otherwise with the
  * server. Rejects with a sentence or with the refusal of the server.
  */
-export async function openSession(place: StudyPlace, opening: OpeningOptions): Promise<Opened> {
+export async function openSession(place: StudyPlace, opening: OpeningOptions): Promise<OpenedSession> {
   const { participant } = place;
   const { client } = opening;
   if (!(await alone(place))) throw new PhrasedError('entrance.otherTab', { participant });
