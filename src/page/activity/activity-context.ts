@@ -41,7 +41,7 @@ export interface ActivitySettings extends StoredActivitySettings {
   /** Length of a round [s]; absent: the default of the game. */
   readonly seconds?: number;
   /** The name that others see if the player gave none. */
-  readonly guestName: string;
+  readonly defaultName: string;
   /** The seat that a spectator's camera follows; null: the camera is free. */
   readonly following: number | null;
 }

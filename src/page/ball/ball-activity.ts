@@ -88,7 +88,7 @@ export class BallActivity implements OpenActivity {
     this.play = new BallPlay({
       connect: room.connect,
       visitor: {
-        name: place?.participant || settings.name || settings.guestName,
+        name: place?.participant || settings.name || settings.defaultName,
         calibration: body.calibration,
         ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),

@@ -14,7 +14,7 @@ import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
 import { type CardActions, createMocapCard, type Labels, type MocapCard } from './mocap-card';
 import { isMap, type MocapFile, pairFiles } from './mocap-files';
-import { type BoneMapStore, MotionBones } from './motion-bones';
+import { type BoneMaps, MotionBones } from './motion-bones';
 import { type ReadMocap, readMocap, UnmatchedMotion } from './read-mocap';
 import { SecondBody } from './second-body';
 import { recordingOf } from './simulated-recording';
@@ -52,7 +52,7 @@ export interface MocapViewOptions {
   /** The method of the page's body. */
   readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
   readonly networks: BodySolverOptions['networks'];
-  readonly boneMaps: BoneMapStore;
+  readonly boneMaps: BoneMaps;
   loadAvatar(): Promise<Avatar>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;

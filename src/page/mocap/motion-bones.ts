@@ -3,14 +3,14 @@ import type { FileBones } from 'threepoint/core/humanoid/unknown-bones-error';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
 
 /** The bone maps that users gave for files, by the hashes of the files. */
-export interface BoneMapStore {
+export interface BoneMaps {
   readonly all: Readonly<Record<string, BoneMap>>;
   keep(hash: string, bones: BoneMap): void;
   forget(hash: string): void;
 }
 
 export interface MotionBonesOptions<Request> {
-  readonly boneMaps: BoneMapStore;
+  readonly boneMaps: BoneMaps;
   /** Shows the form; null: hides it. */
   show(skeleton: SkeletonToMap | null): void;
   /** Reads the files of a request with this map; null: with what was found. */

@@ -60,5 +60,3 @@ export function createVignette() {
     },
   };
 }
-
-export type Vignette = ReturnType<typeof createVignette>;

@@ -74,7 +74,7 @@ function createBase(options: PageOptions) {
 function createPlay(base: ReturnType<typeof createBase>) {
   const { switches, settings, canvas, view, avatar, headset, body, bodyEvents, onChange } = base;
   const study = new PageStudy();
-  const impaired = new TrackingDegradation();
+  const degradation = new TrackingDegradation();
   const server = new ServerPresence(pageFolder(), onChange);
   const actor = createActor();
   const mouse = createMouseAim(canvas);
@@ -110,10 +110,10 @@ function createPlay(base: ReturnType<typeof createBase>) {
   });
   bodyEvents.outgrown.listen((difference) => userCalibration.outgrown(difference));
   bodyEvents.discontinuity.listen(() => {
-    impaired.reset();
+    degradation.reset();
     activities.current?.discontinuity?.();
   });
-  return { ...base, study, impaired, server, activities, captions, arrivals, userCalibration, source, pointers };
+  return { ...base, study, degradation, server, activities, captions, arrivals, userCalibration, source, pointers };
 }
 
 /** Creates the controls, motion capture and the steps of a frame. */

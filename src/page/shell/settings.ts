@@ -68,7 +68,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     sound: preferences.sound ?? true,
     bots: switches.bots ?? (switches.room ? false : (preferences.bots ?? true)),
     name: switches.name ?? preferences.name ?? '',
-    guestName: `Guest ${10 + ((crypto.getRandomValues(new Uint8Array(1))[0] ?? 0) % 90)}`,
+    defaultName: `Guest ${10 + ((crypto.getRandomValues(new Uint8Array(1))[0] ?? 0) % 90)}`,
     following: null,
     calibrationSource: preferences.calibration ? 'remembered' : 'not calibrated yet',
   };

@@ -20,12 +20,12 @@ const frameAt = (time: number, height: number) => ({
 /** A page without a device to draw on; `missing`: what it cannot load. */
 function pageOf(missing: readonly string[] = []) {
   const settings: Partial<Settings> = {};
-  const impaired = new TrackingDegradation();
+  const degradation = new TrackingDegradation();
   let worn: BuiltInBody = 'mannequin';
   let drawn: EstimatorName = 'ik';
   const parts: EmbodyingParts = {
     writer: { change: (part) => void Object.assign(settings, part) },
-    impaired,
+    degradation,
     avatar: {
       get builtInBody() {
         return worn;
@@ -46,7 +46,7 @@ function pageOf(missing: readonly string[] = []) {
       },
     },
   };
-  return { parts, settings, impaired, worn: () => worn, drawn: () => drawn };
+  return { parts, settings, degradation, worn: () => worn, drawn: () => drawn };
 }
 
 describe('the body of a round', () => {
@@ -60,13 +60,13 @@ describe('the body of a round', () => {
   });
 
   test('is impaired for as long as a condition says so', async () => {
-    const { parts, impaired } = pageOf();
+    const { parts, degradation } = pageOf();
     await embody(parts, { estimator: 'ik', latencyMs: 100 }, 1);
-    impaired.apply(frameAt(1, 1.6));
-    expect(impaired.apply(frameAt(1.05, 1.7)).head.position.y).toBe(1.6);
+    degradation.apply(frameAt(1, 1.6));
+    expect(degradation.apply(frameAt(1.05, 1.7)).head.position.y).toBe(1.6);
     await embody(parts, { estimator: 'ik' }, 1);
-    impaired.apply(frameAt(1.1, 1.7));
-    expect(impaired.apply(frameAt(1.15, 1.8)).head.position.y).toBe(1.8);
+    degradation.apply(frameAt(1.1, 1.7));
+    expect(degradation.apply(frameAt(1.15, 1.8)).head.position.y).toBe(1.8);
   });
 
   test.each(['paper', 'child'])('is refused where "%s" cannot be had', async (missing) => {

@@ -39,7 +39,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
   const recorder = new Recorder();
   const body = new BodySolver({ estimator, calibration, networks });
   await body.setEstimator(estimator);
-  const impaired = new TrackingDegradation();
+  const degradation = new TrackingDegradation();
   let reported: TrackingFrame | null = null;
   const headset = {
     observeFrame: () => undefined,
@@ -78,7 +78,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     notices: { show: (_: unknown, fault: unknown) => faults.push(fault) },
     timing: { lastMs: 0 },
     source,
-    impaired,
+    degradation,
     body,
     recorder,
     difference: { observe: () => undefined },

@@ -49,5 +49,3 @@ export function createResultPanel(quality: Quality) {
     setHovered: (on: boolean): void => sheet.setHovered(on ? 'restart' : null),
   };
 }
-
-export type ResultPanel = ReturnType<typeof createResultPanel>;

@@ -117,20 +117,20 @@ export class BallBots {
   }
 
   private moveBot(bot: Bot, time: number): void {
-    const { connection: line, estimator } = bot;
-    const update = line.update(time);
-    const seen = line.room;
+    const { connection, estimator } = bot;
+    const update = connection.update(time);
+    const seen = connection.room;
     if (!seen || seen.mySeat === null || !seen.match) return;
     const { match, mySeat } = seen;
-    bot.gestures ??= createGestures(line);
+    bot.gestures ??= createGestures(connection);
     if (update.changes.length > 0) bot.gestures.resume();
     bot.gestures.onEvents(update.events);
     const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
-    const seat = { connection: line, gestures: bot.gestures, player: actor, estimator };
+    const seat = { connection, gestures: bot.gestures, player: actor, estimator };
     for (const moment of stepTimes(time, bot.movedAt)) stepSimulated(seat, moment, this.sight);
     bot.movedAt = time;
     const me = match.players[mySeat];
-    if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) line.setReady(true);
+    if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) connection.setReady(true);
   }
 
   /** Returns the actor of a bot; a new one for another station or another round, except during a match. */

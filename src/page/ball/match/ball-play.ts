@@ -114,28 +114,28 @@ export class BallPlay {
 
   /** Advances the match by a tracked frame and its buttons. `frame`: null if nothing is tracked, or for a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null {
-    const line = this.connection;
-    const before = line?.room;
-    if (!line || !before?.match) {
+    const connection = this.connection;
+    const before = connection?.room;
+    if (!connection || !before?.match) {
       this.newest = null;
       return null;
     }
     const me = before.mySeat;
     let played: BallGestureFrame | null = null;
     if (frame && me !== null) {
-      this.gestures ??= createGestures(line);
-      played = playFrame(line, this.gestures, frame, buttons);
+      this.gestures ??= createGestures(connection);
+      played = playFrame(connection, this.gestures, frame, buttons);
     }
-    const seen = line.room ?? before;
+    const seen = connection.room ?? before;
     const state = seen.match ?? before.match;
-    this.people.update(line, seen, frame, this.client.people);
+    this.people.update(connection, seen, frame, this.client.people);
     const { players, bodies, opening } = this.people;
     this.sight.opening = opening;
     const missed = this.simulated.takeMissed();
     this.newest = {
       state,
       epoch: before.epoch,
-      connection: line.status.phase,
+      connection: connection.status.phase,
       time: time + before.matchClockOffset,
       me,
       role: me === null ? null : (state.players[me]?.role ?? null),

@@ -82,19 +82,19 @@ export class SimulatedPlayer {
    * Returns the player's input at a time [s], or null without a seat. `catchUp`: also plays the moments between two
    * slow pictures, which no device could.
    */
-  act(line: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): PlayerInput | null {
-    const view = line.room;
+  act(connection: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): PlayerInput | null {
+    const view = connection.room;
     if (!view?.match || view.mySeat === null) return null;
     this.#steering = this.#options.steering?.() ?? null;
     const { bot, replaced } = this.#player(view, view.mySeat);
     if (replaced) {
       // The move from the previous hands to these is not a throw.
       const { frame, buttons } = simulatedInput(bot, time, view.match, view.mySeat, this.#sight);
-      playFrame(line, gestures, { ...frame, suspended: true }, buttons);
+      playFrame(connection, gestures, { ...frame, suspended: true }, buttons);
       this.#actedAt = time;
     }
-    if (catchUp) this.#catchUp(line, gestures, bot, time);
-    return simulatedInput(bot, time, line.room?.match ?? view.match, view.mySeat, this.#sight);
+    if (catchUp) this.#catchUp(connection, gestures, bot, time);
+    return simulatedInput(bot, time, connection.room?.match ?? view.match, view.mySeat, this.#sight);
   }
 
   /** Returns cues and haptics of the moments between two pictures, once. */
@@ -131,10 +131,10 @@ export class SimulatedPlayer {
   }
 
   /** Plays the moments before the current picture. */
-  #catchUp(line: BallConnection, gestures: BallGestures, actor: BallBot, time: number): void {
+  #catchUp(connection: BallConnection, gestures: BallGestures, actor: BallBot, time: number): void {
     const moments = stepTimes(time, this.#actedAt);
     this.#actedAt = time;
-    const seat = { connection: line, gestures, player: actor, estimator: this.#between };
+    const seat = { connection: connection, gestures, player: actor, estimator: this.#between };
     for (let i = 0; i < moments.length - 1; i++) {
       const done = stepSimulated(seat, moments[i]!, this.#sight);
       this.#cues = joined(this.#cues, done?.cues);

@@ -23,7 +23,7 @@ export interface BallBarState {
   readonly mouse: boolean | null;
   readonly name: string;
   /** The name that others see if the player gave none. */
-  readonly guestName: string;
+  readonly defaultName: string;
   /** The seat that a spectator's camera follows; null: the camera is free. */
   readonly following: number | null;
 }
@@ -105,7 +105,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
   );
   return {
     node,
-    show({ round, bots: botsOn, name: given, guestName }: BallBarState, soundOn: boolean) {
+    show({ round, bots: botsOn, name: given, defaultName }: BallBarState, soundOn: boolean) {
       const sentences = ballRulesText(round?.of ?? 20, round?.seconds ?? 90);
       if (sentences.join() !== rulesShown) {
         rulesShown = sentences.join();
@@ -115,7 +115,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
       rotate.input.checked = round?.rotate ?? false;
       rotate.input.disabled = round?.seat === null || isOut(round);
       sound.input.checked = soundOn;
-      name.placeholder = guestName;
+      name.placeholder = defaultName;
       if (document.activeElement !== name) name.value = given;
     },
   };

@@ -104,7 +104,7 @@ class BallPanel implements ActivityPanel {
       acting: settings.actor && !settings.mouse && !headset.worn,
       mouse: headset.worn || !settings.actor ? null : settings.mouse,
       name: settings.name,
-      guestName: settings.guestName,
+      defaultName: settings.defaultName,
       following: settings.following,
     };
   }

@@ -32,7 +32,7 @@ export class Voices {
     if (this.#silent !== this.#announcedSilent) this.#announce();
   });
   readonly #terms: IceServerCache | null;
-  #line: VoiceChannel | null = null;
+  #channel: VoiceChannel | null = null;
   #requested = false;
   #phase: 'off' | 'asked' | 'joining' | 'in' = 'off';
   #muted = true;
@@ -69,9 +69,9 @@ export class Voices {
   /** Once per frame, after the room's messages were received. */
   begin(): void {
     const { play } = this.#options;
-    if (play.voices !== this.#line) {
-      this.#line = play.voices;
-      this.#line?.setListener({
+    if (play.voices !== this.#channel) {
+      this.#channel = play.voices;
+      this.#channel?.setListener({
         onSeatsChanged: () => this.seats.update(),
         onSignal: (from, body) => this.#call?.receive(from, body),
       });
@@ -117,7 +117,7 @@ export class Voices {
     this.#turn += 1;
     this.#phase = 'off';
     this.#muted = true;
-    this.#line?.setVoice(null);
+    this.#channel?.setVoice(null);
     this.#microphone.close();
     clearInterval(this.#watching);
     this.seats.setCall(null);
@@ -152,7 +152,7 @@ export class Voices {
 
   dispose(): void {
     this.#disposed = true;
-    this.#line?.setListener(null);
+    this.#channel?.setListener(null);
     this.leave();
   }
 
@@ -176,7 +176,7 @@ export class Voices {
     this.#call = new VoiceCall({
       context,
       configuration: this.#configurationOf(terms),
-      signal: (to, body) => this.#line?.sendSignal(to, body),
+      signal: (to, body) => this.#channel?.sendSignal(to, body),
       onSession: () => this.#announce(),
       onVoice: () => this.seats.applyBlocks(),
     });
@@ -189,7 +189,7 @@ export class Voices {
 
   #announce(): void {
     this.#announcedSilent = this.#silent;
-    if (this.#call) this.#line?.setVoice({ session: this.#call.session, muted: this.#announcedSilent });
+    if (this.#call) this.#channel?.setVoice({ session: this.#call.session, muted: this.#announcedSilent });
   }
 
   /**

@@ -31,7 +31,7 @@ export interface PageFrameOptions {
   readonly timing: Pick<FrameTiming, 'lastMs'>;
   readonly source: TrackingSource;
   /** Between what is tracked and the body, where a study wants the body worse than it could be. */
-  readonly impaired: Pick<TrackingDegradation, 'apply' | 'reset'>;
+  readonly degradation: Pick<TrackingDegradation, 'apply' | 'reset'>;
   readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
   readonly recorder: Pick<Recorder, 'observe'> & ReplayState;
   readonly difference: Pick<DeviceDifference, 'observe'>;
@@ -90,16 +90,16 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   observe(frame: TrackingFrame): void {
-    const { recorder, controls, headset, activities, source, impaired } = this.#options;
+    const { recorder, controls, headset, activities, source, degradation } = this.#options;
     recorder.observe(frame);
     controls.observe(frame);
-    this.#embodied = impaired.apply(frame);
+    this.#embodied = degradation.apply(frame);
     headset.buzz(activities.play(this.#embodied, source.buttons));
   }
 
   estimate(frame: TrackingFrame | null): AvatarPose | null {
-    const { source, impaired, headset, body } = this.#options;
-    if (!frame) impaired.reset();
+    const { source, degradation, headset, body } = this.#options;
+    if (!frame) degradation.reset();
     const embodied = frame && this.#embodied;
     if (!headset.worn) return this.#replayed.update(embodied, source.standIn);
     this.#replayed.stop();

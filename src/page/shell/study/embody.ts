@@ -10,7 +10,7 @@ export interface EmbodyingParts {
   readonly writer: Pick<SettingsWriter, 'change'>;
   readonly avatar: Pick<UserAvatar, 'openBuiltIn' | 'builtInBody'>;
   readonly body: Pick<BodySolver, 'setEstimator' | 'estimator'>;
-  readonly impaired: Pick<TrackingDegradation, 'configure'>;
+  readonly degradation: Pick<TrackingDegradation, 'configure'>;
 }
 
 /**
@@ -19,14 +19,14 @@ export interface EmbodyingParts {
  * random in them.
  */
 export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed: number): Promise<void> {
-  const { writer, avatar, body, impaired } = parts;
+  const { writer, avatar, body, degradation } = parts;
   const { estimator, avatar: builtInBody, mirror, upperBodyOnly, ...impairments } = embodiment;
   writer.change({
     ...(mirror !== undefined && { mirror }),
     ...(upperBodyOnly !== undefined && { upperBodyOnly }),
     ...(builtInBody !== undefined && { builtInBody }),
   });
-  impaired.configure(impairments, seed);
+  degradation.configure(impairments, seed);
   const wears = builtInBody === undefined || builtInBody === avatar.builtInBody || avatar.openBuiltIn();
   const [worn] = await Promise.all([wears, body.setEstimator(estimator)]);
   if (!worn || body.estimator !== estimator) throw new PhrasedError('round.body');

@@ -1,12 +1,12 @@
 import { HttpError } from 'threepoint-http/http-error';
 import type { Call } from 'threepoint-http/router';
-import type { RoomPass, RoomTokens } from './room-tokens';
+import type { PassClaims, RoomTokens } from './room-tokens';
 
 /**
  * Returns the pass of a request to the room in its address (`?room=`). Throws an HttpError 401 without a valid pass,
  * 403 for another room.
  */
-export async function requirePass({ request, query }: Call, tokens: Pick<RoomTokens, 'verify'>): Promise<RoomPass> {
+export async function requirePass({ request, query }: Call, tokens: Pick<RoomTokens, 'verify'>): Promise<PassClaims> {
   const token = /^Bearer (\S{1,1024})$/.exec(request.headers.authorization ?? '')?.[1];
   const pass = token === undefined ? null : await tokens.verify(token);
   if (!pass) throw new HttpError(401, 'this needs a valid pass to the room');

@@ -10,7 +10,7 @@ export interface AssignedPlace {
 }
 
 /** The claims of a token: the person and the room. Only the server reads them; other players see a seat and a name. */
-export interface RoomPass {
+export interface PassClaims {
   readonly identity: string;
   readonly room: string;
   /** The name of the game. */
@@ -57,7 +57,7 @@ export class RoomTokens {
   }
 
   /** Returns a new token for the same person. */
-  sign({ identity, room, kind, terms, assigned }: RoomPass): Promise<string> {
+  sign({ identity, room, kind, terms, assigned }: PassClaims): Promise<string> {
     const now = Math.floor(this.#now());
     return new SignJWT({ room, kind, terms, ...(assigned && { assigned: { ...assigned } }) })
       .setProtectedHeader({ alg: algorithm })
@@ -69,16 +69,16 @@ export class RoomTokens {
   }
 
   /** Verifies a token that may have expired within the last 12 hours; it permits renewal, not entry. */
-  verifyRenewable(token: string): Promise<RoomPass | null> {
+  verifyRenewable(token: string): Promise<PassClaims | null> {
     return this.#read(token, renewalSeconds);
   }
 
   /** Returns the claims of a token; null: not signed by this server, modified, or expired. */
-  verify(token: string): Promise<RoomPass | null> {
+  verify(token: string): Promise<PassClaims | null> {
     return this.#read(token, 5);
   }
 
-  async #read(token: string, tolerance: number): Promise<RoomPass | null> {
+  async #read(token: string, tolerance: number): Promise<PassClaims | null> {
     if (token.length > longestToken) return null;
     try {
       const { payload } = await jwtVerify(token, this.#key, {

@@ -6,7 +6,7 @@ import { messageEvent } from '../../protocol/socket-parsers';
 import type { HostedGame } from '../../room/match-policy';
 import type { FreshPose } from '../../room/room-host';
 import { TokenBucket } from '../../room/token-bucket';
-import type { RoomPass } from '../access/room-tokens';
+import type { PassClaims } from '../access/room-tokens';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayCounts } from '../settings/relay-metrics';
 import { closeConnection } from '../sockets/relay-transport';
@@ -18,7 +18,7 @@ export interface Client {
   readonly socket: Socket;
   /** The TCP socket of the connection. */
   readonly wire: NetSocket;
-  readonly pass: RoomPass;
+  readonly pass: PassClaims;
   /** Time of the connection [s]. */
   readonly connectedAt: number;
   readonly poses: TokenBucket;

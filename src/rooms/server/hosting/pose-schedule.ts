@@ -2,7 +2,7 @@ import { performance } from 'node:perf_hooks';
 import { clamp } from 'threepoint/core/math/damper';
 
 /** A room that may have poses to send. */
-export interface PoseSender {
+export interface ScheduledRoom {
   readonly room: { sendPoses(): void };
   /** The clients that receive them. */
   readonly clients: { readonly size: number };
@@ -23,7 +23,7 @@ const weight = 0.25;
 /** In a room of two, waiting saves no message: two packets of one sender rarely arrive within the interval. */
 const pair = 2;
 
-function send(sender: PoseSender, now: number): void {
+function send(sender: ScheduledRoom, now: number): void {
   sender.sentAt = now;
   sender.room.sendPoses();
 }
@@ -48,8 +48,8 @@ export class PoseSchedule {
   readonly #now: () => number;
   readonly #busyShare: () => number;
   /** Senders of this turn of the event loop, and those that wait for the timer. */
-  readonly #fresh = new Set<PoseSender>();
-  readonly #waiting = new Set<PoseSender>();
+  readonly #fresh = new Set<ScheduledRoom>();
+  readonly #waiting = new Set<ScheduledRoom>();
   #immediate: NodeJS.Immediate | null = null;
   #timer: NodeJS.Timeout | null = null;
   /** Time at which the timer fires [s]. */
@@ -63,7 +63,7 @@ export class PoseSchedule {
   }
 
   /** Schedules a send. */
-  add(sender: PoseSender): void {
+  add(sender: ScheduledRoom): void {
     if (this.#waiting.has(sender)) return;
     this.#fresh.add(sender);
     this.#immediate ??= setImmediate(this.#sendFresh);

@@ -3,11 +3,11 @@ import type { Logger } from 'pino';
 import type { RoomMessage } from '../../protocol/messages';
 import type { HostedGame } from '../../room/match-policy';
 import { Room, type RoomCensus } from '../../room/room';
-import type { RoomPass } from '../access/room-tokens';
+import type { PassClaims } from '../access/room-tokens';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { HostCensus, RelayMetrics } from '../settings/relay-metrics';
 import { type Client, disconnect, send, sendPoses } from './client';
-import { PoseSchedule, type PoseSender } from './pose-schedule';
+import { PoseSchedule, type ScheduledRoom } from './pose-schedule';
 import type { RoomKinds } from './room-kinds';
 import { createTicker } from './ticker';
 
@@ -18,7 +18,7 @@ export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly phase: HostedGame['state']['phase'];
 }
 
-export interface RegisteredRoom extends PoseSender {
+export interface RegisteredRoom extends ScheduledRoom {
   readonly room: Room<HostedGame>;
   /** Whether the lobby lists the room. */
   readonly listed: boolean;
@@ -47,7 +47,7 @@ const emptyRoomSeconds = 5;
 function roomFactory({ configuration, kinds, log, metrics, broadcast }: RoomRegistryOptions) {
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
-  return ({ room: id, kind, terms, assigned }: RoomPass): RegisteredRoom | null => {
+  return ({ room: id, kind, terms, assigned }: PassClaims): RegisteredRoom | null => {
     const policy = kinds.get(kind)?.(terms, assigned !== null);
     if (!policy) return null;
     made += 1;
@@ -135,7 +135,7 @@ export class RoomRegistry {
   readonly #options: RoomRegistryOptions;
   readonly #rooms = new Map<string, RegisteredRoom>();
   readonly #active: ActiveRooms;
-  readonly #create: (pass: RoomPass) => RegisteredRoom | null;
+  readonly #create: (pass: PassClaims) => RegisteredRoom | null;
   readonly #schedule: PoseSchedule;
 
   constructor(options: RoomRegistryOptions) {
@@ -182,7 +182,7 @@ export class RoomRegistry {
    * Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the
    * game.
    */
-  getOrCreate(pass: RoomPass): RegisteredRoom | null {
+  getOrCreate(pass: PassClaims): RegisteredRoom | null {
     const existing = this.wake(pass.room);
     if (existing) return existing;
     if (this.#rooms.size >= this.#options.configuration.maxRooms) return null;

@@ -9,7 +9,7 @@ import { deviceBodySize, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
 /** The degradation of tracking that a study applies on purpose, to measure its effect on people. */
-export interface TrackingImpairments {
+export interface DegradationSettings {
   /** The added latency [ms], up to `maxLatencyMs`. */
   readonly latencyMs?: number;
   /** Normal noise, drawn for every frame: standard deviation along and about each axis. */
@@ -86,7 +86,7 @@ function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrack
  * because it does not come from these trackers. Further trackers are left out. Makes no garbage.
  */
 export class TrackingDegradation {
-  #impairments: TrackingImpairments | null = null;
+  #settings: DegradationSettings | null = null;
   /** A ring buffer; `#newest` is the index of the newest frame, `#count` the number of frames. */
   readonly #ring = Array.from({ length: kept }, () => new BufferedFrame());
   #newest = 0;
@@ -110,8 +110,8 @@ export class TrackingDegradation {
   /**
    * Sets the degradation from the next frame on; null: none. Random numbers follow from the seed and the frames' times.
    */
-  configure(impairments: TrackingImpairments | null, seed = 0): void {
-    this.#impairments = impairments;
+  configure(settings: DegradationSettings | null, seed = 0): void {
+    this.#settings = settings;
     this.#seed[0] = seed;
     this.#lossesDrawn = false;
     this.reset();
@@ -127,17 +127,17 @@ export class TrackingDegradation {
    * next call overwrites.
    */
   apply(frame: TrackingFrame): TrackingFrame {
-    const impairments = this.#impairments;
-    if (!impairments) return frame;
+    const settings = this.#settings;
+    if (!settings) return frame;
     if (frame.suspended) {
       this.reset();
       return frame;
     }
     this.#push(frame);
-    const written = this.#delay(frame, impairments);
+    const written = this.#delay(frame, settings);
     written.time = frame.time;
-    if (impairments.dropouts) this.#drop(written, impairments.dropouts);
-    if (impairments.trackerNoise) this.#shake(written, impairments.trackerNoise);
+    if (settings.dropouts) this.#drop(written, settings.dropouts);
+    if (settings.trackerNoise) this.#shake(written, settings.trackerNoise);
     return written;
   }
 
@@ -152,7 +152,7 @@ export class TrackingDegradation {
   }
 
   /** Writes the tracking of `latencyMs` ago, between two frames; the oldest frame where the buffer is shorter. */
-  #delay(frame: TrackingFrame, { latencyMs = 0 }: TrackingImpairments): WrittenFrame {
+  #delay(frame: TrackingFrame, { latencyMs = 0 }: DegradationSettings): WrittenFrame {
     const time = frame.time - latencyMs / 1000;
     let steps = 0;
     while (steps < this.#count - 1 && this.#frameBefore(steps).time > time) steps += 1;
@@ -181,7 +181,7 @@ export class TrackingDegradation {
     this.#fingers[side] = before.shapeKnown ? shape : null;
   }
 
-  #drop(written: WrittenFrame, dropouts: NonNullable<TrackingImpairments['dropouts']>): void {
+  #drop(written: WrittenFrame, dropouts: NonNullable<DegradationSettings['dropouts']>): void {
     const { time } = written;
     for (let i = 0; i < sides.length; i++) {
       const side = sides[i]!;
@@ -199,7 +199,7 @@ export class TrackingDegradation {
     this.#lossesDrawn = true;
   }
 
-  #shake(written: WrittenFrame, noise: NonNullable<TrackingImpairments['trackerNoise']>): void {
+  #shake(written: WrittenFrame, noise: NonNullable<DegradationSettings['trackerNoise']>): void {
     this.#shakePose(this.#head, noise);
     if (written.leftHand) this.#shakePose(this.#hands.left, noise);
     if (written.rightHand) this.#shakePose(this.#hands.right, noise);
@@ -207,7 +207,7 @@ export class TrackingDegradation {
 
   #shakePose(
     { position, orientation }: MutableTrackedPose,
-    noise: NonNullable<TrackingImpairments['trackerNoise']>,
+    noise: NonNullable<DegradationSettings['trackerNoise']>,
   ): void {
     const normals = this.#drawNormals();
     const far = noise.positionMm / 1000;

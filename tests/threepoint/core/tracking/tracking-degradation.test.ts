@@ -4,7 +4,7 @@ import type { TrackedPose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, multiply } from 'threepoint/core/math/quat';
 import { distance, vec3 } from 'threepoint/core/math/vec3';
 import { deviceBodySize } from 'threepoint/core/tracking/device-body';
-import { TrackingDegradation, type TrackingImpairments } from 'threepoint/core/tracking/tracking-degradation';
+import { type DegradationSettings, TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
 import { evenly, seed } from '../arbitraries';
@@ -28,9 +28,9 @@ const frameAt = (time: number): TrackingFrame => ({
 });
 
 /** Frames of a device of so many Hz, each up to a third of a frame late, as this tracking has them; a copy of each. */
-function followed(impairments: TrackingImpairments, seconds: number, rateHz = 72, of = 7): readonly TrackingFrame[] {
+function followed(settings: DegradationSettings, seconds: number, rateHz = 72, of = 7): readonly TrackingFrame[] {
   const tracking = new TrackingDegradation();
-  tracking.configure(impairments, of);
+  tracking.configure(settings, of);
   return Array.from({ length: seconds * rateHz }, (_, index) => {
     const time = 50 + (index + (index % 4) / 12) / rateHz;
     return structuredClone(tracking.apply(frameAt(time)));
@@ -95,9 +95,9 @@ describe('an added latency', () => {
 describe('a body of the device’s own', () => {
   /** Every joint so many metres along each axis as it is late. */
   const bodyAt = (time: number) => new Float32Array(deviceBodySize).fill(time);
-  const followBodies = (impairments: TrackingImpairments, times: readonly number[]) => {
+  const followBodies = (settings: DegradationSettings, times: readonly number[]) => {
     const tracking = new TrackingDegradation();
-    tracking.configure(impairments);
+    tracking.configure(settings);
     // In memory that the device overwrites.
     const deviceBody = new Float32Array(deviceBodySize);
     return times.map((time) => {
@@ -114,12 +114,12 @@ describe('a body of the device’s own', () => {
   });
 
   test('is left as it is by noise and dropouts, which are of head and hands', () => {
-    const impairments = {
+    const settings = {
       trackerNoise: { positionMm: 20, rotationDegrees: 5 },
       dropouts: { perMinute: 60, seconds: 1 },
     };
     const times = [3, 3.1, 3.2];
-    expect(followBodies(impairments, times).map(({ deviceBody }) => deviceBody)).toEqual(times.map(bodyAt));
+    expect(followBodies(settings, times).map(({ deviceBody }) => deviceBody)).toEqual(times.map(bodyAt));
   });
 });
 
@@ -194,7 +194,7 @@ describe('dropouts', () => {
   });
 });
 
-test('without impairments a frame goes on as it came', () => {
+test('without settings a frame goes on as it came', () => {
   const tracking = new TrackingDegradation();
   const frame = frameAt(4);
   expect(tracking.apply(frame)).toBe(frame);
