@@ -14,19 +14,19 @@ export interface EmbodyingParts {
 }
 
 /**
- * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence where it
- * cannot be. What the embodiment does not say stays, but for impairments: there are none then. `seed`: of what is
- * random in them.
+ * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence if it
+ * cannot be drawn. Settings that the embodiment lacks are unchanged, and a degradation that it lacks is switched off.
+ * `seed`: of the random parts of the degradation.
  */
 export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed: number): Promise<void> {
   const { writer, avatar, body, degradation } = parts;
-  const { estimator, avatar: builtInBody, mirror, upperBodyOnly, ...impairments } = embodiment;
+  const { estimator, avatar: builtInBody, mirror, upperBodyOnly, ...degradationSettings } = embodiment;
   writer.change({
     ...(mirror !== undefined && { mirror }),
     ...(upperBodyOnly !== undefined && { upperBodyOnly }),
     ...(builtInBody !== undefined && { builtInBody }),
   });
-  degradation.configure(impairments, seed);
+  degradation.configure(degradationSettings, seed);
   const wears = builtInBody === undefined || builtInBody === avatar.builtInBody || avatar.openBuiltIn();
   const [worn] = await Promise.all([wears, body.setEstimator(estimator)]);
   if (!worn || body.estimator !== estimator) throw new PhrasedError('round.body');
