@@ -91,7 +91,7 @@ test('thirty packets a second of at most 70 bytes, and a profile a second', () =
   expect(Math.max(...sent.map(({ bytes }) => bytes.length))).toBeLessThanOrEqual(maxPeerPacketBytes);
 });
 
-test('whoever joins later sees the person within a second, or at once after sendProfile', () => {
+test('a peer that joins later sees the person within a second, or at once after sendProfile', () => {
   const { until, sent, sender } = sending();
   until(4500);
   const late = new RemotePoses();

@@ -51,8 +51,8 @@ function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
 }
 
 /**
- * The bones of a body while its rest pose is settled. They are rotated and moved in the world frame, whatever nodes lie
- * between them.
+ * The bones of a body while its rest pose is settled. They are rotated and moved in the world frame, even if other
+ * nodes lie between them.
  */
 class RestingBody {
   constructor(

@@ -13,7 +13,7 @@ import {
 } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
 import type { HelperJoint, Rig } from './rig';
-import type { SpreadLimb } from './spread-limb-weights';
+import { type SpreadLimb, spreadLimbOf } from './spread-limb-weights';
 
 /** One arm's joints that its file lacks. */
 interface ArmHelpers {
@@ -64,7 +64,9 @@ export class ArmHelperJoints {
 
   /** Returns the joints among which the skin is to be shared. */
   limbs(): readonly SpreadLimb[] {
-    return this.#arms.map((arm) => spreadOf(this.#rig, arm));
+    return this.#arms.map(({ shoulder, elbow, wrist, upper, lower }) =>
+      spreadLimbOf([shoulder, elbow, wrist], { upper, lower }),
+    );
   }
 
   /** Takes the twist out of the forearms of a pose, floor frame; `place` gives it back to what lies along them. */
@@ -133,25 +135,5 @@ function makeHelpers(rig: Rig, side: Side): ArmHelpers {
     lower: Array.from({ length: lowerJoints }, (_, k) => rig.addHelper(lowerArm, `twist ${k + 1} of ${lowerJoints}`)),
     upperTwist: 0,
     lowerTwist: 0,
-  };
-}
-
-function spreadOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmHelpers): SpreadLimb {
-  const bone = (name: 'UpperArm' | 'LowerArm' | 'Hand') => {
-    const found = rig.bones.get(`${side}${name}`);
-    if (!found) throw new Error(`avatar/arm-helpers: a rig without ${side}${name}`);
-    return found;
-  };
-  const [upperArm, lowerArm, hand] = [bone('UpperArm'), bone('LowerArm'), bone('Hand')];
-  return {
-    upper: upperArm.node,
-    lower: lowerArm.node,
-    end: hand.node,
-    places: [upperArm.restPosition, lowerArm.restPosition, hand.restPosition],
-    beforeUpper: shoulder.node,
-    beforeLower: elbow.node,
-    beforeEnd: wrist.node,
-    alongUpper: [...upper.map(({ node }) => node), upperArm.node],
-    alongLower: [lowerArm.node, ...lower.map(({ node }) => node)],
   };
 }

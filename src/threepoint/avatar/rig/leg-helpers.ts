@@ -3,7 +3,7 @@ import { type Quat, quat, slerp } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
 import type { LegPose } from '../legs/leg-posture';
 import type { HelperJoint, Rig } from './rig';
-import type { SpreadLimb } from './spread-limb-weights';
+import { type SpreadLimb, spreadLimbOf } from './spread-limb-weights';
 
 /** One leg's joints that its file lacks: each half of the way between the bones that meet there. */
 interface LegHelpers {
@@ -35,17 +35,7 @@ export class LegHelperJoints {
   limbs(): readonly SpreadLimb[] {
     return sides.map((side) => {
       const { hip, knee, ankle } = this.#legs[side];
-      return {
-        upper: hip.base.node,
-        lower: knee.base.node,
-        end: ankle.base.node,
-        places: [hip.base.restPosition, knee.base.restPosition, ankle.base.restPosition],
-        beforeUpper: hip.node,
-        beforeLower: knee.node,
-        beforeEnd: ankle.node,
-        alongUpper: [hip.base.node],
-        alongLower: [knee.base.node],
-      };
+      return spreadLimbOf([hip, knee, ankle]);
     });
   }
 

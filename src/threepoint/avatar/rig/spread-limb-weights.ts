@@ -11,6 +11,7 @@ import {
 import type { Steps } from '../between-frames';
 import { skinnedMeshesOf } from '../scene-meshes';
 import { isBelow } from './body-meshes';
+import type { HelperJoint } from './rig';
 
 /** The bones of an arm or a leg, and the joints to which its skin weights are redistributed. */
 export interface SpreadLimb {
@@ -27,6 +28,28 @@ export interface SpreadLimb {
   /** The joints from the first place to the second and from there to the third, at even distances. */
   readonly alongUpper: readonly Object3D[];
   readonly alongLower: readonly Object3D[];
+}
+
+/**
+ * Returns a limb by the joints that turn half as far as its three bones. `along`: further joints on its first bone and
+ * on its second, in the order from the trunk.
+ */
+export function spreadLimbOf(
+  [first, second, third]: readonly [HelperJoint, HelperJoint, HelperJoint],
+  along: Readonly<Record<'upper' | 'lower', readonly HelperJoint[]>> = { upper: [], lower: [] },
+): SpreadLimb {
+  const nodesOf = (joints: readonly HelperJoint[]) => joints.map(({ node }) => node);
+  return {
+    upper: first.base.node,
+    lower: second.base.node,
+    end: third.base.node,
+    places: [first.base.restPosition, second.base.restPosition, third.base.restPosition],
+    beforeUpper: first.node,
+    beforeLower: second.node,
+    beforeEnd: third.node,
+    alongUpper: [...nodesOf(along.upper), first.base.node],
+    alongLower: [second.base.node, ...nodesOf(along.lower)],
+  };
 }
 
 /** The range of a bone in which its skin passes from joint to joint [fractions of its length]; the ends are hinges'. */
