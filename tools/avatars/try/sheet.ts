@@ -118,12 +118,13 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   const loadMs = performance.now() - began;
   const scene = createScene();
   scene.add(avatar.object);
-  avatar.setCalibration(defaultCalibration);
   const outside = [fromOutside(-0.9, -3.8), fromOutside(-3.9, -0.3), fromOutside(1.2, 3.7)];
   let seenFromInside = 0;
   let waving: string | null = null;
   for (const [index, { name: posture, frame }] of allPostures.entries()) {
     avatar.setFirstPerson(false);
+    // The feet stand where each posture puts them, not where the one before left them.
+    avatar.setCalibration(defaultCalibration);
     hold(avatar, frame, index * 10);
     const [column, band] = [index % columns, Math.floor(index / columns)];
     for (const [side, camera] of outside.entries()) {
