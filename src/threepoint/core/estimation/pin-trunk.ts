@@ -1,3 +1,4 @@
+import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
 import limbLimits from '../body/limb-limits.json';
 import {
   elbowCircle,
@@ -322,8 +323,18 @@ function carryShoulder(side: Side, torso: TorsoPose, hand: CompletedHand, bones:
   multiply(torso.rotations.upperChest, conjugate(fitted.rotations.upperChest, inverse), relative);
   subtract(torso.shoulders[side], fitted.neck, shoulder);
   add(torso.neck, rotate(relative, shoulder, shoulder), shoulder);
-  const far = distance(shoulder, hand.goal.position);
-  const missing = hand.source === 'tracked' ? far - softenedReach(far, bones.reach) : 0;
-  lerp(shoulder, hand.goal.position, missing / Math.max(far, 1e-9), shoulder);
+  if (hand.source === 'tracked') {
+    const { skeleton } = bones;
+    const root = clavicleRoot(side, torso.neck, torso.rotations.upperChest, skeleton, bone);
+    const wanted = softenedReach(distance(shoulder, hand.goal.position), bones.reach);
+    bringTo(
+      shoulder,
+      root,
+      length(clavicleRest(side, skeleton)),
+      hand.goal.position,
+      wanted,
+      torso.rotations.upperChest,
+    );
+  }
   placeShoulder(side, torso, bones, shoulder, limits.torsoExtreme.clavicleSwing);
 }
