@@ -91,7 +91,7 @@ describe('an avatar in the store', () => {
     await ben.store(bytes);
     ben.say({ type: 'wear', avatar: hash });
     ben.say({ type: 'leave' });
-    await until('the room gone', () => relay.relay.host.room('fir') === null, 20);
+    await until('the room gone', () => relay.relay.rooms.get('fir') === undefined, 20);
     await until('the file gone with it', () => relay.relay.avatars.get('fir', hash) === null);
   });
 

@@ -102,7 +102,7 @@ test('a listener of the lobby who answers pings and reads nothing is thrown out'
   socket.pause();
   const answering = setInterval(() => socket.send('3'), 500);
   onTestFinished(() => clearInterval(answering));
-  const hall = relay.relay.host.io.of(lobbyNamespace);
+  const hall = relay.relay.io.of(lobbyNamespace);
   const changing = setInterval(() => hall.local.emit('node', { node: 'one', rooms: longList }), 5);
   onTestFinished(() => clearInterval(changing));
   await until('the end of the one who reads nothing', () => relay.relay.census.sockets === 1, 15);

@@ -383,8 +383,8 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
     collectGarbage();
     heaps.push(process.memoryUsage().heapUsed / 2 ** 20);
   }
-  await until('every room closed', () => server.relay.host.census.rooms === 0, 20);
-  const engine = server.relay.host.io.engine as { readonly clientsCount: number };
+  await until('every room closed', () => server.relay.rooms.census.rooms === 0, 20);
+  const engine = server.relay.io.engine as { readonly clientsCount: number };
   printFigures('soak', {
     rounds,
     'handles first': counts[0] ?? 0,

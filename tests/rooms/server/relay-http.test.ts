@@ -128,7 +128,7 @@ describe('the relay over HTTP', () => {
     const found = async () => (await post('/api/rooms/match', { kind: 'ball' })).json();
     expect(await found()).toMatchObject({ found: false });
     const guest = await rawGuest(server.url, 'meadow');
-    await until('the lobby to know', () => server.relay.host.rooms.length === 1);
+    await until('the lobby to know', () => server.relay.rooms.listings.length === 1);
     await expect.poll(found).toEqual({ room: 'meadow', found: true });
     guest.socket.disconnect();
   });

@@ -73,7 +73,7 @@ describe('a relay', () => {
       people.push(ben);
       await until('ben in', () => ben.connection.room !== null);
       for (const { match } of people) expect(match.options).toMatchObject({ seconds: 30, balls: 6 });
-      expect(server.relay.host.room('short')?.options.pausable).toBe(false);
+      expect(server.relay.rooms.get('short')?.room.options.pausable).toBe(false);
       const cal = arrive(server.url, 'usual', 'Cal');
       people.push(cal);
       await until('cal in', () => cal.connection.room !== null);
@@ -104,13 +104,13 @@ describe('a relay', () => {
         'the pause',
         all(({ connection }) => connection.room?.paused ?? false),
       );
-      const stands = server.relay.host.room('study')?.match.tick ?? -1;
+      const stands = server.relay.rooms.get('study')?.room.match.tick ?? -1;
       const asSeen = people.map(({ match }) => match.tick);
       const heard = people.map(({ poses }) => poses.length);
       await until('each to have heard sixty more poses', () =>
         people.every(({ poses }, i) => poses.length > heard[i]! + 60),
       );
-      expect(server.relay.host.room('study')?.match.tick).toBe(stands);
+      expect(server.relay.rooms.get('study')?.room.match.tick).toBe(stands);
       expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
       ann.connection.setPaused(false);
       await until(
@@ -137,7 +137,7 @@ describe('a relay', () => {
       }
       await until('the match running', () => people.every(({ match }) => match.phase === 'running'));
       const thrower = people.find(({ seat }) => seat === 0)!;
-      const rightFist = () => (server.relay.host.room('game')?.match as BallState | undefined)?.players[0]?.right;
+      const rightFist = () => (server.relay.rooms.get('game')?.room.match as BallState | undefined)?.players[0]?.right;
       thrower.place(atRack(0));
       await until('the fist at the rack', () => rightFist()?.y === 0.925);
       thrower.grab(0);
