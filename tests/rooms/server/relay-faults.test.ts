@@ -5,7 +5,7 @@ import { nextRandom } from 'threepoint/core/math/random';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
-import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
+import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
@@ -164,7 +164,7 @@ test('500 clients reconnect at once', async () => {
       const room = `meadow-${Math.floor(i / 16)}`;
       const token = await tokens.issue(room, ballKind);
       return ending(
-        createSocketConnection(ballClientPolicy, {
+        new SocketConnection(ballClientPolicy, {
           url: relay.url,
           room,
           visitor: visitor(`P${i}`),

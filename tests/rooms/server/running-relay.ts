@@ -12,7 +12,7 @@ import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
+import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { maxSeats, protocolVersion, type RoomTerms } from 'threepoint-rooms/protocol/messages';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { messageEvent, pageParser } from 'threepoint-rooms/protocol/socket-parsers';
@@ -76,7 +76,7 @@ export function arrive(
   now = seconds,
 ) {
   const pass = createRoomPass(url, room, kindOf(room), undefined, terms);
-  const connection = createSocketConnection(ballClientPolicy, {
+  const connection = new SocketConnection(ballClientPolicy, {
     url,
     room,
     visitor: visitor(name, more),
