@@ -85,7 +85,7 @@ describe('a seated player who changes with every message', () => {
     testRoom.join('ben');
     testRoom.sent.length = 0;
     for (let i = 0; i < attackSeconds * perSecond; i++) {
-      testRoom.room.onMessage('ann', change(i), testRoom.time);
+      testRoom.say('ann', change(i));
       testRoom.tick(1 / perSecond);
     }
     const sent = seatMessages(testRoom, 0).length;
@@ -106,7 +106,7 @@ describe('a seated player who changes with every message', () => {
     testRoom.sent.length = 0;
     const attempts = attackSeconds * perSecond;
     for (let i = 0; i < attempts; i++) {
-      testRoom.room.onMessage('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 }, testRoom.time);
+      testRoom.say('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 });
       testRoom.tick(1 / perSecond);
     }
     const moves = testRoom.sent.filter(({ message }) => message.type === 'seated').length;
@@ -121,9 +121,9 @@ describe('a seated player who changes with every message', () => {
     const testRoom = createTestRoom();
     testRoom.join('ann');
     testRoom.join('ben');
-    for (let i = 0; i < 100; i++) testRoom.room.onMessage('ann', { type: 'wear', avatar: hash(i) }, testRoom.time);
+    for (let i = 0; i < 100; i++) testRoom.say('ann', { type: 'wear', avatar: hash(i) });
     testRoom.sent.length = 0;
-    testRoom.room.onMessage('ben', { type: 'wear', avatar: 'woman' }, testRoom.time);
+    testRoom.say('ben', { type: 'wear', avatar: 'woman' });
     expect(seatMessages(testRoom, 1)).toHaveLength(1);
     expect(seatMessages(testRoom, 0)).toHaveLength(0);
   });

@@ -28,19 +28,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   testRoom.begin();
   const good = () =>
     packetAt(testRoom.room.match, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), testRoom.time);
-  const words = [
-    'type',
-    'action',
-    'grab',
-    'throw',
-    'ready',
-    'at',
-    'sequence',
-    '__proto__',
-    'constructor',
-    'seat',
-    '1e999',
-  ];
+  const words = 'type action grab throw ready at sequence __proto__ constructor seat 1e999'.split(' ');
   const jsonLike = (depth: number): unknown => {
     const kind = pick(depth > 3 ? 6 : 8);
     if (kind === 0) return null;
@@ -79,7 +67,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
       if (chance() < 0.3) near[Object.keys(near)[pick(4)]!] = jsonLike(2);
       const message = clientMessageFrom(chance() < 0.5 ? value : { type: 'action', action: near });
       const isHeard = message && message.type !== 'join' && message.type !== 'leave';
-      const isBad = isHeard && testRoom.room.onMessage('ann', message, testRoom.time) === 'bad';
+      const isBad = isHeard && testRoom.say('ann', message) === 'bad';
       if (message && !isBad) understood += 1;
       ballRoomMessageFrom(value);
     } else if (kind === 3) {
@@ -123,7 +111,6 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
     let sequence = 0;
     for (let ball = 0; ball < balls / 2; ball++) {
       const grab: BallAction = { type: 'grab', sequence: ++sequence, side: 'right', ball };
-      const at = () => testRoom.time - testRoom.welcomeOf('ann').matchStart;
       testRoom.pose('ann', 0, atRack(ball, balls), testRoom.time + 0.01);
       testRoom.tick();
       const burst = (fresh: BallAction) => {
@@ -138,15 +125,7 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
       burst(grab);
       testRoom.stand();
       testRoom.tick();
-      burst({
-        type: 'throw',
-        sequence: ++sequence,
-        side: 'right',
-        ball,
-        at: at(),
-        position: releaseOf(0),
-        velocity: velocityTo(releaseOf(0), opening, 1),
-      });
+      burst(testRoom.throwOf(ball, ++sequence));
       testRoom.pass(0.3, () => testRoom.pose('cal', 2, holding(opening)));
     }
     testRoom.pass(1.5, () => testRoom.pose('cal', 2, holding(opening)));
@@ -177,9 +156,7 @@ describe('latency', () => {
     const late = createRandom(seed + 1_000_003);
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.tick();
     testRoom.pose('ann', 0, fists(releaseOf(0)), testRoom.time);
     const start = testRoom.time;
@@ -198,15 +175,8 @@ describe('latency', () => {
         underway.push({ at: time + delay, send: () => void testRoom.room.onPose('ann', anns, testRoom.time) });
       }
       if (time <= throwAt && time + 1 / 60 > throwAt) {
-        const action: BallAction = {
-          type: 'throw',
-          sequence: 2,
-          side: 'right',
-          ball: 0,
-          at: throwAt - matchStart,
-          position: releaseOf(0),
-          velocity: velocityTo(releaseOf(0), aim, flight),
-        };
+        const velocity = velocityTo(releaseOf(0), aim, flight);
+        const action = { ...testRoom.throwOf(0, 2, velocity), at: throwAt - matchStart };
         underway.push({ at: throwAt + delay + jitter * late(), send: () => testRoom.act('ann', action) });
       }
       for (const message of underway.filter(({ at }) => at <= time && at > time - 1 / 60)) message.send();
@@ -245,28 +215,17 @@ describe('a page that comes at t = 60 s', () => {
     const testRoom = createTestRoom({ ball: { balls: 20 } });
     // The longest names there are.
     for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: '\u{1f600}'.repeat(10) });
-    for (const client of ['ann', 'ben', 'cal'])
-      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.ready();
     testRoom.stand();
     testRoom.tick();
     let sequence = 0;
     testRoom.pass(20, testRoom.stand);
     for (let ball = 0; ball < 10; ball++) {
-      testRoom.pose('ann', 0, atRack(ball), testRoom.time + 0.01);
-      testRoom.tick();
-      testRoom.act('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
+      testRoom.grab(ball, ++sequence);
       testRoom.tick();
       testRoom.stand();
       testRoom.tick();
-      testRoom.act('ann', {
-        type: 'throw',
-        sequence: ++sequence,
-        side: 'right',
-        ball,
-        at: testRoom.time - testRoom.welcomeOf('ann').matchStart,
-        position: releaseOf(0),
-        velocity: vec3(1.2345678 - ball, 4.1234567, -3.1234567),
-      });
+      testRoom.act('ann', testRoom.throwOf(ball, ++sequence, vec3(1.2345678 - ball, 4.1234567, -3.1234567)));
       testRoom.pass(4, testRoom.stand);
     }
     testRoom.join('dot', { spectate: true });
@@ -332,20 +291,9 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
   for (const silence of [5, 29]) {
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.pass(0.1, testRoom.stand);
-    const at = testRoom.time - testRoom.welcomeOf('ann').matchStart;
-    testRoom.act('ann', {
-      type: 'throw',
-      sequence: 2,
-      side: 'right',
-      ball: 0,
-      at,
-      position: releaseOf(0),
-      velocity: velocityTo(releaseOf(0), opening, 1),
-    });
+    testRoom.act('ann', testRoom.throwOf(0, 2));
     testRoom.pass(1.5, testRoom.stand);
     expect(testRoom.room.match.score).toBe(1);
     testRoom.room.disconnect('ann', testRoom.time);
@@ -370,8 +318,7 @@ test('rooms that live for hours keep nothing: the same answer, no growth', { tag
   let rounds = 0;
   for (let second = 0; second < hours * 3600; second++) {
     testRoom.pass(1, testRoom.stand);
-    for (const client of ['ann', 'ben', 'cal'])
-      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.ready();
     if (second % 30 === 0) {
       testRoom.room.disconnect('ben', testRoom.time);
       testRoom.join('ben', {}, 'ben');
