@@ -5,7 +5,7 @@ import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball
 import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
 import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
 import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
-import type { ClientMessage, JoinRequest } from 'threepoint-rooms/protocol/messages';
+import { type ClientMessage, type JoinRequest, protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
@@ -24,6 +24,13 @@ export const joinRequest = (more: Partial<JoinRequest> = {}): JoinRequest => ({
   avatar: defaultAvatar,
   voice: null,
   ...more,
+});
+
+/** The first message of a client. */
+export const joinMessage = (more: Partial<JoinRequest> = {}): ClientMessage => ({
+  type: 'join',
+  version: protocolVersion,
+  ...joinRequest(more),
 });
 
 /** The clients of a match: Ann and Ben throw, Cal holds the basket. */
