@@ -13,7 +13,7 @@ import { isNightly } from '../../nightly';
 import { printFigures } from '../../print-figures';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { countingPolicy } from './counting-game';
-import { createTestRoom, joinRequest, packetAt } from './test-room';
+import { createTestRoom, joinRequest } from './test-room';
 
 const allFinite = (value: unknown): boolean => {
   if (typeof value === 'number') return Number.isFinite(value);
@@ -26,8 +26,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   const pick = (count: number) => Math.floor(chance() * count);
   const testRoom = createTestRoom();
   testRoom.begin();
-  const good = () =>
-    packetAt(testRoom.room.match, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), testRoom.time);
+  const good = () => testRoom.packet(0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), testRoom.time);
   const words = 'type action grab throw ready at sequence __proto__ constructor seat 1e999'.split(' ');
   const jsonLike = (depth: number): unknown => {
     const kind = pick(depth > 3 ? 6 : 8);
@@ -48,7 +47,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
     if (kind <= 1) {
       const mutated = good();
       for (let flips = pick(3); flips >= 0; flips--) mutated[pick(mutated.length)]! ^= 1 << pick(8);
-      if (testRoom.room.onPose('ann', chance() < 0.5 ? mutated : bytes, testRoom.time) === 'taken') taken += 1;
+      if (testRoom.send('ann', chance() < 0.5 ? mutated : bytes) === 'taken') taken += 1;
     } else if (kind === 2) {
       const value = { type: words[pick(words.length)], ...(jsonLike(0) as object | null) };
       const near: Record<string, unknown> = {
@@ -169,10 +168,10 @@ describe('latency', () => {
       if (i % 2 === 0) {
         // TCP: nothing overtakes.
         lastCal = Math.max(lastCal, time + delay + jitter * late());
-        const bytes = packetAt(testRoom.room.match, 2, holding(basketAt(time - start)), time);
-        underway.push({ at: lastCal, send: () => void testRoom.room.onPose('cal', bytes, testRoom.time) });
-        const anns = packetAt(testRoom.room.match, 0, fists(releaseOf(0)), time);
-        underway.push({ at: time + delay, send: () => void testRoom.room.onPose('ann', anns, testRoom.time) });
+        const bytes = testRoom.packet(2, holding(basketAt(time - start)), time);
+        underway.push({ at: lastCal, send: () => void testRoom.send('cal', bytes) });
+        const anns = testRoom.packet(0, fists(releaseOf(0)), time);
+        underway.push({ at: time + delay, send: () => void testRoom.send('ann', anns) });
       }
       if (time <= throwAt && time + 1 / 60 > throwAt) {
         const velocity = velocityTo(releaseOf(0), aim, flight);

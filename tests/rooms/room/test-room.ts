@@ -108,9 +108,10 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
         testRoom.tick();
       }
     },
-    pose(client: string, seat: number, wrists: Wrists, at = time) {
-      return room.onPose(client, packetAt(room.match, seat, wrists, at), time);
-    },
+    packet: (seat: number, wrists: Wrists, at = time) => packetAt(room.match, seat, wrists, at),
+    send: (client: string, bytes: Uint8Array) => room.onPose(client, bytes, time),
+    pose: (client: string, seat: number, wrists: Wrists, at = time) =>
+      testRoom.send(client, testRoom.packet(seat, wrists, at)),
     say: (client: string, message: Exclude<ClientMessage, { type: 'join' }>) => room.onMessage(client, message, time),
     act: (client: string, action: BallAction) => testRoom.say(client, { type: 'action', action }),
     ready(clients: readonly string[] = trio) {
@@ -122,7 +123,7 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
       testRoom.tick();
       testRoom.act('ann', { type: 'grab', sequence, side: 'right', ball });
     },
-    /** Ann's throw of a ball from where she releases it, now; into the basket in a second unless told otherwise. */
+    /** Ann's throw of a ball from where she releases it, now. Default: into the basket in a second. */
     throwOf(ball: number, sequence: number, velocity = velocityTo(releaseOf(0), opening, 1)): BallAction {
       const at = time - testRoom.welcomeOf('ann').matchStart;
       return { type: 'throw', sequence, side: 'right', ball, at, position: releaseOf(0), velocity };
