@@ -9,7 +9,7 @@ import { AvatarStore } from './avatars/avatar-store';
 import type { RoomKinds } from './hosting/room-kinds';
 import { RoomRegistry } from './hosting/room-registry';
 import { hostSockets } from './hosting/socket-host';
-import { createOwnLobby, createRedisLobby } from './lobby/lobby';
+import { createLobby } from './lobby/lobby';
 import { LobbyPublisher } from './lobby/lobby-publisher';
 import { connectRedis, connectRedisPatiently } from './lobby/redis-connection';
 import type { RelayContext } from './relay-context';
@@ -75,7 +75,7 @@ export function createRelay(
   const avatars = new AvatarStore({ maxBytes: configuration.avatarMegabytes * 2 ** 20, avatarOf, now });
   const sweeping = setInterval(() => avatars.sweep(), sweepMs).unref();
   const fleet = connectFleet(configuration, log);
-  const lobby = fleet ? createRedisLobby(fleet.own, node, log) : createOwnLobby();
+  const lobby = createLobby(fleet?.own ?? null, node, log);
   const lobbyPublisher = new LobbyPublisher({ io, lobby, node, channel: fleet, rooms });
   const service = createRelayService(context, {
     lobby,
@@ -101,7 +101,7 @@ export function createRelay(
       avatars.clear();
       lobbyPublisher.close();
       await closeSockets();
-      await lobby.close();
+      fleet?.own.disconnect();
       fleet?.publisher.disconnect();
       fleet?.subscriber.disconnect();
       metrics.close();
