@@ -3,7 +3,7 @@ import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
 import { type AuthThrottle, createAuthThrottle, TooManyAttempts } from './auth-throttle';
 import { clientAddressOf } from './client-address';
-import { HttpError } from './http-error';
+import { tooManyRequests } from './rate-limit';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 
@@ -35,7 +35,7 @@ export class AdminGuard {
       return await this.#throttle.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
     } catch (error) {
       if (!(error instanceof TooManyAttempts)) throw error;
-      throw new HttpError(429, error.message, { headers: { 'retry-after': String(error.retryAfterSeconds) } });
+      throw tooManyRequests(error.message, error.retryAfterSeconds);
     }
   }
 }

@@ -77,6 +77,10 @@ export function sendResponse(request: IncomingMessage, response: ServerResponse,
   drain(request, () => response.end());
 }
 
+/** Sends a refusal, as `sendResponse` does. */
+export const sendError = (request: IncomingMessage, response: ServerResponse, error: HttpError): void =>
+  sendResponse(request, response, errorResponse(error));
+
 /** Sends a response on a raw socket, because the request could not be parsed or is an upgrade. */
 export function sendRawResponse(socket: Duplex, answer: HttpResponse): void {
   const headers = { ...headersOf(answer), connection: 'close' };

@@ -3,7 +3,7 @@ import { ValidationError } from 'threepoint/core/validation/validation';
 import { HttpError } from './http-error';
 import { readWholeBody } from './request-body';
 import { parseRequestTarget } from './request-target';
-import { errorResponse, type HttpResponse, jsonResponse, sendResponse } from './response';
+import { errorResponse, type HttpResponse, sendError, sendResponse } from './response';
 import { createSitePolicy, type SitePolicy } from './site-policy';
 
 /** A request to a route, with its body. */
@@ -115,7 +115,7 @@ export function createRouter(
   return (request, response) => {
     const target = parseRequestTarget(request.url);
     if (!target) {
-      sendResponse(request, response, errorResponse(new HttpError(400, 'this address is not well formed')));
+      sendError(request, response, new HttpError(400, 'this address is not well formed'));
       return;
     }
     const { path, query } = target;
@@ -123,7 +123,7 @@ export function createRouter(
     const reading = (request.method === 'GET' || request.method === 'HEAD') && !api.test(path);
     const stranger = site.checkHost(request) ?? (reading ? null : site.checkOrigin(request));
     if (stranger) {
-      sendResponse(request, response, errorResponse(new HttpError(stranger.status, stranger.message)));
+      sendError(request, response, new HttpError(stranger.status, stranger.message));
       return;
     }
     const here = matchers.flatMap((matcher) => {
@@ -132,7 +132,7 @@ export function createRouter(
     });
     if (here.length === 0) {
       if (api.test(path)) {
-        sendResponse(request, response, errorResponse(new HttpError(404, 'there is nothing at this address')));
+        sendError(request, response, new HttpError(404, 'there is nothing at this address'));
       } else page(request, response);
       return;
     }
@@ -140,8 +140,7 @@ export function createRouter(
     const found = here.find(({ matcher }) => matcher.route.method === method);
     if (!found) {
       const allow = [...new Set(here.map(({ matcher }) => matcher.route.method))].join(', ');
-      const answer = errorResponse(new HttpError(405, `this address answers ${allow}`, { headers: { allow } }));
-      sendResponse(request, response, answer);
+      sendError(request, response, new HttpError(405, `this address answers ${allow}`, { headers: { allow } }));
       return;
     }
     const { matcher, names } = found;
@@ -155,4 +154,4 @@ export function createRouter(
 
 /** The listener for a server without a page: answers 404. */
 export const noPage: RequestListener = (request, response) =>
-  sendResponse(request, response, jsonResponse({ error: 'there is nothing at this address', field: null }, 404));
+  sendError(request, response, new HttpError(404, 'there is nothing at this address'));

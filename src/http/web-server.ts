@@ -1,3 +1,4 @@
+import { once } from 'node:events';
 import {
   createServer as createHttpServer,
   type Server as HttpServer,
@@ -6,13 +7,13 @@ import {
   ServerResponse,
 } from 'node:http';
 import { createServer as createHttpsServer } from 'node:https';
-import { createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
+import { type AddressInfo, createServer as createNetServer, type Server as NetServer, type Socket } from 'node:net';
 import type { Duplex } from 'node:stream';
+import { ConfigurationError } from './configuration-error';
 import type { ConnectionLimiter } from './connection-limiter';
 import { HttpError } from './http-error';
-import { listenOnFreePort } from './listen-on-free-port';
 import { hostProblem, parseRequestTarget } from './request-target';
-import { errorResponse, sendRawResponse, sendResponse } from './response';
+import { errorResponse, sendError, sendRawResponse, sendResponse } from './response';
 
 /** A private key and its certificate, PEM. */
 export interface Credentials {
@@ -62,7 +63,7 @@ const redirectToHttps: RequestListener = (request, response) => {
   const host = request.headers.host;
   const target = parseRequestTarget(request.url);
   if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
-    sendResponse(request, response, errorResponse(new HttpError(400, 'the address of this request is malformed')));
+    sendError(request, response, new HttpError(400, 'the address of this request is malformed'));
     return;
   }
   const search = target.query.size > 0 ? `?${target.query}` : '';
@@ -86,7 +87,7 @@ export const withHostCheck =
     response.on('error', () => undefined);
     const complaint = hostProblem(request);
     if (complaint === null) listener(request, response);
-    else sendResponse(request, response, errorResponse(new HttpError(400, complaint)));
+    else sendError(request, response, new HttpError(400, complaint));
   };
 
 /** Answers an upgrade request with a wrong Host; returns whether it did. */
@@ -115,11 +116,7 @@ function answerAll(server: HttpServer, listener: RequestListener, upgrade: Upgra
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
   server.on('request', withHostCheck(listener));
   server.on('checkExpectation', (request: IncomingMessage, response: ServerResponse) => {
-    sendResponse(
-      request,
-      response,
-      errorResponse(new HttpError(417, 'this server supports no expectation but 100-continue')),
-    );
+    sendError(request, response, new HttpError(417, 'this server supports no expectation but 100-continue'));
   });
   server.on('connect', (_request: IncomingMessage, socket: Duplex) => {
     socket.on('error', () => socket.destroy());
@@ -185,6 +182,34 @@ const limits = {
   requireHostHeader: false,
   ServerResponse: FollowedResponse,
 };
+
+/** The number of ports that are tried. */
+const portAttempts = 20;
+
+/**
+ * Listens on the port, or on the next free one of twenty, and resolves to that port; 0: any. Rejects with a
+ * ConfigurationError if none is free or the system refuses.
+ */
+async function listenOnFreePort(server: NetServer, host: string, port: number): Promise<number> {
+  for (let candidate = port; candidate < port + portAttempts && candidate <= 65535; candidate++) {
+    try {
+      server.listen(candidate, host);
+      await once(server, 'listening');
+      return (server.address() as AddressInfo).port;
+    } catch (error) {
+      const { code } = error as NodeJS.ErrnoException;
+      if (code === 'EACCES') {
+        throw new ConfigurationError(
+          `This user may not listen on port ${candidate}. Choose one from 1024 up: npm start -- --port 3333`,
+        );
+      }
+      if (code !== 'EADDRINUSE') throw error;
+    }
+  }
+  throw new ConfigurationError(
+    `Port ${port} and the ${portAttempts - 1} after it are in use. Choose another: npm start -- --port 4000`,
+  );
+}
 
 /** A server that does not listen yet. */
 export interface PreparedServer {

@@ -5,16 +5,12 @@ import { parseClientAddress } from 'threepoint-http/client-address';
 import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
 import { reportFigures } from '../reliability/report-figures';
-import { startRelay } from '../rooms/server/running-relay';
+import { relayOfTest } from '../rooms/server/until-finished';
 import { servedPaperStudy, servedStudies } from '../study/server/running-studies';
 
 const host = (text: string) => `Host: ${text}\r\n`;
 
-async function proxiedRelay(environment: Record<string, string> = {}) {
-  const server = await startRelay({ THREEPOINT_TRUST_PROXY: '1', ...environment });
-  onTestFinished(() => server.close());
-  return server;
-}
+const proxiedRelay = () => relayOfTest({ THREEPOINT_TRUST_PROXY: '1' });
 
 /** Sends a request of these lines and resolves to the status and the body of its answer. */
 async function answerTo(port: number, lines: string): Promise<{ status: string; socket: Socket; text: string }> {

@@ -9,7 +9,7 @@ import { certificateFor } from '../../server/certificate';
 import { createPageHandler } from '../../server/page-handler';
 import { isNightly } from '../nightly';
 import { reportFigures } from '../reliability/report-figures';
-import { type RunningRelay, startRelay } from '../rooms/server/running-relay';
+import { relayOfTest } from '../rooms/server/until-finished';
 import { forkServer, probeHealth } from '../server/server-child';
 import { directoryWith } from '../temporary-directory';
 
@@ -39,12 +39,6 @@ function raw(port: number, text: string, localAddress = '127.0.0.1') {
 
 const statusOf = ({ said }: { readonly said: string }) => /^HTTP\/1\.1 (\d+)/.exec(said)?.[1] ?? 'none';
 
-async function relayWith(environment: Record<string, string>): Promise<RunningRelay> {
-  const server = await startRelay(environment);
-  onTestFinished(() => server.close());
-  return server;
-}
-
 describe('a body that is not wanted', () => {
   /** Bytes that the system took from us before the server closed, and what it said. */
   async function pour(port: number, head: string): Promise<{ status: string; bytes: number }> {
@@ -64,7 +58,7 @@ describe('a body that is not wanted', () => {
       port: 0,
     });
     onTestFinished(() => page.close());
-    const relay = await relayWith({});
+    const relay = await relayOfTest();
     const length = 'Host: localhost\r\nContent-Type: application/json\r\nContent-Length: 200000000\r\n\r\n';
     const chunked =
       'Host: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\nfffffff\r\n';
@@ -83,7 +77,7 @@ describe('a body that is not wanted', () => {
   });
 
   test('ends nothing where it is short: the next request on the connection is answered', async () => {
-    const relay = await relayWith({});
+    const relay = await relayOfTest();
     const put = 'PUT /api/rooms HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n';
     const connection = raw(relay.port, put + put);
     await expect.poll(() => connection.said.split('HTTP/1.1 405').length - 1).toBe(2);
@@ -145,7 +139,7 @@ describe('connections', () => {
 
   test('behind a proxy that is believed, WebSockets are counted by the address it tells; otherwise what it says is nothing', async () => {
     const limit = 8;
-    const proxied = await relayWith({
+    const proxied = await relayOfTest({
       THREEPOINT_CONNECTIONS_PER_ADDRESS: String(limit),
       THREEPOINT_TRUST_PROXY: '1',
     });
@@ -161,7 +155,7 @@ describe('connections', () => {
     await expect.poll(() => proxied.relay.census.sockets).toBe(limit);
     expect(await statuses([from('203.0.113.7')])).toEqual(['101']);
 
-    const plain = await relayWith({ THREEPOINT_CONNECTIONS_PER_ADDRESS: String(limit) });
+    const plain = await relayOfTest({ THREEPOINT_CONNECTIONS_PER_ADDRESS: String(limit) });
     const made = Array.from({ length: limit }, (_, i) =>
       raw(plain.port, upgradeRequest(`X-Forwarded-For: 203.0.113.${i}\r\n`)),
     );
@@ -179,7 +173,7 @@ describe('connections', () => {
 test('a connection that does not say what it wants is ended at the deadline: told so before its request, and as a WebSocket that joins nothing', {
   tags: ['full'],
 }, async () => {
-  const relay = await relayWith({});
+  const relay = await relayOfTest();
   const credentials = await certificateFor([], directoryWith(), new Date());
   const secure = await serve(noPage, { host: '127.0.0.1', port: 0, credentials });
   onTestFinished(() => secure.close());
@@ -225,7 +219,7 @@ test.each([
   ['polling is refused', upgradeRequest().replace('transport=websocket', 'transport=polling'), '400'],
   ['a foreign page is refused', upgradeRequest('Origin: https://evil.example\r\n'), '403'],
 ])('%s, with the headers of every answer', async (_what, text, status) => {
-  const relay = await relayWith({});
+  const relay = await relayOfTest();
   const connection = raw(relay.port, text);
   await expect.poll(() => statusOf(connection)).toBe(status);
   expect(connection.said).toContain('x-content-type-options: nosniff');

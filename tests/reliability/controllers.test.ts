@@ -57,20 +57,3 @@ test('a drawn bow: the string hand becomes another device, the arrow goes back, 
     expect(archer.releases).toEqual([]);
   }
 });
-
-test('controllers become hands and controllers again, ten times while drawing: ten arrows go back, none flies', () => {
-  const archer = bowman();
-  for (let i = 0; i < 10; i++) {
-    const [before, after] = i % 2 ? (['hand', 'controller'] as const) : (['controller', 'hand'] as const);
-    const button = before === 'hand' ? 'pinch' : 'trigger';
-    archer.frame({}, { right: { kind: before } });
-    archer.frame({}, { right: { kind: before, [button]: 1 } });
-    for (let k = 1; k <= 20; k++) archer.frame({ draw: 0.025 * k }, { right: { kind: before, [button]: 1 } });
-    for (let k = 0; k < 5; k++) archer.frame({ draw: 0.5 }, { right: { kind: after } });
-    expect(archer.bow?.stage).toBe('empty');
-  }
-  const cancelled = archer.said.filter((type) => type === 'cancelled').length;
-  expect(cancelled).toBe(10);
-  expect(archer.releases).toEqual([]);
-  reportFigures('changing-hands', { 'draws cancelled': `${cancelled} of 10`, shots: archer.releases.length });
-});

@@ -10,7 +10,6 @@ import { arrowLength } from 'threepoint-games/archery/bow';
 import { releaseDirection } from 'threepoint-games/archery/flight';
 import { archeryRules, delayed } from 'threepoint-games/archery/rules';
 import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { HandVelocity } from 'threepoint-games/ball/hand-velocity';
 import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition } from 'threepoint-games/ball/stations';
 import { createMatch } from 'threepoint-games/match';
@@ -104,27 +103,6 @@ test('balls fly the same at every rate', () => {
   }
   expect(worst).toBeLessThan(1e-3);
   reportFigures('rates', { balls: `${(1000 * worst).toFixed(4)} mm apart after 1 s` });
-});
-
-test('a hand throws equally fast at every rate', () => {
-  const path = (time: number): Vec3 => {
-    const angle = 9 * time + 4 * time * time - 2.2;
-    return vec3(0.1 * time, 1.4 + 0.65 * Math.cos(angle), -0.65 * Math.sin(angle));
-  };
-  const speedBy = (times: readonly number[]): Vec3 => {
-    const speed = new HandVelocity();
-    for (const time of times) speed.follow(time, path(time));
-    return speed.velocity();
-  };
-  let worst = 0;
-  for (const { rate, drop } of ways) {
-    const times = framesOf(rate, drop, 0.3);
-    const last = times.at(-1)!;
-    const fine = Array.from({ length: 1001 }, (_, i) => (last * i) / 1000);
-    worst = Math.max(worst, distance(speedBy(times), speedBy(fine)));
-  }
-  expect(worst).toBeLessThan(0.1);
-  reportFigures('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
 });
 
 test('filters of the body come to the same joints at every rate', () => {

@@ -19,6 +19,7 @@ import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vit
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { reportFigures } from '../reliability/report-figures';
 import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from '../rooms/server/running-relay';
+import { guestOfTest } from '../rooms/server/until-finished';
 import { paperPlan, session } from '../study/model/studies';
 import { experimenter, now, studiesInThisThread, studySeats } from '../study/server/running-studies';
 import { directoryWith } from '../temporary-directory';
@@ -166,8 +167,7 @@ avatarFile.hash = createHash('sha256').update(avatarFile.bytes).digest('base64ur
 async function statusForPlayer(port: number, method: string, address: string): Promise<number> {
   const origin = `http://localhost:${port}`;
   const token = await tokenFor(origin, 'meadow');
-  const guest = await rawGuest(origin, 'meadow', token);
-  onTestFinished(() => void guest.socket.disconnect());
+  await guestOfTest(origin, 'meadow', token);
   const headers = { host: `localhost:${port}`, authorization: `Bearer ${token}` };
   const store = () =>
     statusOf(port, 'PUT', `/api/avatars/${avatarFile.hash}?room=meadow`, {

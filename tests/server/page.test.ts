@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { brotliCompressSync, brotliDecompressSync, gunzipSync, gzipSync } from 'node:zlib';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { createPageHandler } from '../../server/page-handler';
+import { createPageHandler, type PageOptions } from '../../server/page-handler';
 import { directoryWith } from '../temporary-directory';
 import { ask } from './running-server';
 
@@ -22,9 +22,9 @@ const site = {
   '.source-hash': 'secret',
 };
 
-async function served(files: Readonly<Record<string, string | Buffer>> = site) {
+async function served(files: Readonly<Record<string, string | Buffer>> = site, options: PageOptions = {}) {
   const directory = directoryWith(files);
-  const server = await serve(createPageHandler(directory), { host: '127.0.0.1', port: 0 });
+  const server = await serve(createPageHandler(directory, options), { host: '127.0.0.1', port: 0 });
   onTestFinished(() => server.close());
   return { origin: `http://127.0.0.1:${server.port}`, directory };
 }
@@ -159,36 +159,25 @@ test('every answer, errors included, says what the page may do', async () => {
   }
 });
 
+/** A header of the page, another page, an asset and an error. */
+async function headerOfEach(header: string, options: PageOptions): Promise<string[]> {
+  const files = { 'index.html': 'page', 'results.html': 'results', 'assets/a.js': '1' };
+  const { origin } = await served(files, options);
+  const answers = await Promise.all(['/', '/results', '/assets/a.js', '/missing'].map((path) => ask(origin, path)));
+  return answers.map(({ headers }) => String(headers[header]));
+}
+
 test('the page alone may read files of other servers, and only of those that are named', async () => {
-  const files = directoryWith({ 'index.html': 'page', 'results.html': 'results', 'assets/a.js': '1' });
-  const connections = async (filesFrom?: readonly string[]) => {
-    const server = await serve(createPageHandler(files, { ...(filesFrom && { filesFrom }) }), {
-      host: '127.0.0.1',
-      port: 0,
-    });
-    onTestFinished(() => server.close());
-    const asked = ['/', '/results', '/assets/a.js', '/missing'].map((path) =>
-      ask(`http://127.0.0.1:${server.port}`, path),
-    );
-    return (await Promise.all(asked)).map(
-      ({ headers }) => /connect-src ([^;]*)/.exec(String(headers['content-security-policy']))?.[1],
-    );
-  };
+  const connections = async (options: PageOptions) =>
+    (await headerOfEach('content-security-policy', options)).map((policy) => /connect-src ([^;]*)/.exec(policy)?.[1]);
   const own = "'self' data: blob:";
-  expect(await connections()).toEqual([own, own, own, own]);
-  const named = ['https://avatars.example', 'https://files.example:8443'];
-  expect(await connections(named)).toEqual([`${own} ${named.join(' ')}`, own, own, own]);
+  expect(await connections({})).toEqual([own, own, own, own]);
+  const filesFrom = ['https://avatars.example', 'https://files.example:8443'];
+  expect(await connections({ filesFrom })).toEqual([`${own} ${filesFrom.join(' ')}`, own, own, own]);
 });
 
 test('the microphone is for the page itself alone, and only where its people can talk', async () => {
-  const files = directoryWith({ 'index.html': 'page', 'results.html': 'results', 'assets/a.js': '1' });
-  const policies = async (microphone: boolean) => {
-    const server = await serve(createPageHandler(files, { microphone }), { host: '127.0.0.1', port: 0 });
-    onTestFinished(() => server.close());
-    const paths = ['/', '/results', '/assets/a.js', '/missing'];
-    const origin = `http://127.0.0.1:${server.port}`;
-    return Promise.all(paths.map(async (path) => String((await ask(origin, path)).headers['permissions-policy'])));
-  };
+  const policies = (microphone: boolean) => headerOfEach('permissions-policy', { microphone });
   const shut = 'xr-spatial-tracking=(self), camera=(), microphone=(), geolocation=()';
   expect(await policies(false)).toEqual([shut, shut, shut, shut]);
   expect(await policies(true)).toEqual([shut.replace('microphone=()', 'microphone=(self)'), shut, shut, shut]);

@@ -6,7 +6,7 @@ import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test } from 'vitest';
 import { reportFigures } from '../reliability/report-figures';
 import { fists, releaseOf } from '../rooms/client/people';
-import { createTestRoom, packetAt } from '../rooms/room/test-room';
+import { createTestRoom } from '../rooms/room/test-room';
 import { arrive, startRelay, until } from '../rooms/server/running-relay';
 import { paperPlan, session } from '../study/model/studies';
 import { directoryWith } from '../temporary-directory';
@@ -108,7 +108,7 @@ test('a room hands out no pose that is older than two seconds', () => {
   const testRoom = createTestRoom();
   testRoom.begin();
   const at = testRoom.time;
-  testRoom.room.onPose('ann', packetAt(testRoom.room.match, 0, fists(releaseOf(0)), testRoom.time), testRoom.time);
+  testRoom.send('ann', testRoom.packet(0, fists(releaseOf(0))));
   testRoom.pass(0.1, () => undefined);
   expect(testRoom.frames.length).toBeGreaterThan(0);
   testRoom.pass(2, () => undefined);

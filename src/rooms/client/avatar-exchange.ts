@@ -1,6 +1,6 @@
 import { type AvatarHash, avatarHashPattern } from 'threepoint/core/body/avatar-ref';
 import * as v from 'valibot';
-import type { RoomPass } from './room-pass';
+import { fetchWithPass, type RoomPass } from './room-pass';
 
 /** The limits of a server's avatar store, and this person's file in it. */
 export interface AvatarTerms {
@@ -42,22 +42,6 @@ const terms = v.object({
 /** Creates the exchange of a room. `base`: the address of the relay, without a trailing slash. */
 export function createAvatarExchange(base: string, room: string, pass: RoomPass): AvatarExchange {
   const addressOf = (hash?: AvatarHash): string => `${base}/api/avatars${hash ? `/${hash}` : ''}?room=${room}`;
-  const bearing = (token: string) => ({ authorization: `Bearer ${token}` });
-
-  /** Sends a request, and repeats it with a renewed pass if this one has expired. */
-  async function ask(hash: AvatarHash | undefined, file?: Blob): Promise<Response> {
-    for (const afresh of [false, true]) {
-      const headers = bearing(await pass.token(afresh));
-      const response = await fetch(addressOf(hash), {
-        ...(file && { method: 'PUT', body: file }),
-        headers: file ? { ...headers, 'content-type': 'model/gltf-binary' } : headers,
-        cache: 'no-store',
-      });
-      if (response.status !== 401 || afresh) return response;
-    }
-    throw new Error('the server does not accept the pass to this room');
-  }
-
   async function refusalOf(response: Response): Promise<Error> {
     const body = (await response.json().catch(() => null)) as { error?: unknown } | null;
     return new Error(
@@ -66,7 +50,7 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
   }
 
   async function askTerms(): Promise<AvatarTerms> {
-    const response = await ask(undefined);
+    const response = await fetchWithPass(pass, addressOf());
     if (!response.ok) throw await refusalOf(response);
     const read = v.safeParse(terms, await response.json().catch(() => null));
     if (!read.success) throw new Error('the server has no avatar store');
@@ -84,13 +68,15 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
       );
     },
     async store(hash, file) {
-      const response = await ask(hash, file);
+      const headers = { 'content-type': 'model/gltf-binary' };
+      const response = await fetchWithPass(pass, addressOf(hash), { method: 'PUT', body: file, headers });
       if (!response.ok) throw await refusalOf(response);
     },
     async addressesOf(hash) {
       // This request also renews an expired pass.
       const { elsewhere } = await askTerms();
-      const here = { url: addressOf(hash), headers: bearing(await pass.token(false)) };
+      const authorization = `Bearer ${await pass.token(false)}`;
+      const here = { url: addressOf(hash), headers: { authorization } };
       // The other server does not receive the pass.
       return elsewhere ? [here, { url: `${elsewhere}${hash}`, headers: {} }] : [here];
     },

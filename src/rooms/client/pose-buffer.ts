@@ -6,7 +6,7 @@ import {
   type UpperBodyPose,
 } from 'threepoint/core/body/avatar-pose';
 import {
-  copyHandShape,
+  type Fingers,
   type HandShape,
   lerpHandShape,
   type MutableHandShape,
@@ -22,9 +22,9 @@ import {
   type Pose,
   type TrackedPose,
 } from 'threepoint/core/math/pose';
-import { copyQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
+import { normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
-import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
+import { addScaled, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
 import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 
@@ -39,6 +39,7 @@ export class PoseBuffer implements BufferedPose {
     rightHand: MutableTrackedPose | null;
     body: MutableUpperBodyPose | null;
     feet: TrackedFeet | undefined;
+    readonly fingers: Fingers;
   };
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   placement: FloorPlacement | null = null;
@@ -53,20 +54,12 @@ export class PoseBuffer implements BufferedPose {
   private readonly shapes = { left: makeHandShape(), right: makeHandShape() };
 
   constructor() {
-    this.pose = { head: makeTrackedPose(), leftHand: null, rightHand: null, body: null, feet: undefined };
+    const { fingers } = this;
+    this.pose = { head: makeTrackedPose(), leftHand: null, rightHand: null, body: null, feet: undefined, fingers };
   }
 
-  /** Copies a pose. */
-  copy({ pose, fingers, placement }: BufferedPose): this {
-    copyTracked(pose.head, this.pose.head);
-    this.pose.leftHand = pose.leftHand && copyTracked(pose.leftHand, this.hands.left);
-    this.pose.rightHand = pose.rightHand && copyTracked(pose.rightHand, this.hands.right);
-    this.pose.body = pose.body && copyBody(pose.body, this.body);
-    this.mixFeet(pose, pose, 1);
-    this.fingers.left = fingers.left && copyHandShape(fingers.left, this.shapes.left);
-    this.fingers.right = fingers.right && copyHandShape(fingers.right, this.shapes.right);
-    this.placement = mixPlacement(placement, placement, 1, this.placed);
-    return this;
+  copy(pose: BufferedPose): this {
+    return this.interpolate(pose, pose, 1);
   }
 
   /**
@@ -103,16 +96,12 @@ export class PoseBuffer implements BufferedPose {
     this.pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, this.hands.left);
     this.pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, this.hands.right);
     this.pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
-    this.mixFeet(a.pose, b.pose, t);
+    const { left, right } = this.ankles;
+    this.showFeet(mixFoot(a.pose, b.pose, 'leftFoot', t, left), mixFoot(a.pose, b.pose, 'rightFoot', t, right));
     this.fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, this.shapes.left);
     this.fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, this.shapes.right);
     this.placement = mixPlacement(a.placement, b.placement, Math.min(t, 1), this.placed);
     return this;
-  }
-
-  private mixFeet(a: AvatarPose, b: AvatarPose, t: number): void {
-    const { left, right } = this.ankles;
-    this.showFeet(mixFoot(a, b, 'leftFoot', t, left), mixFoot(a, b, 'rightFoot', t, right));
   }
 
   private showFeet(left: Pose<'floor'> | null, right: Pose<'floor'> | null): void {
@@ -129,13 +118,6 @@ function partOf(pose: AvatarPose, part: PosePart): Pose<'floor'> | null {
   if (part === 'leftFoot') return pose.feet?.left ?? null;
   if (part === 'rightFoot') return pose.feet?.right ?? null;
   return pose[part];
-}
-
-function copyTracked(from: TrackedPose, target: MutableTrackedPose): MutableTrackedPose {
-  copyVec3(from.position, target.position);
-  copyQuat(from.orientation, target.orientation);
-  target.tracking = from.tracking;
-  return target;
 }
 
 function mixTracked(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrackedPose): MutableTrackedPose {
@@ -242,16 +224,7 @@ function mixHand(
   if (a && b) return mixTracked(a, b, t, target);
   // Nothing is interpolated from or to a lost hand: the earlier packet applies until the later one.
   const held = t < 1 ? a : b;
-  return held && copyTracked(held, target);
-}
-
-function copyBody(from: UpperBodyPose, target: MutableUpperBodyPose): MutableUpperBodyPose {
-  copyVec3(from.hipsPosition, target.hipsPosition);
-  for (let i = 0; i < jointNames.length; i++) {
-    const name = jointNames[i]!;
-    copyQuat(from.localRotations[name], target.localRotations[name]);
-  }
-  return target;
+  return held && mixTracked(held, held, 1, target);
 }
 
 function mixBody(
@@ -262,7 +235,7 @@ function mixBody(
 ): MutableUpperBodyPose | null {
   if (!a || !b) {
     const held = t < 1 ? a : b;
-    return held && copyBody(held, target);
+    return held && mixBody(held, held, 1, target);
   }
   lerp(a.hipsPosition, b.hipsPosition, t, target.hipsPosition);
   for (let i = 0; i < jointNames.length; i++) {
@@ -280,7 +253,7 @@ function mixFingers(
 ): MutableHandShape | null {
   if (a && b) return lerpHandShape(a, b, Math.min(t, 1), target);
   const held = t < 1 ? a : b;
-  return held && copyHandShape(held, target);
+  return held && lerpHandShape(held, held, 1, target);
 }
 
 interface MutablePlacement {

@@ -4,7 +4,7 @@ import { type AvatarExchange, createAvatarExchange } from './avatar-exchange';
 import type { ClientPolicy } from './client-policy';
 import type { Connection, LocalClock, Visitor } from './connection';
 import { createRoomPass, type PassStorage, type RoomPass } from './room-pass';
-import { createSocketConnection } from './socket-connection';
+import { SocketConnection } from './socket-connection';
 
 export interface RoomAddressOptions {
   /** The address of the server, without a trailing slash. */
@@ -40,7 +40,7 @@ export class RoomAddress<Game extends HostedGame> {
     const { url, room, clock } = this.#options;
     // A bot may be the first that comes back after the room was closed: its pass has the terms too.
     const pass = visitor.bot ? this.#createPass() : this.pass;
-    return createSocketConnection(this.#game, {
+    return new SocketConnection(this.#game, {
       ...{ url, room, visitor, pass },
       ...(clock && { clock }),
       ...(onStatus && { onStatus }),

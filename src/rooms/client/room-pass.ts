@@ -65,3 +65,13 @@ export function createRoomPass(
     },
   };
 }
+
+/** Sends a request with a pass, and repeats it with a renewed pass if the server refuses this one with 401. */
+export async function fetchWithPass(pass: RoomPass, url: string, request: RequestInit = {}): Promise<Response> {
+  const send = async (afresh: boolean) => {
+    const headers = { ...request.headers, authorization: `Bearer ${await pass.token(afresh)}` };
+    return fetch(url, { ...request, headers, cache: 'no-store' });
+  };
+  const response = await send(false);
+  return response.status === 401 ? send(true) : response;
+}

@@ -1,9 +1,17 @@
 import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import type { Calibration } from 'threepoint/core/body/calibration';
+import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import type { Transform } from 'threepoint/core/math/pose';
-import { type ClientMessage, type JoinRequest, type RoomMessage, toMillimetres } from '../protocol/messages';
+import {
+  type ClientMessage,
+  type JoinRequest,
+  type RoomMessage,
+  type SeatInfo,
+  toMillimetres,
+  unpackSeatInfo,
+  type Welcome,
+} from '../protocol/messages';
 import { packetMs } from '../protocol/packet-time';
 import { decodePose, encodePose } from '../protocol/pose-codec';
 import { decodeFrame } from '../protocol/pose-frame';
@@ -22,7 +30,7 @@ import type {
   VoiceChannel,
   VoiceListener,
 } from './connection';
-import { RoomReplica } from './room-replica';
+import { MatchPrediction } from './match-prediction';
 
 const poseSeconds = 1 / 30;
 
@@ -31,6 +39,14 @@ const maxWaiting = 256;
 
 /** A page that skips more than this [s] was hidden; slow pages skip less between two frames. */
 const longestSlowFrame = 3;
+
+/** The state of the Room, as its messages report it. */
+interface KnownRoom
+  extends Pick<Welcome<HostedGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
+  readonly seats: readonly (SeatInfo | null)[];
+}
+
+const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonFromCalibration(info.calibration);
 
 /** The client's side of the protocol. Subclasses send its messages, in `transmit` and `transmitPose`. */
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
@@ -45,7 +61,11 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   /** Whether the Room uses this page's clock. */
   readonly #knowsClock: boolean;
   readonly #clock = new ClockSync();
-  readonly #replica: RoomReplica<Game>;
+  readonly #match: MatchPrediction<Game>;
+  /** The room; null before the first welcome. */
+  #known: KnownRoom | null = null;
+  /** The skeletons of the players by seat. */
+  #skeletons: (Skeleton | null)[] = [];
   #calibration: Calibration;
   #avatar: AvatarRef;
   #voice: Voice | null = null;
@@ -59,6 +79,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   /** The last requested pause state; null: never requested. */
   #pauseRequest: boolean | null = null;
   #welcomes = 0;
+  #voidedRounds = 0;
   #now = 0;
   #nextPose = Number.NEGATIVE_INFINITY;
   #events: Game['event'][] = [];
@@ -67,7 +88,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #view: RoomView<Game> | null = null;
 
   constructor(policy: ClientPolicy<Game>, visitor: Visitor, knowsClock: boolean) {
-    this.#replica = new RoomReplica(policy);
+    this.#match = new MatchPrediction(policy);
     this.#visitor = visitor;
     this.#knowsClock = knowsClock;
     this.#calibration = toMillimetres(visitor.calibration);
@@ -84,7 +105,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   protected abstract transmitPose(bytes: Uint8Array): void;
 
   get room(): RoomView<Game> | null {
-    const { known } = this.#replica;
+    const known = this.#known;
     if (!known) return null;
     this.#view ??= {
       id: known.room,
@@ -93,18 +114,18 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       mySeat: known.seat,
       spectators: known.spectators,
       rotate: known.rotate,
-      match: this.#replica.predicted(this.#now + this.#matchAhead),
+      match: this.#match.at(this.#now + this.#matchAhead, known.seat),
       responseTime: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
       matchClockOffset: this.#matchAhead,
       paused: known.paused !== null,
       welcomeCount: this.#welcomes,
-      voidedRounds: this.#replica.voided,
+      voidedRounds: this.#voidedRounds,
     };
     return this.#view;
   }
 
   sendPose(time: number, shown: OutgoingPose): void {
-    if (this.#replica.mySeat === null || (time < this.#nextPose && !shown.jump)) return;
+    if (this.#mySeat === null || (time < this.#nextPose && !shown.jump)) return;
     // Frames have their own rate; this keeps an average of 30 packets a second.
     this.#nextPose = Math.max(this.#nextPose + poseSeconds, time + poseSeconds / 2);
     const timeMs = packetMs((time + this.#ahead) * 1000);
@@ -113,7 +134,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   }
 
   sendAction(action: Game['action']): void {
-    if (!this.#replica.predict(action)) return;
+    if (this.#mySeat === null || !this.#match.add(action)) return;
     this.#view = null;
     this.transmit({ type: 'action', action });
   }
@@ -128,7 +149,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   setPaused(pause: boolean): void {
     this.#pauseRequest = pause;
-    if (this.#replica.mySeat !== null) this.transmit({ type: 'pause', pause });
+    if (this.#mySeat !== null) this.transmit({ type: 'pause', pause });
   }
 
   setAway(away: boolean): void {
@@ -142,17 +163,17 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   calibrate(calibration: Calibration): void {
     this.#calibration = toMillimetres(calibration);
     this.#skeleton = skeletonFromCalibration(this.#calibration);
-    if (this.#replica.known) this.transmit({ type: 'calibration', calibration: this.#calibration });
+    if (this.#known) this.transmit({ type: 'calibration', calibration: this.#calibration });
   }
 
   setAvatar(avatar: AvatarRef): void {
     if (avatar === this.#avatar) return;
     this.#avatar = avatar;
-    if (this.#replica.known) this.transmit({ type: 'wear', avatar });
+    if (this.#known) this.transmit({ type: 'wear', avatar });
   }
 
   arenaFromFloor(seat: number): Transform<'arena', 'floor'> {
-    return this.#replica.arenaFromFloor(seat);
+    return this.#match.arenaFromFloor(seat);
   }
 
   /** Returns the first message of every new connection. */
@@ -166,11 +187,6 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   #sendOrQueue(message: ClientMessage): void {
     if (this.status.phase === 'joined') this.transmit(message);
     else this.#queued.set(message.type, message);
-  }
-
-  #sendQueued(): void {
-    for (const message of this.#queued.values()) this.transmit(message);
-    this.#queued.clear();
   }
 
   /** Sends what has changed since the join request. */
@@ -192,20 +208,10 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         this.#voiceListener?.onSignal(message.from, message.body);
         return;
       case 'welcome':
-        if (this.#replica.onWelcome(message)) this.#addChange('voided');
-        this.#addChange('welcome');
-        this.#welcomes += 1;
-        // After a restart of the server the player requests the same seat.
-        if (message.seat !== null) this.#seatRequest = { spectate: false, seat: message.seat };
-        if (this.#sentJoin) this.#sendChanges(this.#sentJoin);
-        this.#sendQueued();
-        // The room may have lost the request, or have received another one before the connection was lost.
-        if (this.#pauseRequest !== null && message.seat !== null)
-          this.transmit({ type: 'pause', pause: this.#pauseRequest });
-        this.#voiceListener?.onSeatsChanged();
+        this.#onWelcome(message);
         return;
       default:
-        if (this.#replica.onChange(message)) this.#afterChange(message);
+        if (this.#known) this.#onChange(this.#known, message);
     }
   }
 
@@ -214,8 +220,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     // Bots need no poses: they play from the state of the match.
     if (this.#visitor.bot) return;
     for (const { seat, bytes } of decodeFrame(frame) ?? []) {
-      const skeleton = this.#replica.skeletonOf(seat);
-      if (!skeleton || seat === this.#replica.mySeat) continue;
+      const skeleton = this.#skeletons[seat];
+      if (!skeleton || seat === this.#mySeat) continue;
       const packet = decodePose(bytes, skeleton);
       if (packet) this.#poses.push({ seat, packet, arrivedAt });
     }
@@ -242,32 +248,84 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   #setVoice(voice: Voice | null): void {
     this.#voice = voice;
-    if (this.#replica.known) this.transmit({ type: 'voice', voice });
+    if (this.#known) this.transmit({ type: 'voice', voice });
   }
 
-  #afterChange(message: RoomMessage<Game>): void {
+  /** Applies the whole state, after joining or reconnecting. */
+  #onWelcome(message: Welcome<Game>): void {
+    const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
+    // The server was restarted, and has lost a running round.
+    if (this.#known && this.#known.epoch !== epoch && this.#match.confirmed?.phase === 'running') {
+      this.#voidedRounds += 1;
+      this.#addChange('voided');
+    }
+    const seats = message.seats.map(unpackSeatInfo);
+    this.#known = { room, epoch, seat, spectators, rotate, seats, matchStart, paused };
+    this.#skeletons = seats.map(skeletonOf);
+    this.#match.restart(message.match);
+    this.#addChange('welcome');
+    this.#welcomes += 1;
+    // After a restart of the server the player requests the same seat.
+    if (seat !== null) this.#seatRequest = { spectate: false, seat };
+    if (this.#sentJoin) this.#sendChanges(this.#sentJoin);
+    for (const queued of this.#queued.values()) this.transmit(queued);
+    this.#queued.clear();
+    // The room may have lost the request, or have received another one before the connection was lost.
+    if (this.#pauseRequest !== null && seat !== null) this.transmit({ type: 'pause', pause: this.#pauseRequest });
+    this.#voiceListener?.onSeatsChanged();
+  }
+
+  #onChange(known: KnownRoom, message: RoomMessage<Game>): void {
     switch (message.type) {
       case 'seat':
+        this.#setSeatInfo(known, message.seat, unpackSeatInfo(message.info));
         this.#addChange('seats');
         this.#voiceListener?.onSeatsChanged();
         return;
       case 'seated':
+        this.#known = { ...known, seat: message.seat };
+        this.#match.discardPending();
         this.#seatRequest = { spectate: message.seat === null, seat: message.seat };
         this.#addChange('seats');
         if (this.#pauseRequest && message.seat !== null) this.transmit({ type: 'pause', pause: true });
         this.#voiceListener?.onSeatsChanged();
         return;
+      case 'about':
+        this.#known = { ...known, spectators: message.spectators, rotate: message.rotate };
+        return;
+      case 'paused':
+        this.#known = { ...known, matchStart: message.matchStart, paused: message.at };
+        return;
+      case 'match-start':
+        this.#known = { ...known, matchStart: message.matchStart };
+        return;
       case 'match':
+        this.#known = { ...known, matchStart: message.matchStart };
+        this.#match.restart(message.match);
         this.#addChange('match');
         return;
       case 'events':
+        for (const event of message.events) this.#match.follow(event, known.seat);
         this.#events.push(...message.events);
         if (this.#events.length > maxWaiting) this.#events = this.#events.slice(-maxWaiting);
     }
   }
 
+  #setSeatInfo(known: KnownRoom, seat: number, info: SeatInfo | null): void {
+    if (seat >= known.seats.length) return;
+    const before = known.seats[seat];
+    this.#known = { ...known, seats: known.seats.map((other, index) => (index === seat ? info : other)) };
+    if (!info || !before || !sameMeasures(before.calibration, info.calibration))
+      this.#skeletons[seat] = skeletonOf(info);
+  }
+
   #addChange(word: ConnectionUpdate<Game>['changes'][number]): void {
     if (!this.#changes.includes(word)) this.#changes.push(word);
+  }
+
+  /** This page's seat; null: a spectator, or before the first welcome. */
+  get #mySeat(): number | null {
+    return this.#known?.seat ?? null;
   }
 
   /** The Room's clock minus the page's clock [s]. */
@@ -277,7 +335,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   /** The match clock minus the page's clock [s]. */
   get #matchAhead(): number {
-    const { known } = this.#replica;
+    const known = this.#known;
     if (!known) return 0;
     return known.paused === null ? this.#ahead - known.matchStart : known.paused - this.#now;
   }

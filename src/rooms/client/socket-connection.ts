@@ -4,7 +4,7 @@ import { frameEvent, messageEvent, pageParser, poseEvent } from '../protocol/soc
 import type { HostedGame } from '../room/match-policy';
 import { BackOff } from './back-off';
 import type { ClientPolicy } from './client-policy';
-import type { Connection, ConnectionStatus, ConnectionUpdate, LocalClock, Visitor } from './connection';
+import type { ConnectionStatus, ConnectionUpdate, LocalClock, Visitor } from './connection';
 import type { RoomPass } from './room-pass';
 import { RoomSession } from './room-session';
 
@@ -32,13 +32,8 @@ const closingMs = 1000;
 /** After this many refusals of renewed passes the connection ends. */
 const maxRefusals = 3;
 
-/** Connects to a room on a relay, and reconnects whenever the connection is lost, until it has ended. */
-export const createSocketConnection = <Game extends HostedGame>(
-  policy: ClientPolicy<Game>,
-  options: SocketConnectionOptions,
-): Connection<Game> => new SocketConnection(policy, options);
-
-class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
+/** A connection to a room on a relay, which is opened again whenever it is lost, until it has ended. */
+export class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
   readonly #policy: ClientPolicy<Game>;
   readonly #pass: RoomPass;
   readonly #clock: LocalClock;

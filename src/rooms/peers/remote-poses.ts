@@ -7,7 +7,6 @@ import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
 import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
-import { withFingers } from './with-fingers';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {
@@ -131,7 +130,7 @@ export class RemotePoses {
 class Peer implements RemotePose {
   readonly #bucket = new TokenBucket(packetsPerSecond);
   readonly #playback = new Playback();
-  readonly pose: AvatarPose = withFingers(this.#playback.shown);
+  readonly pose: AvatarPose = this.#playback.shown.pose;
   readonly #joints = createJointPoses();
   #profile: PeerProfile | null = null;
   #skeleton: Skeleton | null = null;

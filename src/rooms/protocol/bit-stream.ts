@@ -1,16 +1,8 @@
-/** Writes unsigned numbers of up to 24 bits, most significant bit first. */
-export interface BitWriter {
-  write(value: number, bits: number): void;
-  /** Returns a copy of the bytes since the last `clear`; the last byte is padded with zeros. */
-  bytes(): Uint8Array;
-  /** Discards what was written, and reuses the buffer. */
-  clear(): void;
-}
-
 /** Initial capacity: the bytes of a pose packet. */
 const firstCapacity = 64;
 
-class BufferedBitWriter implements BitWriter {
+/** Writes unsigned numbers of up to 24 bits, most significant bit first. */
+export class BitWriter {
   private buffer = new Uint8Array(firstCapacity);
   /** Bits written. */
   private at = 0;
@@ -30,10 +22,12 @@ class BufferedBitWriter implements BitWriter {
     }
   }
 
+  /** Returns a copy of the bytes since the last `clear`; the last byte is padded with zeros. */
   bytes(): Uint8Array {
     return this.buffer.slice(0, (this.at + 7) >> 3);
   }
 
+  /** Discards what was written, and reuses the buffer. */
   clear(): void {
     this.at = 0;
   }
@@ -45,27 +39,19 @@ class BufferedBitWriter implements BitWriter {
   }
 }
 
-export const createBitWriter = (): BitWriter => new BufferedBitWriter();
-
-export interface BitReader {
-  /** Returns the next number. Past the end it reads zeros, and `ended` stays false. */
-  read(bits: number): number;
-  /** Returns whether exactly all bytes were read, and the padding is zero. */
-  ended(): boolean;
-  /** Starts reading other bytes. */
-  open(bytes: Uint8Array): void;
-}
-
-class ByteReader implements BitReader {
+/** Reads unsigned numbers that a BitWriter has written. */
+export class BitReader {
   private at = 0;
 
   constructor(private bytes: Uint8Array) {}
 
+  /** Starts reading other bytes. */
   open(bytes: Uint8Array): void {
     this.bytes = bytes;
     this.at = 0;
   }
 
+  /** Returns the next number. Past the end it reads zeros, and `ended` stays false. */
   read(bits: number): number {
     let value = 0;
     let left = bits;
@@ -80,6 +66,7 @@ class ByteReader implements BitReader {
     return value;
   }
 
+  /** Returns whether exactly all bytes were read, and the padding is zero. */
   ended(): boolean {
     const { at, bytes } = this;
     const padding = (8 - (at & 7)) & 7;
@@ -87,5 +74,3 @@ class ByteReader implements BitReader {
     return (at + padding) >> 3 === bytes.length && (last & ((1 << padding) - 1)) === 0;
   }
 }
-
-export const createBitReader = (bytes: Uint8Array): BitReader => new ByteReader(bytes);

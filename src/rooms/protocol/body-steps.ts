@@ -134,110 +134,102 @@ interface SentBody {
   readonly hands: Readonly<Record<Side, Pose<'floor'>>>;
 }
 
-/** Rebuilds the body as the receiver will, so that each step compensates the rounding of the one before. */
-class Rebuilding {
-  private readonly trunk = new RebuiltTrunk();
-  private readonly arms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
-
-  /** Returns the hips as the receiver places them, floor frame [m]; the next call overwrites them. */
-  write(sent: SentBody, skeleton: Skeleton, target: BodySteps): Vec3 {
-    const { body, joints, head, hands } = sent;
-    const { left, right } = target.arms;
-    left.free = isFree('left', joints, hands.left, skeleton);
-    right.free = isFree('right', joints, hands.right, skeleton);
-    const bits = bodyBitsFor(target.arms);
-    target.bits = bits;
-    writeTrunk(body, joints, bits, skeleton, target.trunk);
-    this.trunk.place(head, target.trunk, bits, skeleton);
-    this.writeArm('left', sent, skeleton, target);
-    this.writeArm('right', sent, skeleton, target);
-    return this.trunk.hipsPosition;
-  }
-
-  private writeArm(side: Side, sent: SentBody, skeleton: Skeleton, target: BodySteps): void {
-    const { joints, hands } = sent;
-    const arm = this.arms[side];
-    const steps = target.arms[side];
-    this.writeClavicle(side, joints, target.bits.clavicle, skeleton, steps);
-    arm.placeShoulder(this.trunk, steps, target.bits.clavicle, skeleton);
-    const shoulder = arm.shoulder.position;
-    const names = jointsOf[side];
-    const { position, orientation } = joints[names.wrist];
-    const far = distance(joints[names.shoulder].position, position);
-    if (steps.free) {
-      const { upper, lower } = armBonesOf(skeleton, side, bones);
-      toDirectionSteps(subtract(position, shoulder, towards), directionBits, steps.direction);
-      steps.flexion = levels(elbowFlexion(upper, lower, far) / Math.PI, flexionBits);
-      toQuatSteps(orientation, freeHandBits, steps.hand);
-    }
-    let nearest = this.writeBend(side, sent, 0, skeleton, steps);
-    if (steps.free || nearest <= sameElbow) return;
-    let { stretch, swivel, forearmTwist } = steps;
-    // The elbow of an almost straight arm is very sensitive to the stretch: the steps on both sides are tried.
-    const wanted = Math.floor((far - distance(shoulder, hands[side].position)) / stretchUnit);
-    for (let step = wanted; step <= wanted + 1; step++) {
-      const elbowError = this.writeBend(side, sent, limited(step, stretchBits), skeleton, steps);
-      if (elbowError >= nearest) continue;
-      nearest = elbowError;
-      ({ stretch, swivel, forearmTwist } = steps);
-    }
-    steps.stretch = stretch;
-    steps.swivel = swivel;
-    steps.forearmTwist = forearmTwist;
-  }
-
-  /** Writes the clavicle's swing that puts the receiver's shoulder nearest to the sender's. */
-  private writeClavicle(side: Side, joints: JointPoses, bits: number, skeleton: Skeleton, steps: ArmSteps): void {
-    const { upperChest, clavicleRoots } = this.trunk;
-    normalise(clavicleRest(side, skeleton), undefined, rest);
-    subtract(joints[jointsOf[side].shoulder].position, clavicleRoots[side], towards);
-    rotate(conjugate(upperChest, difference), normalise(towards, undefined, towards), towards);
-    const angle = Math.acos(clamp(dot(rest, towards), -1, 1));
-    cross(rest, towards, towards);
-    scale(normalise(towards, undefined, towards), angle, towards);
-    perpendicularAxes(rest, acrossU, acrossV);
-    steps.clavicleU = toCentredStep(dot(towards, acrossU), clavicleRange, bits);
-    steps.clavicleV = toCentredStep(dot(towards, acrossV), clavicleRange, bits);
-  }
-
-  /**
-   * Writes the swivel and the twist that make the receiver's arm, with this stretch of the wrist, most like the
-   * sender's. Returns the error of the elbow [m].
-   */
-  private writeBend(
-    side: Side,
-    { joints, hands }: SentBody,
-    stretch: number,
-    skeleton: Skeleton,
-    steps: ArmSteps,
-  ): number {
-    const arm = this.arms[side];
-    const names = jointsOf[side];
-    const shoulder = arm.shoulder.position;
-    const elbow = joints[names.elbow];
-    steps.stretch = stretch;
-    arm.aim(hands[side], steps, skeleton);
-    armAxis(shoulder, arm.wrist, this.trunk.upperChest, axis);
-    reject(subtract(elbow.position, shoulder, pole), axis, pole);
-    // The elbow of a straight arm lies on the axis: its hinge defines the pole instead.
-    if (!(length(pole) > 0.02)) cross(axis, rotate(joints[names.shoulder].orientation, hingeAtRest[side], pole), pole);
-    swivelAxes(side, this.trunk.upperChest, axis, acrossU, acrossV);
-    steps.swivel = toStep(Math.atan2(dot(pole, acrossV), dot(pole, acrossU)), Math.PI, swivelBits);
-    steps.forearmTwist = 0;
-    arm.bend(this.trunk, steps, skeleton);
-    const forearmTwist = twistBetween(alongArm[side], arm.rotations.lowerArm, elbow.orientation);
-    steps.forearmTwist = toStep(forearmTwist, forearmRange, forearmBits);
-    const { restOffsets } = skeleton;
-    rotate(arm.rotations.upperArm, side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm, towards);
-    return distance(add(shoulder, towards, towards), elbow.position);
-  }
-}
-
-const rebuilding = new Rebuilding();
+// The body as the receiver will rebuild it, so that each step compensates the rounding of the one before.
+const trunk = new RebuiltTrunk();
+const rebuiltArms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
 
 /**
  * Writes a body as steps, relative to the head and hands that the receiver decodes. Returns the hips as the receiver
  * places them, floor frame [m]; the next call overwrites them.
  */
-export const writeBodySteps = (sent: SentBody, skeleton: Skeleton, target: BodySteps): Vec3 =>
-  rebuilding.write(sent, skeleton, target);
+export function writeBodySteps(sent: SentBody, skeleton: Skeleton, target: BodySteps): Vec3 {
+  const { body, joints, head, hands } = sent;
+  const { left, right } = target.arms;
+  left.free = isFree('left', joints, hands.left, skeleton);
+  right.free = isFree('right', joints, hands.right, skeleton);
+  const bits = bodyBitsFor(target.arms);
+  target.bits = bits;
+  writeTrunk(body, joints, bits, skeleton, target.trunk);
+  trunk.place(head, target.trunk, bits, skeleton);
+  writeArm('left', sent, skeleton, target);
+  writeArm('right', sent, skeleton, target);
+  return trunk.hipsPosition;
+}
+
+function writeArm(side: Side, sent: SentBody, skeleton: Skeleton, target: BodySteps): void {
+  const { joints, hands } = sent;
+  const arm = rebuiltArms[side];
+  const steps = target.arms[side];
+  writeClavicle(side, joints, target.bits.clavicle, skeleton, steps);
+  arm.placeShoulder(trunk, steps, target.bits.clavicle, skeleton);
+  const shoulder = arm.shoulder.position;
+  const names = jointsOf[side];
+  const { position, orientation } = joints[names.wrist];
+  const far = distance(joints[names.shoulder].position, position);
+  if (steps.free) {
+    const { upper, lower } = armBonesOf(skeleton, side, bones);
+    toDirectionSteps(subtract(position, shoulder, towards), directionBits, steps.direction);
+    steps.flexion = levels(elbowFlexion(upper, lower, far) / Math.PI, flexionBits);
+    toQuatSteps(orientation, freeHandBits, steps.hand);
+  }
+  let nearest = writeBend(side, sent, 0, skeleton, steps);
+  if (steps.free || nearest <= sameElbow) return;
+  let { stretch, swivel, forearmTwist } = steps;
+  // The elbow of an almost straight arm is very sensitive to the stretch: the steps on both sides are tried.
+  const wanted = Math.floor((far - distance(shoulder, hands[side].position)) / stretchUnit);
+  for (let step = wanted; step <= wanted + 1; step++) {
+    const elbowError = writeBend(side, sent, limited(step, stretchBits), skeleton, steps);
+    if (elbowError >= nearest) continue;
+    nearest = elbowError;
+    ({ stretch, swivel, forearmTwist } = steps);
+  }
+  steps.stretch = stretch;
+  steps.swivel = swivel;
+  steps.forearmTwist = forearmTwist;
+}
+
+/** Writes the clavicle's swing that puts the receiver's shoulder nearest to the sender's. */
+function writeClavicle(side: Side, joints: JointPoses, bits: number, skeleton: Skeleton, steps: ArmSteps): void {
+  const { upperChest, clavicleRoots } = trunk;
+  normalise(clavicleRest(side, skeleton), undefined, rest);
+  subtract(joints[jointsOf[side].shoulder].position, clavicleRoots[side], towards);
+  rotate(conjugate(upperChest, difference), normalise(towards, undefined, towards), towards);
+  const angle = Math.acos(clamp(dot(rest, towards), -1, 1));
+  cross(rest, towards, towards);
+  scale(normalise(towards, undefined, towards), angle, towards);
+  perpendicularAxes(rest, acrossU, acrossV);
+  steps.clavicleU = toCentredStep(dot(towards, acrossU), clavicleRange, bits);
+  steps.clavicleV = toCentredStep(dot(towards, acrossV), clavicleRange, bits);
+}
+
+/**
+ * Writes the swivel and the twist that make the receiver's arm, with this stretch of the wrist, most like the
+ * sender's. Returns the error of the elbow [m].
+ */
+function writeBend(
+  side: Side,
+  { joints, hands }: SentBody,
+  stretch: number,
+  skeleton: Skeleton,
+  steps: ArmSteps,
+): number {
+  const arm = rebuiltArms[side];
+  const names = jointsOf[side];
+  const shoulder = arm.shoulder.position;
+  const elbow = joints[names.elbow];
+  steps.stretch = stretch;
+  arm.aim(hands[side], steps, skeleton);
+  armAxis(shoulder, arm.wrist, trunk.upperChest, axis);
+  reject(subtract(elbow.position, shoulder, pole), axis, pole);
+  // The elbow of a straight arm lies on the axis: its hinge defines the pole instead.
+  if (!(length(pole) > 0.02)) cross(axis, rotate(joints[names.shoulder].orientation, hingeAtRest[side], pole), pole);
+  swivelAxes(side, trunk.upperChest, axis, acrossU, acrossV);
+  steps.swivel = toStep(Math.atan2(dot(pole, acrossV), dot(pole, acrossU)), Math.PI, swivelBits);
+  steps.forearmTwist = 0;
+  arm.bend(trunk, steps, skeleton);
+  const forearmTwist = twistBetween(alongArm[side], arm.rotations.lowerArm, elbow.orientation);
+  steps.forearmTwist = toStep(forearmTwist, forearmRange, forearmBits);
+  const { restOffsets } = skeleton;
+  rotate(arm.rotations.upperArm, side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm, towards);
+  return distance(add(shoulder, towards, towards), elbow.position);
+}

@@ -1,5 +1,5 @@
 import { type Side, sides } from 'threepoint/core/math/side';
-import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bit-stream';
+import { BitReader, BitWriter } from './bit-stream';
 import { fingerFields } from './finger-steps';
 import { maxPosePacketBytes, poseVersion } from './pose-packet';
 import {
@@ -42,8 +42,8 @@ const timeBits = 14;
 /** Bits that name what trackers pin: the back is bent, the left foot, the right foot. */
 const pinBits = 3;
 
-const writer = createBitWriter();
-const reader = createBitReader(new Uint8Array(0));
+const writer = new BitWriter();
+const reader = new BitReader(new Uint8Array(0));
 
 const writeFlag = (set: boolean): void => writer.write(set ? 1 : 0, 1);
 const readFlag = (): boolean => reader.read(1) === 1;
@@ -102,7 +102,7 @@ export function writePacket(packet: PacketSteps): Uint8Array {
     for (let i = 0; i < fingerFields.length; i++) writer.write(levels[i]!, fingerFields[i]!.bits);
   }
   if (hasBody) {
-    writeBody(writer, body);
+    writeBody(body);
     for (const side of sides) if (feet[side].pinned) writeRelativePose(feet[side].at);
   }
   return writer.bytes();
@@ -166,25 +166,25 @@ export function packetLengthAt(bytes: Uint8Array, at: number): number {
   return lengths[key];
 }
 
-function writeBody(to: BitWriter, { bits, trunk, arms }: BodySteps): void {
-  writeQuat(to, trunk.hips, bits.trunk);
-  writeQuat(to, trunk.upperChest, bits.trunk);
-  writeQuat(to, trunk.neck, bits.trunk);
-  if (trunk.bent) writeQuat(to, trunk.spine, bits.trunk);
-  else writeStep(to, trunk.spineTwist, twistBits);
-  writeStep(to, trunk.chestTwist, twistBits);
+function writeBody({ bits, trunk, arms }: BodySteps): void {
+  writeQuat(writer, trunk.hips, bits.trunk);
+  writeQuat(writer, trunk.upperChest, bits.trunk);
+  writeQuat(writer, trunk.neck, bits.trunk);
+  if (trunk.bent) writeQuat(writer, trunk.spine, bits.trunk);
+  else writeStep(writer, trunk.spineTwist, twistBits);
+  writeStep(writer, trunk.chestTwist, twistBits);
   for (const side of sides) {
     const { clavicleU, clavicleV, swivel, forearmTwist, stretch, free, direction, flexion, hand } = arms[side];
-    writeStep(to, clavicleU, bits.clavicle);
-    writeStep(to, clavicleV, bits.clavicle);
-    writeStep(to, swivel, swivelBits);
-    writeStep(to, forearmTwist, forearmBits);
+    writeStep(writer, clavicleU, bits.clavicle);
+    writeStep(writer, clavicleV, bits.clavicle);
+    writeStep(writer, swivel, swivelBits);
+    writeStep(writer, forearmTwist, forearmBits);
     if (free) {
-      writeDirection(to, direction, directionBits);
-      to.write(flexion, flexionBits);
-      writeQuat(to, hand, freeHandBits);
+      writeDirection(writer, direction, directionBits);
+      writer.write(flexion, flexionBits);
+      writeQuat(writer, hand, freeHandBits);
     } else {
-      writeStep(to, stretch, stretchBits);
+      writeStep(writer, stretch, stretchBits);
     }
   }
 }
@@ -208,7 +208,7 @@ export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
     if (!known) continue;
     for (let i = 0; i < fingerFields.length; i++) levels[i] = reader.read(fingerFields[i]!.bits);
   }
-  if (packet.hasBody && !readBody(reader, body)) return false;
+  if (packet.hasBody && !readBody(body)) return false;
   for (const side of sides) if (feet[side].pinned && !readRelativePose(feet[side].at)) return false;
   return reader.ended();
 }
@@ -230,42 +230,42 @@ const readHand = ({ placed, at }: PacketSteps['hands'][Side]): boolean => !place
 const readRelativePose = ({ place, orientation }: RelativePoseSteps): boolean =>
   readRelativePosition(reader, place) && readQuat(reader, trackedBits, orientation) !== null;
 
-function readBody(from: BitReader, body: BodySteps): boolean {
+function readBody(body: BodySteps): boolean {
   const { trunk, arms } = body;
   const bits = bodyBitsFor(arms);
   body.bits = bits;
-  const hips = readQuat(from, bits.trunk, trunk.hips);
-  const upperChest = readQuat(from, bits.trunk, trunk.upperChest);
-  const neck = readQuat(from, bits.trunk, trunk.neck);
-  const spine = trunk.bent ? readQuat(from, bits.trunk, trunk.spine) : null;
-  const spineTwist = trunk.bent ? 0 : readStep(from, twistBits);
-  const chestTwist = readStep(from, twistBits);
+  const hips = readQuat(reader, bits.trunk, trunk.hips);
+  const upperChest = readQuat(reader, bits.trunk, trunk.upperChest);
+  const neck = readQuat(reader, bits.trunk, trunk.neck);
+  const spine = trunk.bent ? readQuat(reader, bits.trunk, trunk.spine) : null;
+  const spineTwist = trunk.bent ? 0 : readStep(reader, twistBits);
+  const chestTwist = readStep(reader, twistBits);
   if (!hips || !upperChest || !neck || spineTwist === null || chestTwist === null) return false;
   if (trunk.bent && !spine) return false;
   trunk.spineTwist = spineTwist;
   trunk.chestTwist = chestTwist;
-  return readArm(from, body, 'left') && readArm(from, body, 'right');
+  return readArm(body, 'left') && readArm(body, 'right');
 }
 
-function readArm(from: BitReader, { bits, arms }: BodySteps, side: Side): boolean {
+function readArm({ bits, arms }: BodySteps, side: Side): boolean {
   const arm = arms[side];
-  const u = readStep(from, bits.clavicle);
-  const v = readStep(from, bits.clavicle);
-  const swivel = readStep(from, swivelBits);
-  const forearmTwist = readStep(from, forearmBits);
+  const u = readStep(reader, bits.clavicle);
+  const v = readStep(reader, bits.clavicle);
+  const swivel = readStep(reader, swivelBits);
+  const forearmTwist = readStep(reader, forearmBits);
   if (u === null || v === null || swivel === null || forearmTwist === null) return false;
   arm.clavicleU = u;
   arm.clavicleV = v;
   arm.swivel = swivel;
   arm.forearmTwist = forearmTwist;
   if (!arm.free) {
-    const stretch = readStep(from, stretchBits);
+    const stretch = readStep(reader, stretchBits);
     if (stretch !== null) arm.stretch = stretch;
     return stretch !== null;
   }
-  const direction = readDirection(from, directionBits, arm.direction);
-  arm.flexion = from.read(flexionBits);
-  const hand = readQuat(from, freeHandBits, arm.hand);
+  const direction = readDirection(reader, directionBits, arm.direction);
+  arm.flexion = reader.read(flexionBits);
+  const hand = readQuat(reader, freeHandBits, arm.hand);
   arm.stretch = 0;
   return direction !== null && hand !== null;
 }

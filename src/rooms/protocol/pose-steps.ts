@@ -43,9 +43,6 @@ export const freeHandBits = 6;
 export const stretchBits = 4;
 /** A step of the stretch [m]; the range is ±1.4 mm. */
 export const stretchUnit = 0.0002;
-/** Bits that remain for the trunk, by the number of free arms. */
-const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
-const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
 /** Bits and range [rad] of the twists of spine and chest: steps of 2.9°. */
 export const twistBits = 6;
 export const twistRange = Math.PI / 2;
@@ -111,9 +108,12 @@ export interface BodyBits {
   readonly clavicle: number;
 }
 
-const bitsByFreeArms = [0, 1, 2].map(
-  (count): BodyBits => ({ trunk: trunkBitsFor(count), clavicle: clavicleBitsFor(count) }),
-);
+/** By the number of free arms: the bits that remain for a component of the trunk, and of a clavicle. */
+const bitsByFreeArms: readonly BodyBits[] = [
+  { trunk: 10, clavicle: 9 },
+  { trunk: 9, clavicle: 9 },
+  { trunk: 8, clavicle: 8 },
+];
 
 export interface BodySteps {
   bits: BodyBits;

@@ -1,28 +1,35 @@
 import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import type { ClientMessage, JoinRequest } from '../protocol/messages';
+import { maxVoiceSeats, type Voice } from '../protocol/voice-messages';
 import type { HostedGame } from './match-policy';
 import type { RefusalReason, RoomHost } from './room-host';
-import { RoomVoices } from './room-voices';
 import { allowedMoves, type Member, type Seats } from './seats';
 
-type ProfileMessage = Extract<ClientMessage, { type: 'calibration' | 'wear' | 'voice' | 'signal' }>;
+export type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
 export interface MemberProfilesOptions {
   /** All members look alike: an avatar of their own would identify them. */
   readonly assigned: boolean;
+  /** The room's host allows voices; a room with more than `maxVoiceSeats` seats has none even then. */
   readonly voices: boolean;
 }
 
-/** What the members of a room show of themselves to the others: body measures, avatar and voice. */
+/**
+ * What the members of a room show of themselves to the others: body measures, avatar and voice. Sound never passes
+ * through the room: pages send it to each other, and the room forwards the signals by which they connect. A spectator
+ * has no seat, and therefore no voice.
+ */
 export class MemberProfiles {
   readonly #seats: Seats;
+  readonly #host: Pick<RoomHost<HostedGame>, 'send'>;
   readonly #assigned: boolean;
-  readonly #voices: RoomVoices;
+  readonly #hasVoices: boolean;
 
   constructor(seats: Seats, host: Pick<RoomHost<HostedGame>, 'send'>, { assigned, voices }: MemberProfilesOptions) {
     this.#seats = seats;
+    this.#host = host;
     this.#assigned = assigned;
-    this.#voices = new RoomVoices(seats, voices, host);
+    this.#hasVoices = voices && seats.count <= maxVoiceSeats;
   }
 
   /** Returns the member that a client becomes by joining. */
@@ -33,27 +40,63 @@ export class MemberProfiles {
       bot,
       calibration,
       avatar: this.#assigned ? defaultAvatar : avatar,
-      voice: spectate ? null : this.#voices.admitted(identity, voice),
+      voice: spectate ? null : this.#admittedVoice(identity, voice),
       moves: allowedMoves(),
     };
   }
 
   /** Applies a message of a member on this seat (null: a spectator). Returns why it is refused, or null. */
-  onMessage(index: number | null, member: Member, message: ProfileMessage): RefusalReason | null {
+  onMessage(
+    index: number | null,
+    member: Member,
+    message: Received<'calibration' | 'wear' | 'voice' | 'signal'>,
+  ): RefusalReason | null {
     switch (message.type) {
       case 'calibration':
         member.calibration = message.calibration;
-        if (index !== null) this.#seats.update(index, { calibration: message.calibration });
-        return null;
+        break;
       case 'wear':
         if (this.#assigned) return 'assigned';
+        if (member.avatar === message.avatar) return null;
         member.avatar = message.avatar;
-        if (index !== null && this.#seats.at(index)?.avatar !== message.avatar) {
-          this.#seats.update(index, { avatar: message.avatar });
-        }
-        return null;
-      default:
-        return this.#voices.onMessage(index, member, message);
+        break;
+      case 'voice': {
+        const refusal = this.#voiceRefusal(index, message.voice);
+        if (refusal) return refusal;
+        member.voice = message.voice;
+        break;
+      }
+      case 'signal':
+        return this.#forwardSignal(index, message);
     }
+    if (index !== null) this.#seats.reportChange(index);
+    return null;
+  }
+
+  /** Returns the voice of a joining person; null where the room has no voices or the session is taken. */
+  #admittedVoice(identity: string, voice: Voice | null): Voice | null {
+    if (!voice || !this.#hasVoices) return null;
+    const taken = this.#seats.withVoice(voice.session);
+    // A page that reconnects finds its own session on the held seat.
+    return taken !== null && this.#seats.at(taken)?.member.identity !== identity ? null : voice;
+  }
+
+  #voiceRefusal(index: number | null, voice: Voice | null): RefusalReason | null {
+    if (!this.#hasVoices) return 'no-voices';
+    if (index === null && voice) return 'no-seat';
+    const taken = voice && this.#seats.withVoice(voice.session);
+    return taken !== null && taken !== index ? 'session-taken' : null;
+  }
+
+  /** Forwards a signal to the page that it names, with the sender's own session. */
+  #forwardSignal(index: number | null, { to, body }: Received<'signal'>): RefusalReason | null {
+    if (!this.#hasVoices) return 'no-voices';
+    const sender = index === null ? null : this.#seats.at(index);
+    if (!sender) return 'no-seat';
+    const receiver = this.#seats.withVoice(to);
+    const client = receiver === null || receiver === index ? null : (this.#seats.at(receiver)?.client ?? null);
+    if (!sender.member.voice || client === null) return 'no-receiver';
+    this.#host.send(client, { type: 'signal', from: sender.member.voice.session, body });
+    return null;
   }
 }

@@ -1,43 +1,88 @@
 import { transformPoint, transformTracked } from 'threepoint/core/math/pose';
 import type { PointsPacket } from '../protocol/pose-packet';
-import { MatchClock } from './match-clock';
-import type { HostedGame, MatchPolicy } from './match-policy';
+import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-policy';
 import type { RoomHost } from './room-host';
 import type { Seats } from './seats';
 
-/** The match of one room: passes actions and poses to the rules, and reports to all clients what happened. */
+/** Shifts of the match start below this [s] are rounding. */
+const minShift = 1e-3;
+
+/**
+ * The matches of one room: starts, pauses and steps one after another, and keeps the match clock in room time [s]. It
+ * passes actions and poses to the rules, and reports to all clients what happened.
+ */
 export class RoomMatch<Game extends HostedGame> {
-  readonly clock: MatchClock<Game>;
   readonly #policy: MatchPolicy<Game>;
   readonly #seats: Seats;
   readonly #host: RoomHost<Game>;
+  #match: HostedMatch<Game>;
+  /** Actions for the next step. */
+  #queued: MatchAction<Game>[] = [];
+  #hasBegun = false;
+  #matchStart = 0;
+  /** How long the match clock has stood in all [s]. */
+  #pausedSeconds = 0;
+  /** Room time at which the clock was paused; null: it runs. */
+  #stoppedAt: number | null = null;
+  #rotation = 0;
+  /** Whether roles move on with every match. */
+  rotate = false;
 
   constructor(policy: MatchPolicy<Game>, seats: Seats, host: RoomHost<Game>) {
     this.#policy = policy;
     this.#seats = seats;
     this.#host = host;
-    this.clock = new MatchClock(policy, {
-      onEvents: (events) => this.#sendEvents(events),
-      onPauseChange: () =>
-        host.broadcast({ type: 'paused', at: this.clock.pausedAt, matchStart: this.clock.matchStart }),
-      onStartShift: () => host.broadcast({ type: 'match-start', matchStart: this.clock.matchStart }),
-      onRestart: () => host.broadcast({ type: 'match', match: this.snapshot(), matchStart: this.clock.matchStart }),
-      onStep: (actions) => host.stepped?.(actions),
-    });
+    this.#match = this.#newMatch();
   }
 
-  snapshot(): Game['snapshot'] {
-    return this.#policy.snapshot(this.clock.state);
+  get state(): Game['state'] {
+    return this.#match.state;
   }
 
-  /** Steps the match up to this time [s]. */
-  step(time: number): void {
-    this.clock.step(time, this.#seats.pauseRequested);
+  get snapshot(): Game['snapshot'] {
+    return this.#policy.snapshot(this.state);
+  }
+
+  /** Room time [s] at which the match clock is 0; it moves on during a pause. */
+  get matchStart(): number {
+    return this.#matchStart;
+  }
+
+  get isPaused(): boolean {
+    return this.#stoppedAt !== null;
+  }
+
+  /** Whether a match runs and is not paused. */
+  get isRunning(): boolean {
+    return this.state.phase === 'running' && !this.isPaused;
+  }
+
+  /** Whether time alone changes nothing: no match runs, and no action waits. */
+  get isIdle(): boolean {
+    return this.#queued.length === 0 && !this.isRunning;
+  }
+
+  /** The second of the match at which its clock is paused; null: it runs. */
+  get pausedAt(): number | null {
+    return this.#stoppedAt === null ? null : this.#stoppedAt - this.#matchStart;
+  }
+
+  /** Starts the first match at this room time [s]; later calls change nothing. */
+  begin(time: number): void {
+    if (this.#hasBegun) return;
+    this.#hasBegun = true;
+    this.#matchStart = time;
+    this.#match.advance(this.#runningTime(time), []);
+  }
+
+  /** Queues an action for the next step. */
+  add(action: MatchAction<Game>): void {
+    this.#queued.push(action);
   }
 
   /** Queues whether a player is ready; ignored during a pause, because no step takes what is queued. */
   setReady(player: number, ready: boolean): void {
-    if (!this.clock.isPaused) this.clock.add({ type: 'ready', player, ready });
+    if (!this.isPaused) this.add({ type: 'ready', player, ready });
   }
 
   /**
@@ -48,8 +93,8 @@ export class RoomMatch<Game extends HostedGame> {
     const action = this.#policy.readAction(value);
     if (!action) return 'bad';
     if (player === null) return 'no-seat';
-    if (this.clock.isPaused) this.#sendEvents([this.#policy.refusalInPause(player, action)]);
-    else this.clock.add({ ...action, player });
+    if (this.isPaused) this.#sendEvents([this.#policy.refusalInPause(player, action)]);
+    else this.add({ ...action, player });
     return 'taken';
   }
 
@@ -58,16 +103,94 @@ export class RoomMatch<Game extends HostedGame> {
    * pose [s].
    */
   addPose(player: number, { pose: { head, leftHand, rightHand } }: PointsPacket, packetTime: number): void {
-    if (this.clock.isPaused) return;
-    const arenaFromFloor = this.#policy.arenaFromFloor(player, this.clock.state);
-    this.clock.add({
+    if (this.isPaused) return;
+    const arenaFromFloor = this.#policy.arenaFromFloor(player, this.state);
+    this.add({
       type: 'pose',
       player,
-      at: packetTime - this.clock.matchStart,
+      at: packetTime - this.#matchStart,
       head: transformPoint(arenaFromFloor, head.position),
       left: transformTracked(arenaFromFloor, leftHand),
       right: transformTracked(arenaFromFloor, rightHand),
     });
+  }
+
+  /** Steps the match up to this time [s]. While a player requests a pause, the clock is paused. */
+  step(time: number): void {
+    const { pauseRequested } = this.#seats;
+    if (this.#stoppedAt !== null) {
+      if (pauseRequested) return;
+      this.#resume(time, this.#stoppedAt);
+    }
+    const stopping = pauseRequested && this.state.phase === 'running';
+    const due = this.#takeQueued();
+    if (stopping) due.push({ type: 'pause' });
+    const tick = this.state.tick;
+    this.#sendEvents(this.#match.advance(this.#runningTime(time), due));
+    // The match pauses only after a tick; one that has just ended needs no pause.
+    if (stopping && this.state.tick !== tick && this.state.phase === 'running') {
+      this.#stoppedAt = time;
+      this.#broadcastPause();
+      return;
+    }
+    this.#adjustStart(time);
+    // A new match begins only after a tick, so that this one has handled all actions.
+    if (this.state.tick !== tick) this.#restartIfWanted(time);
+  }
+
+  #newMatch(): HostedMatch<Game> {
+    return this.#policy.start(this.#rotation, (actions) => this.#host.stepped?.(actions));
+  }
+
+  /** Returns room time without pauses [s]. */
+  #runningTime(time: number): number {
+    return time - this.#pausedSeconds;
+  }
+
+  #takeQueued(): MatchAction<Game>[] {
+    const waiting = this.#queued;
+    this.#queued = [];
+    return waiting;
+  }
+
+  #resume(time: number, stoppedAt: number): void {
+    this.#pausedSeconds += time - stoppedAt;
+    this.#matchStart += time - stoppedAt;
+    this.#stoppedAt = null;
+    this.#broadcastPause();
+  }
+
+  #broadcastPause(): void {
+    this.#host.broadcast({ type: 'paused', at: this.pausedAt, matchStart: this.#matchStart });
+  }
+
+  /** Moves the match start if the match has skipped a time in which its host was suspended. */
+  #adjustStart(time: number): void {
+    const start = time - this.#match.lead - this.state.tick * this.#policy.tickSeconds;
+    if (Math.abs(start - this.#matchStart) <= minShift) return;
+    this.#matchStart = start;
+    this.#host.broadcast({ type: 'match-start', matchStart: start });
+  }
+
+  /** Starts another match once all present players are ready and their roles permit it. */
+  #restartIfWanted(time: number): void {
+    const before = this.state;
+    if (before.phase !== 'over') return;
+    const present = before.players.filter((player) => player.present);
+    if (present.length === 0 || !present.every(({ ready }) => ready)) return;
+    const movedOn = this.#policy.nextRoles(before, this.rotate);
+    if (movedOn === null) return;
+    this.#rotation += movedOn;
+    this.#match = this.#newMatch();
+    this.#matchStart = time;
+    before.players.forEach(({ present }, player) => {
+      if (!present) return;
+      this.add({ type: 'join', player });
+      this.add({ type: 'ready', player, ready: true });
+    });
+    const events = this.#match.advance(this.#runningTime(time), this.#takeQueued());
+    this.#host.broadcast({ type: 'match', match: this.snapshot, matchStart: time });
+    this.#sendEvents(events);
   }
 
   /** Sends events to all clients, and each refusal to the player whose action it refuses. */

@@ -2,7 +2,7 @@ import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
 import { type ClientMessage, type JoinRequest, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { HostedGame, MatchPolicy } from './match-policy';
-import { MemberProfiles } from './member-profiles';
+import { MemberProfiles, type Received } from './member-profiles';
 import type { ClientId, RefusalReason, RoomHost, RoomRefusal } from './room-host';
 import { RoomMatch } from './room-match';
 import { RoomMembers } from './room-members';
@@ -27,8 +27,6 @@ export interface RoomCensus extends SeatCensus {
   /** No client is connected, and no seat is held. */
   readonly empty: boolean;
 }
-
-type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
 /** Tick interval [s] while no match runs: often enough to notice silent players and to forget poses. */
 const idleTickSeconds = 0.1;
@@ -59,15 +57,12 @@ export class Room<Game extends HostedGame> {
     this.#host = host;
     this.#seats = new Seats(policy.seats, {
       changed: (seat) => this.#seatUpdates.changed(seat, this.#time),
-      act: (action) => this.#match.clock.add(action),
+      act: (action) => this.#match.add(action),
     });
     this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
     const { assigned = false, voices = false } = options;
     this.#profiles = new MemberProfiles(this.#seats, host, { assigned, voices });
-    this.#members = new RoomMembers({
-      ...{ seats: this.#seats, host, assigned },
-      onVacated: (seat) => this.#seatUpdates.changed(seat, this.#time),
-    });
+    this.#members = new RoomMembers(this.#seats, host, assigned);
     this.#match = new RoomMatch(policy, this.#seats, host);
   }
 
@@ -83,18 +78,18 @@ export class Room<Game extends HostedGame> {
 
   /** The state of the match, as the rules have it. */
   get match(): Game['state'] {
-    return this.#match.clock.state;
+    return this.#match.state;
   }
 
   /** Whether a player has paused the match clock. */
   get paused(): boolean {
-    return this.#match.clock.isPaused;
+    return this.#match.isPaused;
   }
 
   /** Returns the avatar of a person with a seat, held seats included; null for anyone else. */
   avatarOf(identity: string): AvatarRef | null {
     const index = this.#seats.indexOfIdentity(identity);
-    return index === null ? null : (this.#seats.at(index)?.avatar ?? null);
+    return index === null ? null : (this.#seats.at(index)?.member.avatar ?? null);
   }
 
   /**
@@ -103,7 +98,7 @@ export class Room<Game extends HostedGame> {
    */
   join(client: ClientId, identity: string, request: JoinRequest, time: number): void {
     this.#time = time;
-    this.#match.clock.begin(time);
+    this.#match.begin(time);
     if (this.#members.of(client)) {
       this.#refuse(client, 'message', 'joined-already');
       return;
@@ -161,17 +156,17 @@ export class Room<Game extends HostedGame> {
    * Whether ticks change nothing until the next message: no match runs, no player is awaited, and no update is queued.
    */
   get isIdle(): boolean {
-    return this.#match.clock.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
+    return this.#match.isIdle && this.#seats.areIdle && this.#seatUpdates.isComplete;
   }
 
   /** Seconds from one tick to the next, where no message arrives between them. */
   get tickPeriod(): number {
-    return this.#match.clock.isRunning ? this.#policy.tickSeconds : idleTickSeconds;
+    return this.#match.isRunning ? this.#policy.tickSeconds : idleTickSeconds;
   }
 
   /** Steps the match up to this time [s], and reports what happened. */
   tick(time: number): void {
-    this.#match.clock.begin(time);
+    this.#match.begin(time);
     this.#time = time;
     this.#seats.watch(time);
     this.#seatUpdates.tick(time);
@@ -228,7 +223,7 @@ export class Room<Game extends HostedGame> {
         this.#match.setReady(index, message.ready);
         return;
       case 'rotate':
-        this.#match.clock.rotate = message.rotate;
+        this.#match.rotate = message.rotate;
         this.#broadcastAbout();
         return;
       case 'pause':
@@ -267,16 +262,16 @@ export class Room<Game extends HostedGame> {
       seat: this.#seats.indexOf(client),
       seats: Array.from({ length: this.#seats.count }, (_, seat) => packSeatInfo(this.#seats.infoOf(seat))),
       spectators: this.#members.spectators,
-      rotate: this.#match.clock.rotate,
-      matchStart: this.#match.clock.matchStart,
-      match: this.#match.snapshot(),
-      paused: this.#match.clock.pausedAt,
+      rotate: this.#match.rotate,
+      matchStart: this.#match.matchStart,
+      match: this.#match.snapshot,
+      paused: this.#match.pausedAt,
       time,
     });
   }
 
   #broadcastAbout(): void {
-    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators, rotate: this.#match.clock.rotate });
+    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators, rotate: this.#match.rotate });
   }
 
   #broadcastSeat(seat: number): void {

@@ -22,7 +22,7 @@ const movesAtOnce = 4;
 /** Returns the limit of a new member's changes of seat. */
 export const allowedMoves = (): TokenBucket => new TokenBucket(movesPerSecond, movesAtOnce);
 
-/** A client that has joined. */
+/** A client that has joined, and what it shows of itself. */
 export interface Member {
   /** The person, the same on each connection. */
   readonly identity: string;
@@ -37,14 +37,11 @@ export interface Member {
 
 /** A taken seat and its player. */
 export interface Seat {
-  readonly identity: string;
+  member: Member;
   /** The client; null: the connection is lost. */
   client: ClientId | null;
+  /** The name that the others see. */
   name: string;
-  calibration: Calibration;
-  avatar: AvatarRef;
-  voice: Voice | null;
-  readonly bot: boolean;
   /** Room time at which the connection was lost [s]; null: connected. */
   disconnectedAt: number | null;
   /** Whether the player is present in the match. */
@@ -88,7 +85,7 @@ export class Seats {
 
   get census(): SeatCensus {
     const taken = this.#seats.filter((seat) => seat !== null);
-    const bots = taken.filter(({ bot }) => bot).length;
+    const bots = taken.filter(({ member }) => member.bot).length;
     return { players: taken.length - bots, bots, free: this.count - taken.length + bots };
   }
 
@@ -113,7 +110,8 @@ export class Seats {
   infoOf(index: number): SeatInfo | null {
     const seat = this.at(index);
     if (!seat) return null;
-    const { name, calibration, bot, presence, avatar, voice } = seat;
+    const { name, presence, member } = seat;
+    const { calibration, bot, avatar, voice } = member;
     return { name, calibration, bot, presence, avatar, voice };
   }
 
@@ -129,13 +127,13 @@ export class Seats {
 
   /** Returns the number of the seat with this voice session; null: none. */
   withVoice(session: string): number | null {
-    const index = this.#seats.findIndex((seat) => seat?.voice?.session === session);
+    const index = this.#seats.findIndex((seat) => seat?.member.voice?.session === session);
     return index < 0 ? null : index;
   }
 
   /** Returns the number of the seat that a person has, or that is held for them; null: none. */
   indexOfIdentity(identity: string): number | null {
-    const index = this.#seats.findIndex((seat) => seat?.identity === identity);
+    const index = this.#seats.findIndex((seat) => seat?.member.identity === identity);
     return index < 0 ? null : index;
   }
 
@@ -143,7 +141,7 @@ export class Seats {
   isFreeFor(index: number, bot: boolean): boolean {
     if (index >= this.count) return false;
     const seat = this.#seats[index];
-    return !seat || (seat.bot && !bot);
+    return !seat || (seat.member.bot && !bot);
   }
 
   /**
@@ -161,21 +159,17 @@ export class Seats {
   freeFor(requested: number | null, bot: boolean): number | null {
     if (requested !== null && this.isFreeFor(requested, bot)) return requested;
     const free = this.#seats.indexOf(null);
-    const index = free >= 0 || bot ? free : this.#seats.findIndex((seat) => seat?.bot);
+    const index = free >= 0 || bot ? free : this.#seats.findIndex((seat) => seat?.member.bot);
     return index < 0 ? null : index;
   }
 
-  /** Gives an empty seat to a client. */
+  /** Gives a seat to a client; the player on it leaves the match. */
   take(index: number, client: ClientId, member: Member, time: number): void {
-    const { identity, name, calibration, avatar, voice, bot } = member;
+    this.#leaveMatch(index);
     this.#seats[index] = {
-      identity,
+      member,
       client,
-      name: name || `Player ${index + 1}`,
-      calibration,
-      avatar,
-      voice,
-      bot,
+      name: member.name || `Player ${index + 1}`,
       disconnectedAt: null,
       playing: true,
       declaredAway: false,
@@ -184,29 +178,24 @@ export class Seats {
       poses: new PoseValidator(time),
     };
     this.#listener.act({ type: 'join', player: index });
-    this.#listener.changed(index);
+    this.reportChange(index);
   }
 
   /** Gives a held seat back to its person, on another connection. */
-  retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Member, time: number): void {
+  retake(index: number, client: ClientId, member: Member, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
     // To the rules a player who has left joins again; within `awayAfterSeconds` the player keeps everything.
     this.#listener.act({ type: seat.playing ? 'reconnect' : 'join', player: index });
-    const changes: Partial<Seat> = {
-      client,
-      disconnectedAt: null,
-      playing: true,
-      declaredAway: false,
-      presence: 'here',
-      calibration,
-      avatar,
-      voice,
-    };
-    Object.assign(seat, changes);
-    if (name) seat.name = name;
+    seat.member = member;
+    seat.client = client;
+    if (member.name) seat.name = member.name;
+    seat.disconnectedAt = null;
+    seat.playing = true;
+    seat.declaredAway = false;
+    seat.presence = 'here';
     seat.poses.reconnected(time);
-    this.#listener.changed(index);
+    this.reportChange(index);
   }
 
   /** Holds the seat of a client whose connection is lost. `setPresence` then reports it to the others. */
@@ -217,20 +206,21 @@ export class Seats {
     seat.disconnectedAt = time;
   }
 
-  /** Changes what others see of a player. */
-  update(index: number, changes: Partial<Pick<Seat, 'calibration' | 'avatar' | 'voice'>>): void {
-    const seat = this.at(index);
-    if (!seat) return;
-    Object.assign(seat, changes);
+  /** Reports that the state of a seat has changed for the others. */
+  reportChange(index: number): void {
     this.#listener.changed(index);
   }
 
   /** Empties a seat. */
   vacate(index: number): void {
-    const seat = this.at(index);
-    if (!seat) return;
-    if (seat.playing) this.#listener.act({ type: 'leave', player: index });
+    if (!this.at(index)) return;
+    this.#leaveMatch(index);
     this.#seats[index] = null;
+    this.reportChange(index);
+  }
+
+  #leaveMatch(index: number): void {
+    if (this.at(index)?.playing) this.#listener.act({ type: 'leave', player: index });
   }
 
   /** Updates the presence of a player at this time [s], and reports a change. */
@@ -241,7 +231,7 @@ export class Seats {
     const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
     if (presence === seat.presence) return;
     seat.presence = presence;
-    this.#listener.changed(index);
+    this.reportChange(index);
   }
 
   /** Updates all seats at this time [s]: silent players, expired poses, and seats that are held no longer. */
@@ -256,14 +246,11 @@ export class Seats {
     this.setPresence(index, time);
     if (seat.poses.forgetExpired(time)) this.#listener.act({ type: 'silent', player: index });
     if (seat.disconnectedAt === null) return;
-    if (seat.playing && time - seat.disconnectedAt > awayAfterSeconds) {
+    if (time - seat.disconnectedAt > awayAfterSeconds) {
+      this.#leaveMatch(index);
       seat.playing = false;
-      this.#listener.act({ type: 'leave', player: index });
     }
-    if (time - seat.disconnectedAt > seatHoldSeconds) {
-      this.vacate(index);
-      this.#listener.changed(index);
-    }
+    if (time - seat.disconnectedAt > seatHoldSeconds) this.vacate(index);
   }
 
   /** Removes and returns the packets to forward, by seat. */

@@ -7,10 +7,10 @@ import { createRouter, noPage } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
 import { refusesUpgrade, withHostCheck } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
-import type { ConnectionCounts } from './connection-counts';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createRelay } from './relay';
 import { type RelayConfiguration, relayConfigurationFrom } from './settings/relay-configuration';
+import type { ConnectionCounts } from './settings/relay-metrics';
 
 export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'secret' | 'host'>> {
   /** Signs the passes; at least 32 characters, the same in all processes. Default: a new one in every process. */

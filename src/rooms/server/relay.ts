@@ -1,25 +1,28 @@
 import { randomBytes } from 'node:crypto';
 import { type Logger, pino } from 'pino';
+import type { Server } from 'socket.io';
 import type { Service } from 'threepoint-http/router';
 import type { UpgradeListener } from 'threepoint-http/web-server';
 import { RoomTokens } from './access/room-tokens';
-import { AvatarRoutes } from './avatars/avatar-routes';
+import { avatarRoutes } from './avatars/avatar-routes';
 import { AvatarStore } from './avatars/avatar-store';
-import type { ConnectionCounts } from './connection-counts';
 import type { RoomKinds } from './hosting/room-kinds';
-import { createSocketHost, type SocketHost } from './hosting/socket-host';
-import { createOwnLobby, createRedisLobby } from './lobby/lobby';
+import { RoomRegistry } from './hosting/room-registry';
+import { hostSockets } from './hosting/socket-host';
+import { createLobby } from './lobby/lobby';
 import { LobbyPublisher } from './lobby/lobby-publisher';
 import { connectRedis, connectRedisPatiently } from './lobby/redis-connection';
-import { RelayRoutes } from './relay-routes';
+import type { RelayContext } from './relay-context';
+import { createRelayService } from './relay-service';
 import type { RelayConfiguration } from './settings/relay-configuration';
-import { createRelayMetrics, type RelayCensus } from './settings/relay-metrics';
+import { type ConnectionCounts, createRelayMetrics, type RelayCensus } from './settings/relay-metrics';
 import { createRelayTransport } from './sockets/relay-transport';
-import { VoiceRoutes } from './voices/voice-routes';
+import { voiceRoute } from './voices/voice-routes';
 
 /** The relay of a server: its sockets and its HTTP service. */
 export interface Relay {
-  readonly host: SocketHost;
+  readonly io: Server;
+  readonly rooms: RoomRegistry;
   readonly avatars: AvatarStore;
   readonly census: RelayCensus;
   readonly service: Service;
@@ -55,7 +58,7 @@ export function createRelay(
   const node = randomBytes(6).toString('hex');
   const tokens = new RoomTokens(secret, unixTime);
   const census = (): RelayCensus => ({
-    ...host.census,
+    ...rooms.census,
     sockets: transport.sockets,
     connections: connections.open,
     refusedConnections: connections.refused,
@@ -63,39 +66,30 @@ export function createRelay(
     avatarBytes: avatars.bytes,
   });
   const metrics = createRelayMetrics(census);
-  const transport = createRelayTransport(configuration, { log, metrics, now });
-  const host = createSocketHost(transport, { configuration, kinds, tokens, log, metrics, now });
-  const avatarOf = (room: string, identity: string) => host.room(room)?.avatarOf(identity) ?? null;
+  const context: RelayContext = { configuration, kinds, tokens, log, metrics, now };
+  const transport = createRelayTransport(context);
+  const { io } = transport;
+  const rooms = new RoomRegistry(context, io);
+  const closeSockets = hostSockets(transport, rooms, context);
+  const avatarOf = (room: string, identity: string) => rooms.get(room)?.room.avatarOf(identity) ?? null;
   const avatars = new AvatarStore({ maxBytes: configuration.avatarMegabytes * 2 ** 20, avatarOf, now });
   const sweeping = setInterval(() => avatars.sweep(), sweepMs).unref();
   const fleet = connectFleet(configuration, log);
-  const lobby = fleet ? createRedisLobby(fleet.own, node, log) : createOwnLobby();
-  const lobbyPublisher = new LobbyPublisher({
-    io: host.io,
-    lobby,
-    node,
-    channel: fleet,
-    rooms: () => host.rooms,
-    endRoom: (room) => void host.end(room),
-  });
-  const service = new RelayRoutes({
-    configuration,
-    kinds,
-    tokens,
+  const lobby = createLobby(fleet?.own ?? null, node, log);
+  const lobbyPublisher = new LobbyPublisher({ io, lobby, node, channel: fleet, rooms });
+  const service = createRelayService(context, {
     lobby,
     census,
-    metrics,
-    log,
     endRoom: (room) => lobbyPublisher.endRoom(room),
     redis: fleet?.own ?? null,
-    avatars: new AvatarRoutes({
-      ...{ configuration, store: avatars, tokens, metrics },
-      isSeated: (room, identity) => avatarOf(room, identity) !== null,
-    }),
-    voices: new VoiceRoutes({ voices: configuration.voices, tokens, now: unixTime }),
+    roomRoutes: [
+      ...avatarRoutes(context, avatars, (room, identity) => avatarOf(room, identity) !== null),
+      voiceRoute(configuration.voices, tokens, unixTime),
+    ],
   });
   return {
-    host,
+    io,
+    rooms,
     avatars,
     get census() {
       return census();
@@ -106,8 +100,8 @@ export function createRelay(
       clearInterval(sweeping);
       avatars.clear();
       lobbyPublisher.close();
-      await host.close();
-      await lobby.close();
+      await closeSockets();
+      fleet?.own.disconnect();
       fleet?.publisher.disconnect();
       fleet?.subscriber.disconnect();
       metrics.close();

@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import type { RoomPass } from '../client/room-pass';
+import { fetchWithPass, type RoomPass } from '../client/room-pass';
 
 /** The voice settings of a room. */
 export interface VoiceSettings {
@@ -25,18 +25,10 @@ const settings = v.object({
  * not answer.
  */
 export async function fetchVoiceSettings(base: string, room: string, pass: RoomPass): Promise<VoiceSettings> {
-  for (const afresh of [false, true]) {
-    const response = await fetch(`${base}/api/voices?room=${room}`, {
-      headers: { authorization: `Bearer ${await pass.token(afresh)}` },
-      cache: 'no-store',
-    });
-    // An expired pass is renewed once.
-    if (response.status === 401 && !afresh) continue;
-    const read = response.ok ? v.safeParse(settings, await response.json().catch(() => null)) : null;
-    if (!read?.success) throw new Error(`the server sent no voice settings (${response.status})`);
-    return read.output;
-  }
-  throw new Error('the server does not accept the pass to this room');
+  const response = await fetchWithPass(pass, `${base}/api/voices?room=${room}`);
+  const read = response.ok ? v.safeParse(settings, await response.json().catch(() => null)) : null;
+  if (!read?.success) throw new Error(`the server sent no voice settings (${response.status})`);
+  return read.output;
 }
 
 /** Returns whether there is a TURN server, by which pages connect without learning each other's address. */

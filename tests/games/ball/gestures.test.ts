@@ -12,6 +12,7 @@ import { ballRules } from 'threepoint-games/ball/rules';
 import { rackPosition, stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, fistOf, wristAround } from 'threepoint-games/fist';
 import { describe, expect, test } from 'vitest';
+import { reportFigures } from '../../reliability/report-figures';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import { holder, leftThrower, told } from './playing';
 
@@ -231,9 +232,7 @@ describe('the speed of a hand', () => {
         worst = Math.max(worst, distance(velocity, same));
       }
     }
-    console.log(
-      `ball game: a throw of ${distance(reference, vec3(0, 0, 0)).toFixed(1)} m/s differs by ${(100 * worst).toFixed(1)} cm/s at most`,
-    );
+    reportFigures('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
     expect(worst).toBeLessThan(0.1);
   });
 

@@ -10,7 +10,7 @@ import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { BallPlay } from 'threepoint-page/ball/match/ball-play';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
+import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { afterAll, expect, test } from 'vitest';
 import { type RunningRelay, startRelay } from '../../rooms/server/running-relay';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
@@ -37,7 +37,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
   const room = 'over-relay';
   const play = new BallPlay({
     connect: (visitor) =>
-      createSocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
+      new SocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
     visitor: { name, calibration: defaultCalibration, ...(options.spectate && { spectate: true }) },
     bots: () => options.bots ?? false,
     acting: () => !options.spectate,

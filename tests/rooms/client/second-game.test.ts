@@ -1,10 +1,11 @@
 import type { Connection } from 'threepoint-rooms/client/connection';
 import { LoopbackHost } from 'threepoint-rooms/client/loopback-host';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
+import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { expect, onTestFinished, test } from 'vitest';
 import { type CountingGame, countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
-import { startRelay, until } from '../server/running-relay';
+import { until } from '../server/running-relay';
+import { relayOfTest } from '../server/until-finished';
 import { visitor } from './people';
 
 interface Counter {
@@ -43,12 +44,11 @@ test('a client follows a game that its session does not know: events, refusals, 
 });
 
 test('a round of it is played to its end over a relay, by the client that plays the ball game', async () => {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
+  const relay = await relayOfTest();
   const room = `${countingKind}-over-sockets`;
   const [ann, ben] = ['Ann', 'Ben'].map((name) => {
     const pass = createRoomPass(relay.url, room, countingKind);
-    const connection = createSocketConnection(countingClientPolicy, {
+    const connection: Connection<CountingGame> = new SocketConnection(countingClientPolicy, {
       ...{ url: relay.url, room, pass },
       visitor: visitor(name),
     });

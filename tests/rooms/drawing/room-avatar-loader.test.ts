@@ -1,25 +1,18 @@
 import { createHash } from 'node:crypto';
-import { createServer, type RequestListener } from 'node:http';
-import type { AddressInfo } from 'node:net';
+import type { RequestListener } from 'node:http';
 import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
 import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { RoomAvatarLoader } from 'threepoint-rooms/drawing/room-avatar-loader';
 import { expect, onTestFinished, test } from 'vitest';
 import { collectGarbage } from '../../collect-garbage';
+import { answeringHost } from '../client/answering-host';
 
 const hash = createHash('sha256').update('an avatar').digest('base64url') as AvatarHash;
 
-/** Starts a server on this machine that answers so; returns its address. */
-async function answeredBy(answer: RequestListener): Promise<string> {
-  const server = createServer(answer);
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  onTestFinished(() => {
-    server.closeAllConnections();
-    server.close();
-  });
-  return `http://127.0.0.1:${(server.address() as AddressInfo).port}/${hash}`;
-}
+/** The address of the file on a host that answers so. */
+const answeredBy = async (answer: RequestListener): Promise<string> =>
+  `${(await answeringHost(answer)).folder}/${hash}`;
 
 /** An answer that begins and never ends. */
 const neverEnding: RequestListener = (_request, response) => {

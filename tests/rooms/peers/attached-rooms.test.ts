@@ -1,35 +1,23 @@
 import { once } from 'node:events';
 import { readFile } from 'node:fs/promises';
-import { createServer, type Server } from 'node:http';
+import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { Group, Vector3 } from 'three';
 import { loadAvatar } from 'threepoint/api/three';
 import { distance } from 'threepoint/core/math/vec3';
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from 'threepoint-rooms/drawing/join-room';
-import { type AttachRoomsOptions, attachRooms } from 'threepoint-rooms/server/attach-rooms';
+import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
 import { changed } from '../../threepoint/avatar/glb';
 import { countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
 import { until } from '../server/running-relay';
 import { stubFileFetch } from './file-fetch';
+import { servedRooms } from './served-rooms';
 import { solvedActor } from './solved-actor';
 
 const mannequinFile = readFile('public/avatars/mannequin.vrm');
 
 beforeEach(stubFileFetch);
-
-/** A server of somebody else's with rooms on it. */
-async function served(options: AttachRoomsOptions = {}) {
-  const server: Server = createServer((request, response) => response.end(`mine: ${request.url}`));
-  const rooms = attachRooms(server, { logLevel: 'silent', ...options });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  onTestFinished(async () => {
-    await rooms.close();
-    server.closeAllConnections();
-    await new Promise((resolve) => server.close(resolve));
-  });
-  return { rooms, server, url: `http://127.0.0.1:${(server.address() as AddressInfo).port}` };
-}
 
 /** A tab's storage. */
 function storage() {
@@ -61,7 +49,7 @@ async function joins(url: string, name: string, options: Partial<JoinRoomOptions
 const drawn = (room: JoinedRoom) => room.others.object.children.filter(({ visible }) => visible);
 
 test('two pages see each other on any server of node:http, whose own addresses stay as they were', async () => {
-  const { url, rooms } = await served();
+  const { url, rooms } = await servedRooms();
   expect(await (await fetch(`${url}/hello`)).text()).toBe('mine: /hello');
   expect((await fetch(`${url}/api/rooms`)).status).toBe(200);
   const [ann, ben] = [await joins(url, 'Ann'), await joins(url, 'Ben')];
@@ -101,7 +89,7 @@ test('two pages see each other on any server of node:http, whose own addresses s
 });
 
 test('a reload keeps the place, and nobody is there twice', async () => {
-  const { url } = await served();
+  const { url } = await servedRooms();
   const tab = storage();
   const ann = await joins(url, 'Ann', { storage: tab });
   const ben = await joins(url, 'Ben');
@@ -116,7 +104,7 @@ test('a reload keeps the place, and nobody is there twice', async () => {
 });
 
 test('an avatar that one page brings is drawn by the others, from the server', async () => {
-  const { url } = await served();
+  const { url } = await servedRooms();
   const file = changed((json) => {
     for (const node of json.nodes) if (node.mesh !== undefined) node.name = "Ann's";
   });
@@ -156,7 +144,7 @@ test.each<[what: string, file: () => ArrayBuffer, sentence: RegExp]>([
   async (_, file, sentence) => {
     const warnings = vi.spyOn(console, 'warn').mockReturnValue();
     onTestFinished(() => warnings.mockRestore());
-    const { url } = await served();
+    const { url } = await servedRooms();
     const ann = await joins(url, 'Ann', { avatarFile: new Blob([file()]) });
     const ben = await joins(url, 'Ben', { avatar: undefined } as never);
     await until('the refusal', () => {
@@ -172,7 +160,7 @@ test.each<[what: string, file: () => ArrayBuffer, sentence: RegExp]>([
 );
 
 test('a page of a game acts in it and gets its events, and draws the others on their floors', async () => {
-  const { url } = await served({ games: new Map([[countingKind, () => countingPolicy(2)]]) });
+  const { url } = await servedRooms({ games: new Map([[countingKind, () => countingPolicy(2)]]) });
   const joinGame = async (name: string) => {
     const body = solvedActor();
     const room = await joinRoom(url, { name, body, game: countingClientPolicy, storage: null });
@@ -204,7 +192,7 @@ test('a page of a game acts in it and gets its events, and draws the others on t
 test('far from the origin of the scene people are where the object of the others is', async () => {
   const warnings = vi.spyOn(console, 'warn').mockReturnValue();
   onTestFinished(() => warnings.mockRestore());
-  const { url } = await served();
+  const { url } = await servedRooms();
   const pier = new Group();
   pier.position.set(400, 2, -300);
   pier.rotation.y = 1;
@@ -231,7 +219,7 @@ test('far from the origin of the scene people are where the object of the others
 });
 
 test('who has no body watches', async () => {
-  const { url } = await served();
+  const { url } = await servedRooms();
   const ann = await joins(url, 'Ann');
   const watcher = await joins(url, 'Zoe', { body: null });
   await until('the watcher sees Ann', () => {
@@ -244,7 +232,7 @@ test('who has no body watches', async () => {
 });
 
 test('below a path, and for pages of other origins that are named', async () => {
-  const { url } = await served({ path: '/bodies', origins: ['https://here.example'] });
+  const { url } = await servedRooms({ path: '/bodies', origins: ['https://here.example'] });
   expect(await (await fetch(`${url}/api/rooms`)).text()).toBe('mine: /api/rooms');
   const asked = (origin: string) =>
     fetch(`${url}/bodies/api/rooms/token`, {
@@ -266,7 +254,7 @@ test('below a path, and for pages of other origins that are named', async () => 
 });
 
 test('requests with two names of the server reach no room, as requests and as WebSockets', async () => {
-  const { server } = await served();
+  const { server } = await servedRooms();
   const { port } = server.address() as AddressInfo;
   for (const upgrade of ['', 'Connection: Upgrade\r\nUpgrade: websocket\r\n']) {
     const socket = connect(port, '127.0.0.1');
@@ -278,7 +266,7 @@ test('requests with two names of the server reach no room, as requests and as We
 });
 
 test('a room that cannot be joined is refused with a sentence', async () => {
-  const { url } = await served();
+  const { url } = await servedRooms();
   const join = (address: string, room: string) => joinRoom(address, { name: 'Ann', body: null, room, storage: null });
   await expect(join(url, 'No Such Name')).rejects.toThrow(/expected lower-case letters/);
   await expect(join('http://127.0.0.1:9', 'lobby')).rejects.toThrow(/"lobby" at http:\/\/127.0.0.1:9 cannot be joined/);

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
+import { BitReader, BitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import { expect, test } from 'vitest';
 import { seed } from '../../threepoint/core/arbitraries';
 
@@ -10,11 +10,11 @@ const numbers = fc.array(
 test('numbers come back as they were written, and the end is where it was', () => {
   fc.assert(
     fc.property(numbers, (written) => {
-      const writer = createBitWriter();
+      const writer = new BitWriter();
       for (const { value, bits } of written) writer.write(value, bits);
       const bytes = writer.bytes();
       expect(bytes.length).toBe(Math.ceil(written.reduce((sum, { bits }) => sum + bits, 0) / 8));
-      const reader = createBitReader(bytes);
+      const reader = new BitReader(bytes);
       for (const { value, bits } of written) expect(reader.read(bits)).toBe(value);
       expect(reader.ended()).toBe(true);
     }),
@@ -23,7 +23,7 @@ test('numbers come back as they were written, and the end is where it was', () =
 });
 
 test('the most significant bit comes first', () => {
-  const writer = createBitWriter();
+  const writer = new BitWriter();
   writer.write(0b101, 3);
   writer.write(0b0000111100, 10);
   expect([...writer.bytes()]).toEqual([0b10100001, 0b11100000]);
@@ -31,7 +31,7 @@ test('the most significant bit comes first', () => {
 
 test('bytes that are missing, left over or not filled up with zeros are no end', () => {
   const ends = (bytes: number[], bits: number): boolean => {
-    const reader = createBitReader(Uint8Array.from(bytes));
+    const reader = new BitReader(Uint8Array.from(bytes));
     reader.read(bits);
     return reader.ended();
   };

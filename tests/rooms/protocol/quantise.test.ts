@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { angleBetween } from 'threepoint/core/math/quat';
 import { dot } from 'threepoint/core/math/vec3';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
+import { BitReader, BitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import {
   fromDirectionSteps,
   fromQuatSteps,
@@ -35,11 +35,11 @@ test('a number is off by half a step at most, zero and both ends by nothing', ()
 });
 
 test('the code beyond the last step means nothing', () => {
-  const writer = createBitWriter();
+  const writer = new BitWriter();
   writeStep(writer, -maxSteps(5), 5);
   writeStep(writer, maxSteps(5), 5);
   writer.write(31, 5);
-  const reader = createBitReader(writer.bytes());
+  const reader = new BitReader(writer.bytes());
   expect([readStep(reader, 5), readStep(reader, 5), readStep(reader, 5)]).toEqual([-15, 15, null]);
 });
 
@@ -48,9 +48,9 @@ test('rotations survive the wire, both signs alike: 0.14° at 11 bits, 1.11° at
   for (const bits of [11, 8] as const) {
     fc.assert(
       fc.property(rotation, (q) => {
-        const writer = createBitWriter();
+        const writer = new BitWriter();
         writeQuat(writer, toQuatSteps(q, bits), bits);
-        const steps = readQuat(createBitReader(writer.bytes()), bits);
+        const steps = readQuat(new BitReader(writer.bytes()), bits);
         const back = fromQuatSteps(steps!, bits);
         worst[bits] = Math.max(worst[bits], angleBetween(q, back) * degrees);
         const minus = { x: -q.x, y: -q.y, z: -q.z, w: -q.w };
@@ -69,17 +69,17 @@ test('rotations survive the wire, both signs alike: 0.14° at 11 bits, 1.11° at
 });
 
 test('three components that leave no room for a largest one are no rotation', () => {
-  const writer = createBitWriter();
+  const writer = new BitWriter();
   writeQuat(writer, { largest: 3, a: 1023, b: 1023, c: 1023 }, 11);
-  expect(readQuat(createBitReader(writer.bytes()), 11)).toBeNull();
+  expect(readQuat(new BitReader(writer.bytes()), 11)).toBeNull();
 });
 
 test('directions survive the wire: 0.35° at 8 bits', () => {
   fc.assert(
     fc.property(direction, (towards) => {
-      const writer = createBitWriter();
+      const writer = new BitWriter();
       writeDirection(writer, toDirectionSteps(towards, 8), 8);
-      const steps = readDirection(createBitReader(writer.bytes()), 8);
+      const steps = readDirection(new BitReader(writer.bytes()), 8);
       const back = fromDirectionSteps(steps!, 8);
       expect(Math.acos(Math.min(1, dot(towards, back))) * degrees).toBeLessThan(0.35);
     }),

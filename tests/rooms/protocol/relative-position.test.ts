@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { createBitReader, createBitWriter } from 'threepoint-rooms/protocol/bit-stream';
+import { BitReader, BitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import {
   fromRelativePosition,
   makeRelativePositionSteps,
@@ -15,12 +15,12 @@ import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 function received(head: Vec3, hand: Vec3): Vec3 {
   const steps = makeRelativePositionSteps();
   toRelativePosition(head, hand, steps);
-  const writer = createBitWriter();
+  const writer = new BitWriter();
   writeRelativePosition(writer, steps);
   const bytes = writer.bytes();
   expect(bytes).toHaveLength(5);
   const read = makeRelativePositionSteps();
-  expect(readRelativePosition(createBitReader(bytes), read)).toBe(true);
+  expect(readRelativePosition(new BitReader(bytes), read)).toBe(true);
   expect(read).toEqual(steps);
   return fromRelativePosition(head, read, vec3(0, 0, 0));
 }
@@ -56,16 +56,16 @@ test('a hand that is further away is at the edge', () => {
 
 test('codes that no hand has are refused: those above all, and coarse places where finer ones are', () => {
   const read = (high: number, low: number): boolean => {
-    const writer = createBitWriter();
+    const writer = new BitWriter();
     writer.write(high, 20);
     writer.write(low, 20);
-    return readRelativePosition(createBitReader(writer.bytes()), makeRelativePositionSteps());
+    return readRelativePosition(new BitReader(writer.bytes()), makeRelativePositionSteps());
   };
   expect(read(2 ** 20 - 1, 2 ** 20 - 1)).toBe(false);
   const coarse = (x: number): boolean => {
-    const writer = createBitWriter();
+    const writer = new BitWriter();
     writeRelativePosition(writer, { far: true, x, y: 0, z: 0 });
-    return readRelativePosition(createBitReader(writer.bytes()), makeRelativePositionSteps());
+    return readRelativePosition(new BitReader(writer.bytes()), makeRelativePositionSteps());
   };
   expect(coarse(1388)).toBe(false);
   expect(coarse(1389)).toBe(true);

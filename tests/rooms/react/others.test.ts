@@ -1,28 +1,18 @@
-import { createServer } from 'node:http';
-import type { AddressInfo } from 'node:net';
 import { createElement, createRef } from 'react';
 import { type JoinedRoom, joinRoom } from 'threepoint-rooms/drawing/join-room';
 import { RoomAvatars, type RoomAvatarsProps } from 'threepoint-rooms/react';
-import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { beforeEach, expect, onTestFinished, test } from 'vitest';
 import { openCanvas } from '../../threepoint/api/canvas';
 import { stubFileFetch } from '../peers/file-fetch';
+import { servedRooms } from '../peers/served-rooms';
 import { solvedActor } from '../peers/solved-actor';
 
 beforeEach(stubFileFetch);
 
 /** A server with rooms, and a component that joins one of them. */
 async function opened() {
-  const server = createServer();
-  const rooms = attachRooms(server, { logLevel: 'silent' });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  onTestFinished(async () => {
-    await rooms.close();
-    server.closeAllConnections();
-    await new Promise((resolve) => server.close(resolve));
-  });
+  const { rooms, url } = await servedRooms();
   const canvas = await openCanvas();
-  const url = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
   const ref = createRef<JoinedRoom>();
   const options: RoomAvatarsProps = { url, name: 'Ann', body: solvedActor(), storage: null, ref };
   const show = (props: Partial<RoomAvatarsProps> = {}, strict = false) =>

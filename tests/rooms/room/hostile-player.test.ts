@@ -26,11 +26,7 @@ function seenSpeed(claim: Claim): number {
     const claimed = claim(i, testRoom.time);
     if (!claimed) continue;
     const { timeMs, jump } = claimed;
-    testRoom.room.onPose(
-      'ann',
-      poseOf({ head: vec3(i % 2 ? 7 : -7, 1.6, 0), timeMs: packetMs(timeMs), jump }),
-      testRoom.time,
-    );
+    testRoom.send('ann', poseOf({ head: vec3(i % 2 ? 7 : -7, 1.6, 0), timeMs: packetMs(timeMs), jump }));
     testRoom.room.sendPoses();
   }
   let way = 0;
@@ -85,7 +81,7 @@ describe('a seated player who changes with every message', () => {
     testRoom.join('ben');
     testRoom.sent.length = 0;
     for (let i = 0; i < attackSeconds * perSecond; i++) {
-      testRoom.room.onMessage('ann', change(i), testRoom.time);
+      testRoom.say('ann', change(i));
       testRoom.tick(1 / perSecond);
     }
     const sent = seatMessages(testRoom, 0).length;
@@ -106,7 +102,7 @@ describe('a seated player who changes with every message', () => {
     testRoom.sent.length = 0;
     const attempts = attackSeconds * perSecond;
     for (let i = 0; i < attempts; i++) {
-      testRoom.room.onMessage('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 }, testRoom.time);
+      testRoom.say('ann', { type: 'sit', seat: i % 2 === 0 ? 1 : 0 });
       testRoom.tick(1 / perSecond);
     }
     const moves = testRoom.sent.filter(({ message }) => message.type === 'seated').length;
@@ -121,9 +117,9 @@ describe('a seated player who changes with every message', () => {
     const testRoom = createTestRoom();
     testRoom.join('ann');
     testRoom.join('ben');
-    for (let i = 0; i < 100; i++) testRoom.room.onMessage('ann', { type: 'wear', avatar: hash(i) }, testRoom.time);
+    for (let i = 0; i < 100; i++) testRoom.say('ann', { type: 'wear', avatar: hash(i) });
     testRoom.sent.length = 0;
-    testRoom.room.onMessage('ben', { type: 'wear', avatar: 'woman' }, testRoom.time);
+    testRoom.say('ben', { type: 'wear', avatar: 'woman' });
     expect(seatMessages(testRoom, 1)).toHaveLength(1);
     expect(seatMessages(testRoom, 0)).toHaveLength(0);
   });

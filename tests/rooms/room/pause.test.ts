@@ -1,15 +1,14 @@
 import { ballMatchTime, ballSecondsLeft } from 'threepoint-games/ball/state-selectors';
 import { poseRetentionSeconds } from 'threepoint-rooms/room/pose-validator';
 import { describe, expect, test } from 'vitest';
-import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
+import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { createTestRoom } from './test-room';
 
 /** A room that may be paused, its match under way. */
 function playing() {
   const testRoom = createTestRoom({ pausable: true });
   testRoom.begin();
-  const pause = (client: string, on: boolean) =>
-    testRoom.room.onMessage(client, { type: 'pause', pause: on }, testRoom.time);
+  const pause = (client: string, on: boolean) => testRoom.say(client, { type: 'pause', pause: on });
   const match = () => testRoom.room.match;
   return { testRoom, pause, match };
 }
@@ -53,21 +52,11 @@ describe('a pause', () => {
 
   test('leaves a ball in the air where it is and lets it be caught later', () => {
     const { testRoom, pause, match } = playing();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.tick();
     testRoom.pose('ann', 0, fists(releaseOf(0)), testRoom.time);
     testRoom.tick();
-    const throwing = { position: releaseOf(0), velocity: velocityTo(releaseOf(0), opening, 1) };
-    testRoom.act('ann', {
-      type: 'throw',
-      sequence: 2,
-      side: 'right',
-      ball: 0,
-      at: ballMatchTime(match()),
-      ...throwing,
-    });
+    testRoom.act('ann', testRoom.throwOf(0, 2));
     testRoom.pass(0.4, testRoom.stand);
     pause('cal', true);
     testRoom.pass(60, testRoom.stand);
@@ -79,9 +68,7 @@ describe('a pause', () => {
 
   test('puts what is held back to its rack, and refuses actions until it is over', () => {
     const { testRoom, pause, match } = playing();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.tick();
     expect(match().balls[0]?.on).toBe('hand');
     pause('ben', true);
@@ -121,7 +108,7 @@ describe('a pause', () => {
     expect(testRoom.room.paused).toBe(false);
     pause('ben', true);
     testRoom.tick();
-    testRoom.room.onMessage('ben', { type: 'leave' }, testRoom.time);
+    testRoom.say('ben', { type: 'leave' });
     testRoom.tick();
     expect(testRoom.room.paused).toBe(false);
   });
@@ -129,11 +116,10 @@ describe('a pause', () => {
   test('that is asked for before the start stops the match as soon as it has begun', () => {
     const testRoom = createTestRoom({ pausable: true });
     for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: client });
-    testRoom.room.onMessage('ann', { type: 'pause', pause: true }, testRoom.time);
+    testRoom.say('ann', { type: 'pause', pause: true });
     testRoom.pass(1, testRoom.stand);
     expect(testRoom.room.paused).toBe(false);
-    for (const client of ['ann', 'ben', 'cal'])
-      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.ready();
     testRoom.pass(30, testRoom.stand);
     expect(testRoom.room.match.phase).toBe('running');
     expect(ballSecondsLeft(testRoom.room.match)).toBeGreaterThan(89.9);
@@ -144,14 +130,13 @@ describe('a pause', () => {
     testRoom.begin();
     testRoom.pass(4.5, testRoom.stand);
     while (ballSecondsLeft(testRoom.room.match) > 1.5 / 60) testRoom.tick();
-    testRoom.room.onMessage('ann', { type: 'pause', pause: true }, testRoom.time);
+    testRoom.say('ann', { type: 'pause', pause: true });
     testRoom.tick(2 / 60);
     expect(testRoom.happened('ended')).toHaveLength(1);
     expect(testRoom.room.paused).toBe(false);
     expect(testRoom.sent.filter(({ message }) => message.type === 'paused')).toEqual([]);
-    testRoom.room.onMessage('ann', { type: 'pause', pause: false }, testRoom.time);
-    for (const client of ['ann', 'ben', 'cal'])
-      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.say('ann', { type: 'pause', pause: false });
+    testRoom.ready();
     testRoom.pass(0.1);
     expect(testRoom.room.match.phase).toBe('running');
   });
@@ -159,12 +144,12 @@ describe('a pause', () => {
   test('is refused where the terms of the room do not allow it, and to who only watches', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.room.onMessage('ann', { type: 'pause', pause: true }, testRoom.time);
+    testRoom.say('ann', { type: 'pause', pause: true });
     testRoom.pass(1, testRoom.stand);
     expect(testRoom.room.paused).toBe(false);
     const { testRoom: other } = playing();
     other.join('dot', { spectate: true });
-    other.room.onMessage('dot', { type: 'pause', pause: true }, other.time);
+    other.say('dot', { type: 'pause', pause: true });
     other.pass(1, other.stand);
     expect(other.room.paused).toBe(false);
     expect([...testRoom.refusals, ...other.refusals].map(({ reason }) => reason)).toEqual(['not-pausable', 'no-seat']);
@@ -178,7 +163,7 @@ describe('a pause', () => {
     const before = longest();
     testRoom.pass(60, () => {
       testRoom.stand();
-      testRoom.room.onMessage('ben', { type: 'ready', ready: true }, testRoom.time);
+      testRoom.say('ben', { type: 'ready', ready: true });
       testRoom.act('ben', { type: 'drop', sequence: 1, side: 'left' });
     });
     pause('ann', false);

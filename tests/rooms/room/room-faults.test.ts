@@ -13,7 +13,7 @@ import { isNightly } from '../../nightly';
 import { printFigures } from '../../print-figures';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
 import { countingPolicy } from './counting-game';
-import { createTestRoom, joinRequest, packetAt } from './test-room';
+import { createTestRoom, joinRequest } from './test-room';
 
 const allFinite = (value: unknown): boolean => {
   if (typeof value === 'number') return Number.isFinite(value);
@@ -26,21 +26,8 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   const pick = (count: number) => Math.floor(chance() * count);
   const testRoom = createTestRoom();
   testRoom.begin();
-  const good = () =>
-    packetAt(testRoom.room.match, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), testRoom.time);
-  const words = [
-    'type',
-    'action',
-    'grab',
-    'throw',
-    'ready',
-    'at',
-    'sequence',
-    '__proto__',
-    'constructor',
-    'seat',
-    '1e999',
-  ];
+  const good = () => testRoom.packet(0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), testRoom.time);
+  const words = 'type action grab throw ready at sequence __proto__ constructor seat 1e999'.split(' ');
   const jsonLike = (depth: number): unknown => {
     const kind = pick(depth > 3 ? 6 : 8);
     if (kind === 0) return null;
@@ -60,7 +47,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
     if (kind <= 1) {
       const mutated = good();
       for (let flips = pick(3); flips >= 0; flips--) mutated[pick(mutated.length)]! ^= 1 << pick(8);
-      if (testRoom.room.onPose('ann', chance() < 0.5 ? mutated : bytes, testRoom.time) === 'taken') taken += 1;
+      if (testRoom.send('ann', chance() < 0.5 ? mutated : bytes) === 'taken') taken += 1;
     } else if (kind === 2) {
       const value = { type: words[pick(words.length)], ...(jsonLike(0) as object | null) };
       const near: Record<string, unknown> = {
@@ -79,7 +66,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
       if (chance() < 0.3) near[Object.keys(near)[pick(4)]!] = jsonLike(2);
       const message = clientMessageFrom(chance() < 0.5 ? value : { type: 'action', action: near });
       const isHeard = message && message.type !== 'join' && message.type !== 'leave';
-      const isBad = isHeard && testRoom.room.onMessage('ann', message, testRoom.time) === 'bad';
+      const isBad = isHeard && testRoom.say('ann', message) === 'bad';
       if (message && !isBad) understood += 1;
       ballRoomMessageFrom(value);
     } else if (kind === 3) {
@@ -123,7 +110,6 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
     let sequence = 0;
     for (let ball = 0; ball < balls / 2; ball++) {
       const grab: BallAction = { type: 'grab', sequence: ++sequence, side: 'right', ball };
-      const at = () => testRoom.time - testRoom.welcomeOf('ann').matchStart;
       testRoom.pose('ann', 0, atRack(ball, balls), testRoom.time + 0.01);
       testRoom.tick();
       const burst = (fresh: BallAction) => {
@@ -138,15 +124,7 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
       burst(grab);
       testRoom.stand();
       testRoom.tick();
-      burst({
-        type: 'throw',
-        sequence: ++sequence,
-        side: 'right',
-        ball,
-        at: at(),
-        position: releaseOf(0),
-        velocity: velocityTo(releaseOf(0), opening, 1),
-      });
+      burst(testRoom.throwOf(ball, ++sequence));
       testRoom.pass(0.3, () => testRoom.pose('cal', 2, holding(opening)));
     }
     testRoom.pass(1.5, () => testRoom.pose('cal', 2, holding(opening)));
@@ -177,9 +155,7 @@ describe('latency', () => {
     const late = createRandom(seed + 1_000_003);
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.tick();
     testRoom.pose('ann', 0, fists(releaseOf(0)), testRoom.time);
     const start = testRoom.time;
@@ -192,21 +168,14 @@ describe('latency', () => {
       if (i % 2 === 0) {
         // TCP: nothing overtakes.
         lastCal = Math.max(lastCal, time + delay + jitter * late());
-        const bytes = packetAt(testRoom.room.match, 2, holding(basketAt(time - start)), time);
-        underway.push({ at: lastCal, send: () => void testRoom.room.onPose('cal', bytes, testRoom.time) });
-        const anns = packetAt(testRoom.room.match, 0, fists(releaseOf(0)), time);
-        underway.push({ at: time + delay, send: () => void testRoom.room.onPose('ann', anns, testRoom.time) });
+        const bytes = testRoom.packet(2, holding(basketAt(time - start)), time);
+        underway.push({ at: lastCal, send: () => void testRoom.send('cal', bytes) });
+        const anns = testRoom.packet(0, fists(releaseOf(0)), time);
+        underway.push({ at: time + delay, send: () => void testRoom.send('ann', anns) });
       }
       if (time <= throwAt && time + 1 / 60 > throwAt) {
-        const action: BallAction = {
-          type: 'throw',
-          sequence: 2,
-          side: 'right',
-          ball: 0,
-          at: throwAt - matchStart,
-          position: releaseOf(0),
-          velocity: velocityTo(releaseOf(0), aim, flight),
-        };
+        const velocity = velocityTo(releaseOf(0), aim, flight);
+        const action = { ...testRoom.throwOf(0, 2, velocity), at: throwAt - matchStart };
         underway.push({ at: throwAt + delay + jitter * late(), send: () => testRoom.act('ann', action) });
       }
       for (const message of underway.filter(({ at }) => at <= time && at > time - 1 / 60)) message.send();
@@ -245,28 +214,17 @@ describe('a page that comes at t = 60 s', () => {
     const testRoom = createTestRoom({ ball: { balls: 20 } });
     // The longest names there are.
     for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: '\u{1f600}'.repeat(10) });
-    for (const client of ['ann', 'ben', 'cal'])
-      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.ready();
     testRoom.stand();
     testRoom.tick();
     let sequence = 0;
     testRoom.pass(20, testRoom.stand);
     for (let ball = 0; ball < 10; ball++) {
-      testRoom.pose('ann', 0, atRack(ball), testRoom.time + 0.01);
-      testRoom.tick();
-      testRoom.act('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
+      testRoom.grab(ball, ++sequence);
       testRoom.tick();
       testRoom.stand();
       testRoom.tick();
-      testRoom.act('ann', {
-        type: 'throw',
-        sequence: ++sequence,
-        side: 'right',
-        ball,
-        at: testRoom.time - testRoom.welcomeOf('ann').matchStart,
-        position: releaseOf(0),
-        velocity: vec3(1.2345678 - ball, 4.1234567, -3.1234567),
-      });
+      testRoom.act('ann', testRoom.throwOf(ball, ++sequence, vec3(1.2345678 - ball, 4.1234567, -3.1234567)));
       testRoom.pass(4, testRoom.stand);
     }
     testRoom.join('dot', { spectate: true });
@@ -332,20 +290,9 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
   for (const silence of [5, 29]) {
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.pass(0.1, testRoom.stand);
-    const at = testRoom.time - testRoom.welcomeOf('ann').matchStart;
-    testRoom.act('ann', {
-      type: 'throw',
-      sequence: 2,
-      side: 'right',
-      ball: 0,
-      at,
-      position: releaseOf(0),
-      velocity: velocityTo(releaseOf(0), opening, 1),
-    });
+    testRoom.act('ann', testRoom.throwOf(0, 2));
     testRoom.pass(1.5, testRoom.stand);
     expect(testRoom.room.match.score).toBe(1);
     testRoom.room.disconnect('ann', testRoom.time);
@@ -370,8 +317,7 @@ test('rooms that live for hours keep nothing: the same answer, no growth', { tag
   let rounds = 0;
   for (let second = 0; second < hours * 3600; second++) {
     testRoom.pass(1, testRoom.stand);
-    for (const client of ['ann', 'ben', 'cal'])
-      testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    testRoom.ready();
     if (second % 30 === 0) {
       testRoom.room.disconnect('ben', testRoom.time);
       testRoom.join('ben', {}, 'ben');

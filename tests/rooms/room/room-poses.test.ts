@@ -1,18 +1,18 @@
 import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { describe, expect, test } from 'vitest';
 import { fists, opening, releaseOf } from '../client/people';
-import { createTestRoom, packetAt } from './test-room';
+import { createTestRoom } from './test-room';
 
 describe('poses and stillness of a room', () => {
   test('poses go out once, all that have come in one frame, each as it was sent', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.frames.length = 0;
-    const older = packetAt(testRoom.room.match, 0, fists(releaseOf(0)), testRoom.time);
-    expect(testRoom.room.onPose('ann', older, testRoom.time)).toBe('taken');
-    const newest = packetAt(testRoom.room.match, 0, fists(opening), testRoom.time + 0.005);
+    const older = testRoom.packet(0, fists(releaseOf(0)));
+    expect(testRoom.send('ann', older)).toBe('taken');
+    const newest = testRoom.packet(0, fists(opening), testRoom.time + 0.005);
     expect(testRoom.room.onPose('ann', newest, testRoom.time + 0.005)).toBe('taken');
-    const cals = packetAt(testRoom.room.match, 2, fists(opening), testRoom.time + 0.005);
+    const cals = testRoom.packet(2, fists(opening), testRoom.time + 0.005);
     testRoom.room.onPose('cal', cals, testRoom.time + 0.005);
     testRoom.tick();
     testRoom.tick();
@@ -30,7 +30,7 @@ describe('poses and stillness of a room', () => {
     testRoom.begin();
     testRoom.frames.length = 0;
     const packets = Array.from({ length: 30 }, (_, i) =>
-      packetAt(testRoom.room.match, 0, fists(releaseOf(0)), testRoom.time + 0.01 * (i + 1)),
+      testRoom.packet(0, fists(releaseOf(0)), testRoom.time + 0.01 * (i + 1)),
     );
     for (const [i, packet] of packets.entries()) testRoom.room.onPose('ann', packet, testRoom.time + 0.01 * (i + 1));
     testRoom.tick();

@@ -2,7 +2,7 @@ import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallAction } from 'threepoint-games/ball/ball-state';
 import { clientMessageFrom } from 'threepoint-rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
-import { atRack, fists, opening, releaseOf, velocityTo } from '../client/people';
+import { fists, opening, releaseOf, velocityTo } from '../client/people';
 import { createTestRoom } from './test-room';
 
 describe('what the Room refuses', () => {
@@ -10,9 +10,7 @@ describe('what the Room refuses', () => {
   function holdingBall() {
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.pass(0.1, testRoom.stand);
     expect(testRoom.room.match.balls[0]?.on).toBe('hand');
     return testRoom;
@@ -53,7 +51,7 @@ describe('what the Room refuses', () => {
     testRoom.join('dot', { spectate: true });
     testRoom.act('dot', { type: 'drop', sequence: 1, side: 'right' });
     testRoom.act('stranger', { type: 'drop', sequence: 1, side: 'right' });
-    testRoom.room.onMessage('dot', { type: 'ready', ready: true }, testRoom.time);
+    testRoom.say('dot', { type: 'ready', ready: true });
     expect(testRoom.refusals.map(({ reason }) => reason)).toEqual(['no-seat', 'not-joined', 'no-seat']);
     expect(testRoom.pose('dot', 0, fists(release))).toBe('ignored');
   });

@@ -56,9 +56,7 @@ describe('seats', () => {
     const hold = () => {
       const testRoom = createTestRoom();
       testRoom.begin();
-      testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-      testRoom.tick();
-      testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+      testRoom.grab();
       testRoom.tick();
       expect(testRoom.room.match.balls[0]?.on).toBe('hand');
       testRoom.room.disconnect('ann', testRoom.time);
@@ -79,9 +77,7 @@ describe('seats', () => {
   test('a page that is loaded again at once numbers its actions from 1 again: none counts as seen before', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.pose('ann', 0, atRack(0), testRoom.time + 0.01);
-    testRoom.tick();
-    testRoom.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    testRoom.grab();
     testRoom.tick();
     testRoom.room.disconnect('ann', testRoom.time);
     testRoom.pass(1);
@@ -103,7 +99,7 @@ describe('seats', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.join('dot', { spectate: true });
-    testRoom.room.onMessage('dot', { type: 'sit', seat: 1 }, testRoom.time);
+    testRoom.say('dot', { type: 'sit', seat: 1 });
     expect(testRoom.refusals).toMatchObject([{ client: 'dot', what: 'sit', reason: 'occupied' }]);
     expect(testRoom.join('eve', { seat: 1 }).seat).toBeNull();
   });
@@ -111,9 +107,9 @@ describe('seats', () => {
   test('others learn that a player is away: at once when declared, within 3 s of silence, and at once on return', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
-    testRoom.room.onMessage('ann', { type: 'away', away: true }, testRoom.time);
+    testRoom.say('ann', { type: 'away', away: true });
     expect(presence(testRoom, 0)).toBe('away');
-    testRoom.room.onMessage('ann', { type: 'away', away: false }, testRoom.time);
+    testRoom.say('ann', { type: 'away', away: false });
     expect(presence(testRoom, 0)).toBe('here');
     const quiet = () => {
       testRoom.pose('ann', 0, fists(releaseOf(0)));
@@ -147,10 +143,9 @@ describe('seats', () => {
             live.set(who, `c${made}`);
             testRoom.join(`c${made}`, { seat, spectate: what === 'watch', bot: what === 'bot' }, `person ${who}`);
           } else if (client && what === 'disconnect') testRoom.room.disconnect(client, testRoom.time);
-          else if (client && what === 'leave') testRoom.room.onMessage(client, { type: 'leave' }, testRoom.time);
-          else if (client && what === 'sit') testRoom.room.onMessage(client, { type: 'sit', seat }, testRoom.time);
-          else if (client && what === 'ready')
-            testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+          else if (client && what === 'leave') testRoom.say(client, { type: 'leave' });
+          else if (client && what === 'sit') testRoom.say(client, { type: 'sit', seat });
+          else if (client && what === 'ready') testRoom.say(client, { type: 'ready', ready: true });
           else testRoom.tick(seconds);
           if (what === 'disconnect' || what === 'leave') live.delete(who);
           for (const { client: gone } of testRoom.dropped) {
@@ -194,7 +189,7 @@ describe('a match in a room', () => {
   });
 
   const readies = (testRoom: ReturnType<typeof createTestRoom>, clients: readonly string[]) => {
-    for (const client of clients) testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
+    for (const client of clients) testRoom.say(client, { type: 'ready', ready: true });
   };
 
   test.each([[[0, 2]], [[1, 2]], [[0, 1, 2]]])(
@@ -203,7 +198,7 @@ describe('a match in a room', () => {
       const testRoom = createTestRoom({ ball: { balls: 2, seconds: 0.5 } });
       const clients = seats.map((seat) => `player ${seat}`);
       clients.forEach((client, index) => void testRoom.join(client, { seat: seats[index]! }));
-      testRoom.room.onMessage(clients[0]!, { type: 'rotate', rotate: true }, testRoom.time);
+      testRoom.say(clients[0]!, { type: 'rotate', rotate: true });
       const held: (string | undefined)[] = [];
       for (let match = 0; match < 6; match++) {
         readies(testRoom, clients);
@@ -222,12 +217,12 @@ describe('a match in a room', () => {
     const testRoom = createTestRoom({ ball: { balls: 2, seconds: 0.5 } });
     testRoom.begin();
     testRoom.pass(1);
-    testRoom.room.onMessage('cal', { type: 'leave' }, testRoom.time);
+    testRoom.say('cal', { type: 'leave' });
     readies(testRoom, ['ann', 'ben']);
     testRoom.tick();
     testRoom.tick(1 / 120);
     expect(testRoom.room.match.phase).toBe('over');
-    testRoom.room.onMessage('ann', { type: 'rotate', rotate: true }, testRoom.time);
+    testRoom.say('ann', { type: 'rotate', rotate: true });
     testRoom.join('dot', { seat: 2 });
     testRoom.tick(1 / 600);
     readies(testRoom, ['ann', 'ben', 'dot']);
@@ -275,9 +270,7 @@ describe('a match in a room', () => {
         const velocity = velocityTo(release, opening, seconds);
         testRoom.act(who, { type: 'throw', sequence, side, ball, at, position: release, velocity });
       } else if (what === 'again') {
-        for (const client of ['ann', 'ben', 'cal']) {
-          testRoom.room.onMessage(client, { type: 'ready', ready: true }, testRoom.time);
-        }
+        testRoom.ready();
       } else testRoom.pass(seconds, () => testRoom.pose('cal', 2, fists(opening)));
       testRoom.tick();
       each();

@@ -5,13 +5,13 @@ import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball
 import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
 import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
 import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
-import type { JoinRequest } from 'threepoint-rooms/protocol/messages';
+import { type ClientMessage, type JoinRequest, protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
 import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { Room, type RoomOptions } from 'threepoint-rooms/room/room';
 import type { RoomRefusal } from 'threepoint-rooms/room/room-host';
-import { fists, holding, opening, releaseOf, shownAt } from '../client/people';
+import { atRack, fists, holding, opening, releaseOf, shownAt, velocityTo } from '../client/people';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
@@ -25,6 +25,16 @@ export const joinRequest = (more: Partial<JoinRequest> = {}): JoinRequest => ({
   voice: null,
   ...more,
 });
+
+/** The first message of a client. */
+export const joinMessage = (more: Partial<JoinRequest> = {}): ClientMessage => ({
+  type: 'join',
+  version: protocolVersion,
+  ...joinRequest(more),
+});
+
+/** The clients of a match: Ann and Ben throw, Cal holds the basket. */
+export const trio = ['ann', 'ben', 'cal'] as const;
 
 type Wrists = ReturnType<typeof fists>;
 
@@ -98,16 +108,30 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
         testRoom.tick();
       }
     },
-    pose(client: string, seat: number, wrists: Wrists, at = time) {
-      return room.onPose(client, packetAt(room.match, seat, wrists, at), time);
+    packet: (seat: number, wrists: Wrists, at = time) => packetAt(room.match, seat, wrists, at),
+    send: (client: string, bytes: Uint8Array) => room.onPose(client, bytes, time),
+    pose: (client: string, seat: number, wrists: Wrists, at = time) =>
+      testRoom.send(client, testRoom.packet(seat, wrists, at)),
+    say: (client: string, message: Exclude<ClientMessage, { type: 'join' }>) => room.onMessage(client, message, time),
+    act: (client: string, action: BallAction) => testRoom.say(client, { type: 'action', action }),
+    ready(clients: readonly string[] = trio) {
+      for (const client of clients) testRoom.say(client, { type: 'ready', ready: true });
     },
-    act(client: string, action: BallAction) {
-      return room.onMessage(client, { type: 'action', action }, time);
+    /** Ann reaches for a ball in its rack and grabs it. */
+    grab(ball = 0, sequence = 1) {
+      testRoom.pose('ann', 0, atRack(ball, room.match.options.balls), time + 0.01);
+      testRoom.tick();
+      testRoom.act('ann', { type: 'grab', sequence, side: 'right', ball });
+    },
+    /** Ann's throw of a ball from where she releases it, now. Default: into the basket in a second. */
+    throwOf(ball: number, sequence: number, velocity = velocityTo(releaseOf(0), opening, 1)): BallAction {
+      const at = time - testRoom.welcomeOf('ann').matchStart;
+      return { type: 'throw', sequence, side: 'right', ball, at, position: releaseOf(0), velocity };
     },
     /** Ann and Ben throw, Cal holds the basket; all ready. */
     begin() {
-      for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: client });
-      for (const client of ['ann', 'ben', 'cal']) room.onMessage(client, { type: 'ready', ready: true }, time);
+      for (const client of trio) testRoom.join(client, { name: client });
+      testRoom.ready();
       testRoom.stand();
       testRoom.tick();
       testRoom.tick();

@@ -1,9 +1,6 @@
 import { setTimeout as after } from 'node:timers/promises';
 import fc from 'fast-check';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
@@ -11,25 +8,19 @@ import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
 import { isAlive } from '../../server/child-process';
 import { noPackets } from '../protocol/no-packets';
+import { joinMessage } from '../room/test-room';
 import { conversations, type WireFrame } from './packets';
 import { forkRelay } from './relay-child';
-import { rawGuest, testSecret, until } from './running-relay';
+import { testSecret, until } from './running-relay';
+import { guestOfTest } from './until-finished';
 
 const atOnce = 20;
 const wanted = isNightly ? 100_000 : 2000;
 const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
 
-const joining = JSON.stringify({
-  type: 'join',
-  version: protocolVersion,
-  name: '<img src=x onerror=alert(1)>',
-  calibration: defaultCalibration,
-  spectate: false,
-  bot: false,
-  seat: null,
-  avatar: defaultAvatar,
-  voice: { session: 'session-one', muted: false },
-});
+const joining = JSON.stringify(
+  joinMessage({ name: '<img src=x onerror=alert(1)>', voice: { session: 'session-one', muted: false } }),
+);
 
 /** The stages that a client reaches before it sends a bad packet. */
 const stages = ['stranger', 'lobby', 'guest', 'seated'] as const;
@@ -66,8 +57,7 @@ async function converse(url: string, stage: (typeof stages)[number], frames: rea
 test('what is no packet ends the connection that sends it, and nothing else', async () => {
   const relay = await forkRelay();
   onTestFinished(() => relay.kill());
-  const witness = await rawGuest(relay.url, 'hostile');
-  onTestFinished(() => void witness.socket.disconnect());
+  const witness = await guestOfTest(relay.url, 'hostile');
   for (const packet of noPackets) {
     await Promise.all(stages.map((stage) => converse(relay.url, stage, [`4${packet}`])));
     expect(isAlive(relay.child), packet).toBe(true);
@@ -84,8 +74,7 @@ test('the relay keeps running and answers the others, whatever a client sends ov
   // Budgets would keep most of it from the rooms.
   const relay = await forkRelay({ THREEPOINT_EVENTS_PER_SECOND: '200', THREEPOINT_POSES_PER_SECOND: '200' });
   onTestFinished(() => relay.kill());
-  const witness = await rawGuest(relay.url, 'hostile');
-  onTestFinished(() => void witness.socket.disconnect());
+  const witness = await guestOfTest(relay.url, 'hostile');
   const pongs = () => witness.heard.filter(({ type }) => type === 'pong').length;
   const waits: number[] = [];
   let sent = 0;

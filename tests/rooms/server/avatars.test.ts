@@ -8,7 +8,8 @@ import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan } from '../../study/model/studies';
 import { studySeats } from '../../study/server/running-studies';
 import { changed } from '../../threepoint/avatar/glb';
-import { type RunningRelay, rawGuest, startRelay, tokenFor, until } from './running-relay';
+import { type RunningRelay, startRelay, tokenFor, until } from './running-relay';
+import { guestOfTest } from './until-finished';
 
 const megabyte = 2 ** 20;
 let relay: RunningRelay;
@@ -17,11 +18,7 @@ beforeEach(async () => {
   relay = await startRelay({ THREEPOINT_AVATAR_MEGABYTES: '8' });
 });
 
-const guests: Awaited<ReturnType<typeof rawGuest>>[] = [];
-afterEach(async () => {
-  for (const { socket } of guests.splice(0)) socket.disconnect();
-  await relay.close();
-});
+afterEach(() => relay.close());
 
 const hashOf = (bytes: Uint8Array): string => createHash('sha256').update(bytes).digest('base64url');
 /** A body of our own, made another file by so many bytes without meaning at its end. */
@@ -30,8 +27,7 @@ const file = (more = 0): Uint8Array => new Uint8Array(changed(() => undefined, r
 /** A person on a seat, and their way to the store. */
 async function seated(room: string) {
   const token = await tokenFor(relay.url, room);
-  const guest = await rawGuest(relay.url, room, token);
-  guests.push(guest);
+  const guest = await guestOfTest(relay.url, room, token);
   const ask = (method: string, hash: string, bytes?: Uint8Array, headers: Record<string, string> = {}) =>
     fetch(`${relay.url}/api/avatars${hash && `/${hash}`}?room=${room}`, {
       method,
@@ -91,7 +87,7 @@ describe('an avatar in the store', () => {
     await ben.store(bytes);
     ben.say({ type: 'wear', avatar: hash });
     ben.say({ type: 'leave' });
-    await until('the room gone', () => relay.relay.host.room('fir') === null, 20);
+    await until('the room gone', () => relay.relay.rooms.get('fir') === undefined, 20);
     await until('the file gone with it', () => relay.relay.avatars.get('fir', hash) === null);
   });
 
@@ -169,8 +165,7 @@ describe('the store takes no', () => {
     expect(watching.status).toBe(403);
     expect(await sentence(watching)).toMatch(/on a seat of the room/);
     const { room, token } = await studySeats.sign(paperPlan(), 'P01', { step: 'ball/1/trial-1', run: 1 }, false);
-    const guest = await rawGuest(relay.url, room, token);
-    guests.push(guest);
+    await guestOfTest(relay.url, room, token);
     const inStudy = await fetch(`${relay.url}/api/avatars/${hashOf(bytes)}?room=${room}`, {
       method: 'PUT',
       headers: { authorization: `Bearer ${token}`, 'content-type': 'model/gltf-binary' },

@@ -1,18 +1,16 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { lobbyNamespace } from 'threepoint-rooms/server/lobby/lobby-publisher';
 import { expect, onTestFinished, test } from 'vitest';
-import { WebSocket } from 'ws';
-import { rawGuest, startRelay, until } from './running-relay';
+import type { WebSocket } from 'ws';
+import { joinMessage } from '../room/test-room';
+import { type rawGuest, until } from './running-relay';
+import { guestOfTest, relayOfTest, socketOfTest } from './until-finished';
 
 /** More than any connection may send at once, by far. */
 const frames = 2000;
 
 /** A connection of a page that shows no pass: it receives the list of rooms and has no place in any. */
 async function stranger(url: string): Promise<WebSocket> {
-  const socket = new WebSocket(`${url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
-  onTestFinished(() => socket.terminate());
+  const socket = socketOfTest(url);
   await new Promise<void>((resolve) => {
     socket.on('message', (received: Buffer) => {
       const text = received.toString();
@@ -31,10 +29,8 @@ test.each<[what: string, send: (socket: WebSocket) => void]>([
 ])(
   'a stranger who floods the relay with %s is thrown out, and a guest beside them is still answered',
   async (_, send) => {
-    const relay = await startRelay();
-    onTestFinished(() => relay.close());
-    const guest = await rawGuest(relay.url, 'beside');
-    onTestFinished(() => void guest.socket.disconnect());
+    const relay = await relayOfTest();
+    const guest = await guestOfTest(relay.url, 'beside');
     const socket = await stranger(relay.url);
     let closed = false;
     socket.on('close', () => {
@@ -54,9 +50,8 @@ const seatsOf = (heard: Awaited<ReturnType<typeof rawGuest>>['heard']) =>
   heard.flatMap((message) => (message.type === 'seat' && message.seat === 1 && message.info ? [message.info] : []));
 
 test('a guest whose packets are none that the rooms count is told that it misbehaves', async () => {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
-  const guest = await rawGuest(relay.url, 'acknowledging');
+  const relay = await relayOfTest();
+  const guest = await guestOfTest(relay.url, 'acknowledging');
   const { engine } = guest.socket.io;
   for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
   await until('the end of the flood', () => guest.closedAt !== null, 5);
@@ -64,15 +59,11 @@ test('a guest whose packets are none that the rooms count is told that it misbeh
 });
 
 test('a guest who joins a thousand times a second under other names is thrown out, and the others know the first one', async () => {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
-  const witness = await rawGuest(relay.url, 'names');
-  onTestFinished(() => void witness.socket.disconnect());
-  const guest = await rawGuest(relay.url, 'names');
-  const join = { type: 'join', version: protocolVersion, calibration: defaultCalibration, spectate: false, bot: false };
+  const relay = await relayOfTest();
+  const witness = await guestOfTest(relay.url, 'names');
+  const guest = await guestOfTest(relay.url, 'names');
   const started = performance.now();
-  for (let i = 0; i < 250; i++)
-    guest.say({ ...join, name: `<b>${i}</b>`, seat: null, avatar: defaultAvatar, voice: null });
+  for (let i = 0; i < 250; i++) guest.say(joinMessage({ name: `<b>${i}</b>` }));
   await until('the end of the one with many names', () => guest.closedAt !== null, 5);
   expect(performance.now() - started).toBeLessThan(1000);
   expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'misbehaved' });
@@ -81,9 +72,8 @@ test('a guest who joins a thousand times a second under other names is thrown ou
 });
 
 test('a guest who has left the rooms and floods the relay is thrown out too', async () => {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
-  const guest = await rawGuest(relay.url, 'leaving');
+  const relay = await relayOfTest();
+  const guest = await guestOfTest(relay.url, 'leaving');
   const { engine } = guest.socket.io;
   engine.write('1["/"]');
   for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
@@ -94,15 +84,13 @@ test('a guest who has left the rooms and floods the relay is thrown out too', as
 const longList = Array.from({ length: 600 }, (_, i) => ({ room: `a-room-of-the-fleet-${i}`, kind: 'ball', free: 3 }));
 
 test('a listener of the lobby who answers pings and reads nothing is thrown out', async () => {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
-  const guest = await rawGuest(relay.url, 'beside');
-  onTestFinished(() => void guest.socket.disconnect());
+  const relay = await relayOfTest();
+  const guest = await guestOfTest(relay.url, 'beside');
   const socket = await stranger(relay.url);
   socket.pause();
   const answering = setInterval(() => socket.send('3'), 500);
   onTestFinished(() => clearInterval(answering));
-  const hall = relay.relay.host.io.of(lobbyNamespace);
+  const hall = relay.relay.io.of(lobbyNamespace);
   const changing = setInterval(() => hall.local.emit('node', { node: 'one', rooms: longList }), 5);
   onTestFinished(() => clearInterval(changing));
   await until('the end of the one who reads nothing', () => relay.relay.census.sockets === 1, 15);
@@ -111,8 +99,7 @@ test('a listener of the lobby who answers pings and reads nothing is thrown out'
 });
 
 test('a connection is sent the list of rooms once: who asks for it again is thrown out', async () => {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
+  const relay = await relayOfTest();
   const socket = await stranger(relay.url);
   const ended = new Promise((resolve) => socket.once('close', resolve));
   socket.send('41["/lobby"]');

@@ -1,43 +1,32 @@
 // @module-tag full
 
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { nextRandom } from 'threepoint/core/math/random';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { ballKind } from 'threepoint-games/ball/ball-messages';
 import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
-import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
-import { protocolVersion } from 'threepoint-rooms/protocol/messages';
+import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { packetMs } from 'threepoint-rooms/protocol/packet-time';
 import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
-import { afterEach, describe, expect, test } from 'vitest';
-import { WebSocket } from 'ws';
+import { describe, expect, onTestFinished, test } from 'vitest';
 import { collectGarbage } from '../../collect-garbage';
 import { isNightly } from '../../nightly';
 import { percentile, printFigures } from '../../print-figures';
 import { fists, holding, opening, releaseOf, visitor } from '../client/people';
+import { joinMessage } from '../room/test-room';
 import { forkRelay } from './relay-child';
-import { arrive, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { poseBytes, rawGuest, seconds, testSecret, tokenFor, until } from './running-relay';
 import { createSlowWay } from './slow-way';
+import { guestOfTest, personOfTest, relayOfTest, socketOfTest } from './until-finished';
 
-const endings: (() => unknown)[] = [];
-afterEach(async () => {
-  for (const end of endings.splice(0).reverse()) await end();
-});
-function ending<T>(thing: T, end: (thing: T) => unknown): T {
-  endings.push(() => end(thing));
-  return thing;
+async function relayApart(environment?: Record<string, string>, port?: number) {
+  const relay = await forkRelay(environment, port);
+  onTestFinished(() => relay.kill());
+  return relay;
 }
-
-const relayHere = async (environment?: Record<string, string>) =>
-  ending(await startRelay(environment), (server) => server.close());
-const relayApart = async (environment?: Record<string, string>, port?: number) =>
-  ending(await forkRelay(environment, port), (relay) => relay.kill());
-const person = (...[url, room, name, more]: Parameters<typeof arrive>) =>
-  ending(arrive(url, room, name, more), (someone) => someone.stop());
 
 /** Three people in a running match. */
 async function threePlay(urls: readonly string[], room = 'game') {
-  const people = ['Ann', 'Ben', 'Cal'].map((name, i) => person(urls[i] ?? urls[0]!, room, name));
+  const people = ['Ann', 'Ben', 'Cal'].map((name, i) => personOfTest(urls[i] ?? urls[0]!, room, name));
   await until('all seated', () =>
     people.every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
   );
@@ -75,7 +64,7 @@ test('the relay is killed in the middle of a game and restarted when all have tr
 });
 
 test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async () => {
-  const server = await relayHere();
+  const server = await relayOfTest();
   const lasting = isNightly ? 300 : 6;
   let chance = { seed: 2460 };
   const drawn = () => {
@@ -85,7 +74,7 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
   };
   // A loss costs the time to find out and to send again.
   const way = await createSlowWay(server.port, () => 100 + 60 * (drawn() - 0.5) + (drawn() < 0.02 ? 300 : 0));
-  ending(way, ({ close }) => close());
+  onTestFinished(() => way.close());
   const people = await threePlay([way.url, server.url, server.url]);
   const watching = people.map(() => new RemotePlayers());
   // What this machine itself holds up says nothing about the way: a frame that comes late, and a second after it, are
@@ -131,8 +120,9 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
 });
 
 test('a connection that is gone until its player has left the match comes back to its seat with one snapshot, within a second', async () => {
-  const server = await relayHere();
-  const way = ending(await createSlowWay(server.port), ({ close }) => close());
+  const server = await relayOfTest();
+  const way = await createSlowWay(server.port);
+  onTestFinished(() => way.close());
   const [ann, ben] = await threePlay([way.url, server.url]);
   const { seat } = ann!;
   const welcomes = ann!.news.filter((word) => word === 'welcome').length;
@@ -163,15 +153,14 @@ test('500 clients reconnect at once', async () => {
       // Three of a room play, the others watch.
       const room = `meadow-${Math.floor(i / 16)}`;
       const token = await tokens.issue(room, ballKind);
-      return ending(
-        createSocketConnection(ballClientPolicy, {
-          url: relay.url,
-          room,
-          visitor: visitor(`P${i}`),
-          pass: { token: async () => token },
-        }),
-        (connection) => connection.leave(),
-      );
+      const connection = new SocketConnection(ballClientPolicy, {
+        url: relay.url,
+        room,
+        visitor: visitor(`P${i}`),
+        pass: { token: async () => token },
+      });
+      onTestFinished(() => connection.leave());
+      return connection;
     }),
   );
   const joined = () => connections.filter(({ status }) => status.phase === 'joined').length;
@@ -199,7 +188,7 @@ test('500 clients reconnect at once', async () => {
 
 /** A player in a room of sixteen seats who sends thirty poses a second; records when poses of others arrive. */
 async function mover(url: string, room: string) {
-  const guest = ending(await rawGuest(url, room), ({ socket }) => socket.disconnect());
+  const guest = await guestOfTest(url, room);
   const welcome = guest.heard.find((message) => message.type === 'welcome')!;
   const ahead = welcome.time * 1000 - performance.now();
   const sentAt = new Map<number, number>();
@@ -215,7 +204,7 @@ async function mover(url: string, room: string) {
     sentAt.set(timeMs, performance.now());
     guest.socket.emit('pose', poseBytes(timeMs));
   }, 1000 / 30);
-  endings.push(() => clearInterval(timer));
+  onTestFinished(() => clearInterval(timer));
   return { ...guest, gaps, ahead };
 }
 
@@ -224,27 +213,13 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
   const movers: Awaited<ReturnType<typeof mover>>[] = [];
   for (let i = 0; i < 6; i++) movers.push(await mover(relay.url, 'counting-stall'));
   const token = await tokenFor(relay.url, 'counting-stall');
-  const stalled = new WebSocket(
-    `${relay.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket&room=counting-stall`,
-  );
-  endings.push(() => stalled.terminate());
+  const stalled = socketOfTest(relay.url, '&room=counting-stall');
   await new Promise<void>((resolve) => {
     stalled.on('message', (received: Buffer) => {
       const text = received.toString();
       if (text[0] === '0') stalled.send(`40${JSON.stringify(['/', { token }])}`);
       else if (text.startsWith('40')) {
-        const join = {
-          type: 'join',
-          version: protocolVersion,
-          name: 'slow',
-          spectate: false,
-          bot: false,
-          seat: null,
-          avatar: defaultAvatar,
-          voice: null,
-        };
-        const message = { ...join, calibration: { eyeHeight: 1.6, armSpan: 1.5 } };
-        stalled.send(`42${JSON.stringify(['/', ['message', message]])}`);
+        stalled.send(`42${JSON.stringify(['/', ['message', joinMessage({ name: 'slow' })]])}`);
       } else if (text.includes('"welcome"')) resolve();
     });
   });
@@ -329,13 +304,13 @@ describe('abuse', () => {
   });
 
   test('more than ten events a second are not heard, and no connection is lost for a burst', async () => {
-    const server = await relayHere();
-    const guest = ending(await rawGuest(server.url, 'counting-burst'), ({ socket }) => socket.disconnect());
+    const server = await relayOfTest();
+    const guest = await guestOfTest(server.url, 'counting-burst');
     for (let i = 0; i < 60; i++) guest.say({ type: 'ping', sent: i });
     const pongs = () => guest.heard.filter(({ type }) => type === 'pong').length;
     await until('ten answers', () => pongs() >= 10);
     // What came in the same burst has been answered or dropped once a guest who came later is answered.
-    const witness = ending(await rawGuest(server.url, 'counting-burst'), ({ socket }) => socket.disconnect());
+    const witness = await guestOfTest(server.url, 'counting-burst');
     witness.say({ type: 'ping', sent: 0 });
     await until('the answer to another', () => witness.heard.some(({ type }) => type === 'pong'));
     expect(pongs()).toBeLessThan(30);
@@ -343,10 +318,9 @@ describe('abuse', () => {
   });
 
   test('a client that connects and says nothing is disconnected', async () => {
-    const server = await relayHere();
+    const server = await relayOfTest();
     const token = await tokenFor(server.url, 'silent');
-    const socket = new WebSocket(`${server.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
-    endings.push(() => socket.terminate());
+    const socket = socketOfTest(server.url);
     socket.on('message', (received: Buffer) => {
       if (received.toString()[0] === '0') socket.send(`40${JSON.stringify(['/', { token }])}`);
       else if (received.toString() === '2') socket.send('3');
@@ -360,7 +334,7 @@ describe('abuse', () => {
 });
 
 test('twenty rooms that fill and empty again leave no timer, socket or listener behind', async () => {
-  const server = await relayHere({ THREEPOINT_EVENTS_PER_SECOND: '100' });
+  const server = await relayOfTest({ THREEPOINT_EVENTS_PER_SECOND: '100' });
   const rounds = isNightly ? 60 : 3;
   const heaps: number[] = [];
   const counts: number[] = [];
@@ -383,8 +357,8 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
     collectGarbage();
     heaps.push(process.memoryUsage().heapUsed / 2 ** 20);
   }
-  await until('every room closed', () => server.relay.host.census.rooms === 0, 20);
-  const engine = server.relay.host.io.engine as { readonly clientsCount: number };
+  await until('every room closed', () => server.relay.rooms.census.rooms === 0, 20);
+  const engine = server.relay.io.engine as { readonly clientsCount: number };
   printFigures('soak', {
     rounds,
     'handles first': counts[0] ?? 0,

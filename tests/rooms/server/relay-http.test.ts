@@ -3,7 +3,8 @@ import { clientAddressOf } from 'threepoint-http/client-address';
 import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { type RunningRelay, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { guestOfTest } from './until-finished';
 
 let server: RunningRelay;
 beforeAll(async () => {
@@ -127,10 +128,9 @@ describe('the relay over HTTP', () => {
   test('finds a room with a free seat, and otherwise names a new one', async () => {
     const found = async () => (await post('/api/rooms/match', { kind: 'ball' })).json();
     expect(await found()).toMatchObject({ found: false });
-    const guest = await rawGuest(server.url, 'meadow');
-    await until('the lobby to know', () => server.relay.host.rooms.length === 1);
+    await guestOfTest(server.url, 'meadow');
+    await until('the lobby to know', () => server.relay.rooms.listings.length === 1);
     await expect.poll(found).toEqual({ room: 'meadow', found: true });
-    guest.socket.disconnect();
   });
 });
 
@@ -153,26 +153,24 @@ describe('connecting', () => {
 
   test('the room is the one of the token, even where the address names another', async () => {
     const token = await tokenFor(server.url, 'heath');
-    const guest = await rawGuest(server.url, 'birch', token);
+    const guest = await guestOfTest(server.url, 'birch', token);
     const welcome = guest.heard.find(({ type }) => type === 'welcome');
     expect(welcome).toMatchObject({ room: 'heath' });
-    guest.socket.disconnect();
   });
 
   test('the same token again is the same person: the seat goes to the newer page', async () => {
     const token = await tokenFor(server.url, 'dell');
-    const first = await rawGuest(server.url, 'dell', token);
-    const second = await rawGuest(server.url, 'dell', token);
+    const first = await guestOfTest(server.url, 'dell', token);
+    const second = await guestOfTest(server.url, 'dell', token);
     await until('the first sent away', () => first.closedAt !== null);
     expect(first.heard.at(-1)).toEqual({ type: 'farewell', reason: 'replaced' });
     expect(second.heard.find(({ type }) => type === 'welcome')).toMatchObject({ seat: 0 });
-    second.socket.disconnect();
   });
 });
 
 test('a relay that stops says so', async () => {
   const stopping = await startRelay();
-  const guest = await rawGuest(stopping.url, 'dusk');
+  const guest = await guestOfTest(stopping.url, 'dusk');
   await stopping.close();
   await until('the end', () => guest.closedAt !== null);
   expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'stopping' });

@@ -1,9 +1,4 @@
 import { io, type Socket } from 'socket.io-client';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
 import { type BallRoomMessage, ballKind } from 'threepoint-games/ball/ball-messages';
@@ -12,15 +7,16 @@ import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { createSocketConnection } from 'threepoint-rooms/client/socket-connection';
-import { maxSeats, protocolVersion, type RoomTerms } from 'threepoint-rooms/protocol/messages';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
+import { maxSeats, type RoomTerms } from 'threepoint-rooms/protocol/messages';
 import { messageEvent, pageParser } from 'threepoint-rooms/protocol/socket-parsers';
 import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../../server/room-kinds';
 import { createPerson, visitor } from '../client/people';
 import { countingKind, countingPolicy } from '../room/counting-game';
+import { poseOf } from '../room/posed-head';
+import { joinMessage } from '../room/test-room';
 
 /** Rooms whose names begin so are of the tests' own game, with as many seats as there may be. */
 const kindOf = (room: string): string => (room.startsWith(countingKind) ? countingKind : ballKind);
@@ -76,7 +72,7 @@ export function arrive(
   now = seconds,
 ) {
   const pass = createRoomPass(url, room, kindOf(room), undefined, terms);
-  const connection = createSocketConnection(ballClientPolicy, {
+  const connection = new SocketConnection(ballClientPolicy, {
     url,
     room,
     visitor: visitor(name, more),
@@ -105,27 +101,8 @@ export function arrive(
   });
 }
 
-const skeleton = skeletonFromCalibration(defaultCalibration);
-
 /** A good pose packet at this time [ms], of a player who stands still, moved aside by so much [m]. */
-export function poseBytes(timeMs: number, aside = 0): Uint8Array {
-  const bytes = encodePose(
-    {
-      timeMs,
-      jump: false,
-      pose: {
-        head: { position: vec3(aside, 1.6, 0), orientation: identity, tracking: 'tracked' },
-        leftHand: { position: vec3(aside - 0.2, 1.1, -0.2), orientation: identity, tracking: 'tracked' },
-        rightHand: { position: vec3(aside + 0.2, 1.1, -0.2), orientation: identity, tracking: 'tracked' },
-        body: null,
-      },
-      fingers: unknownFingers,
-    },
-    skeleton,
-  );
-  if (!bytes) throw new Error('the pose packet of the tests is not finite');
-  return bytes;
-}
+export const poseBytes = (timeMs: number, aside = 0): Uint8Array => poseOf({ head: vec3(aside, 1.6, 0), timeMs });
 
 export async function tokenFor(url: string, room: string): Promise<string> {
   return createRoomPass(url, room, kindOf(room)).token(false);
@@ -155,19 +132,7 @@ export async function rawGuest(url: string, room: string, token?: string) {
     closedAt = performance.now();
   });
   const say = (message: unknown) => socket.emit(messageEvent, message);
-  socket.on('connect', () =>
-    say({
-      type: 'join',
-      version: protocolVersion,
-      name: 'raw',
-      calibration: defaultCalibration,
-      spectate: false,
-      bot: false,
-      seat: null,
-      avatar: defaultAvatar,
-      voice: null,
-    }),
-  );
+  socket.on('connect', () => say(joinMessage({ name: 'raw' })));
   await until('the raw guest to be welcomed', () => heard.some(({ type }) => type === 'welcome'));
   return {
     socket,

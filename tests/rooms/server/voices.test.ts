@@ -1,23 +1,23 @@
 import { createHmac } from 'node:crypto';
 import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
-import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { paperPlan } from '../../study/model/studies';
 import { studySeats } from '../../study/server/running-studies';
-import { arrive, type RunningRelay, rawGuest, startRelay, tokenFor, until } from './running-relay';
+import { type RunningRelay, startRelay, tokenFor, until } from './running-relay';
+import { guestOfTest, personOfTest, relayOfTest } from './until-finished';
 
 const offer: SignalBody = { description: { type: 'offer', sdp: 'v=0\r\n' } };
 const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 /** A person over a real socket, and what their page has received about the room's voices. */
 function talker(url: string, room: string, name: string) {
-  const person = arrive(url, room, name);
+  const person = personOfTest(url, room, name);
   const heard: { readonly from: string; readonly body: SignalBody }[] = [];
   person.connection.voices.setListener({
     onSeatsChanged: () => undefined,
     onSignal: (from, body) => heard.push({ from, body }),
   });
-  onTestFinished(() => person.stop());
   const voiceOf = (seat: number) => person.connection.room?.seats[seat]?.voice;
   return Object.assign(person, { heard, voiceOf });
 }
@@ -82,17 +82,16 @@ describe('the voices of a room', () => {
   test('a seat keeps its voice while a lost connection is waited for, and a page that returns says how it takes part', async () => {
     const { ann } = await twoTalkers('returning');
     const token = await tokenFor(server.url, 'returning');
-    const raw = await rawGuest(server.url, 'returning', token);
+    const raw = await guestOfTest(server.url, 'returning', token);
     raw.say({ type: 'voice', voice: { session: 'raws-page', muted: false } });
     await until('raw known', () => ann.voiceOf(2)?.session === 'raws-page');
     raw.socket.disconnect();
     await until('raw lost', () => ann.connection.room?.seats[2]?.presence === 'gone');
     expect(ann.voiceOf(2)).toEqual({ session: 'raws-page', muted: false });
     // After a reload the person's page knows of no voices.
-    const again = await rawGuest(server.url, 'returning', token);
+    await guestOfTest(server.url, 'returning', token);
     await until('raw back', () => ann.connection.room?.seats[2]?.presence === 'here');
     expect(ann.voiceOf(2)).toBeNull();
-    again.socket.disconnect();
   });
 
   test('go to no other room, to no page that is not among them, and not to oneself', async () => {
@@ -117,14 +116,13 @@ describe('the voices of a room', () => {
     await expect.poll(() => refusals(server.url, 'session-taken')).toBe(before + 1);
     expect(ann.voiceOf(1)).toEqual({ session: 'bens-page', muted: true });
     // A newcomer who asks for it while joining sits there without a voice.
-    const cal = await rawGuest(server.url, 'forged');
+    const cal = await guestOfTest(server.url, 'forged');
     cal.say({ type: 'voice', voice: { session: 'bens-page', muted: false } });
     await expect.poll(() => refusals(server.url, 'session-taken')).toBe(before + 2);
-    cal.socket.disconnect();
   });
 
   test('a signal too long, or with a seat of its own, is a bad message; the third ends the connection', async () => {
-    const guest = await rawGuest(server.url, 'bad');
+    const guest = await guestOfTest(server.url, 'bad');
     guest.say({ type: 'signal', to: 'bens-page', body: { description: { type: 'offer', sdp: 'v'.repeat(3300) } } });
     guest.say({ type: 'signal', to: 'bens-page', from: 'annas-page', body: offer });
     guest.say({ type: 'signal', to: 1, body: offer });
@@ -134,7 +132,7 @@ describe('the voices of a room', () => {
 
   test('a flood of signals ends with its sender; what was within the budget has arrived, and the rest of the room goes on', async () => {
     const { ben } = await twoTalkers('flood');
-    const flooding = await rawGuest(server.url, 'flood');
+    const flooding = await guestOfTest(server.url, 'flood');
     flooding.say({ type: 'voice', voice: { session: 'floods-page', muted: true } });
     await until('it is among them', () => ben.voiceOf(2) !== null);
     for (let i = 0; i < 400; i++) flooding.say({ type: 'signal', to: 'bens-page', body: offer });
@@ -154,7 +152,6 @@ describe('the voices of a room', () => {
 describe('a server without voices', () => {
   test('says so, and refuses to take part', async () => {
     const silent = await startRelay({ THREEPOINT_VOICES: 'off' });
-    onTestFinished(() => silent.close());
     const ann = talker(silent.url, 'silent', 'Ann');
     await until('ann in', () => ann.connection.room !== null);
     ann.connection.voices.setVoice({ session: 'annas-page', muted: false });
@@ -166,11 +163,10 @@ describe('a server without voices', () => {
   });
 
   test('a room with more seats than a page can have connections has none either', async () => {
-    const guest = await rawGuest(server.url, 'counting');
+    const guest = await guestOfTest(server.url, 'counting');
     const before = await refusals(server.url, 'no-voices');
     guest.say({ type: 'voice', voice: { session: 'raws-page', muted: true } });
     await expect.poll(() => refusals(server.url, 'no-voices')).toBe(before + 1);
-    guest.socket.disconnect();
   });
 
   test('the room of a study has none, also for a page that asks for them while joining', async () => {
@@ -184,12 +180,11 @@ describe('a server without voices', () => {
 
 describe('how pages find each other', () => {
   test('by the servers that the environment names; a pass to TURN is good for four hours and tells no name', async () => {
-    const relayed = await startRelay({
+    const relayed = await relayOfTest({
       THREEPOINT_STUN: 'stun:stun.example.org:3478',
       THREEPOINT_TURN: 'turn:turn.example.org:3478?transport=udp, turns:turn.example.org:5349',
       THREEPOINT_TURN_SECRET: turnSecret,
     });
-    onTestFinished(() => relayed.close());
     const headers = { authorization: `Bearer ${await tokenFor(relayed.url, 'far')}` };
     const { voices, iceServers } = await (await fetch(`${relayed.url}/api/voices?room=far`, { headers })).json();
     expect(voices).toBe(true);

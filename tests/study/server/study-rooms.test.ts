@@ -75,11 +75,11 @@ describe('the room of a trial', () => {
     const { room, guest } = await sitDown('P01');
     const stranger = await rawGuest(server.url, 'meadow');
     const told = await lobby;
-    await until('the lobby to know', () => server.relay.host.rooms.length === 1);
+    await until('the lobby to know', () => server.relay.rooms.listings.length === 1);
     await expect.poll(async () => (await fetch(`${server.url}/api/rooms`)).text()).toContain('meadow');
     const listed = await (await fetch(`${server.url}/api/rooms`)).text();
     const matched = await (await post('/api/rooms/match', { kind: 'ball' })).text();
-    expect(server.relay.host.room(room)?.census.players).toBe(1);
+    expect(server.relay.rooms.get(room)?.room.census.players).toBe(1);
     for (const text of [told, listed, matched]) expect(text).not.toContain('study');
     reportFigures('study-rooms', { 'lists that show the room of a trial': '0 of 3' });
     guest.socket.disconnect();
@@ -126,7 +126,7 @@ describe('the room of a trial', () => {
     expect(answer).toBe('refused');
     const elsewhere = await rawGuest(server.url, room, await tokenFor(server.url, 'meadow'));
     expect(elsewhere.heard.find((message) => message.type === 'welcome')).toMatchObject({ room: 'meadow' });
-    expect(server.relay.host.room(room)?.census).toMatchObject({ players: 1, spectators: 0 });
+    expect(server.relay.rooms.get(room)?.room.census).toMatchObject({ players: 1, spectators: 0 });
     reportFigures('study-rooms', { 'seats that a stranger got': `0 of ${attempts.length + 2} attempts` });
     for (const { socket } of [guest, elsewhere]) socket.disconnect();
   });
@@ -137,7 +137,7 @@ describe('the room of a trial', () => {
     watching.guest.say({ type: 'sit', seat: 1 });
     watching.guest.say({ type: 'ping', sent: 1 });
     await until('the answer', () => watching.guest.heard.some(({ type }) => type === 'pong'));
-    expect(server.relay.host.room(watching.room)?.census).toMatchObject({ players: 0, spectators: 1 });
+    expect(server.relay.rooms.get(watching.room)?.room.census).toMatchObject({ players: 0, spectators: 1 });
     watching.guest.socket.disconnect();
   });
 

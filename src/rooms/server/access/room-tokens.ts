@@ -1,5 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
+import { HttpError } from 'threepoint-http/http-error';
+import type { Call } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { maxSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
 
@@ -100,4 +102,16 @@ export class RoomTokens {
       throw error;
     }
   }
+}
+
+/**
+ * Returns the pass of a request to the room in its address (`?room=`). Throws an HttpError 401 without a valid pass,
+ * 403 for another room.
+ */
+export async function requirePass({ request, query }: Call, tokens: Pick<RoomTokens, 'verify'>): Promise<PassClaims> {
+  const token = /^Bearer (\S{1,1024})$/.exec(request.headers.authorization ?? '')?.[1];
+  const pass = token === undefined ? null : await tokens.verify(token);
+  if (!pass) throw new HttpError(401, 'this needs a valid pass to the room');
+  if (query.get('room') !== pass.room) throw new HttpError(403, 'this pass is for another room');
+  return pass;
 }

@@ -1,26 +1,16 @@
 import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
-import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { RateLimiterMemory } from 'rate-limiter-flexible';
 import { avatarHashPattern, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
 import { clientAddressOf } from 'threepoint-http/client-address';
 import { HttpError } from 'threepoint-http/http-error';
+import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
 import { readBody } from 'threepoint-http/request-body';
 import { type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
 import type { Call, Route } from 'threepoint-http/router';
-import { requirePass } from '../access/request-pass';
-import type { RoomTokens } from '../access/room-tokens';
-import type { RelayConfiguration } from '../settings/relay-configuration';
-import type { RelayMetrics } from '../settings/relay-metrics';
+import { requirePass } from '../access/room-tokens';
+import type { RelayContext } from '../relay-context';
 import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';
-
-export interface AvatarRoutesOptions {
-  readonly configuration: Pick<RelayConfiguration, 'avatarMegabytes' | 'avatarsFrom' | 'trustProxy'>;
-  readonly store: AvatarStore;
-  readonly tokens: Pick<RoomTokens, 'verify'>;
-  readonly metrics: Pick<RelayMetrics, 'refused'>;
-  /** Returns whether a person has a seat in a room of this process, or one is held for them. */
-  readonly isSeated: (room: string, identity: string) => boolean;
-}
 
 /** Uploads a minute of a person and of an address, and downloads of a person. */
 const uploadsPerPerson = 4;
@@ -44,75 +34,48 @@ const asFile: Readonly<Record<string, string>> = {
 const perMinute = (points: number): RateLimiterMemory => new RateLimiterMemory({ points, duration: 60 });
 
 /**
- * The routes for uploading and downloading the avatars of a room's members. A proxy in front of several processes
- * routes by `?room=`.
+ * Returns the routes for uploading and downloading the avatars of a room's members. A proxy in front of several
+ * processes routes by `?room=`. `isSeated`: whether a person has a seat in a room of this process, or one is held for
+ * them.
  */
-export class AvatarRoutes {
-  readonly routes: readonly Route<'client'>[];
-  readonly #options: AvatarRoutesOptions;
-  readonly #uploads = perMinute(uploadsPerPerson);
-  readonly #uploadsFrom = perMinute(uploadsPerAddress);
-  readonly #downloads = perMinute(downloadsPerPerson);
+export function avatarRoutes(
+  { configuration, tokens, metrics }: Pick<RelayContext, 'configuration' | 'tokens' | 'metrics'>,
+  store: AvatarStore,
+  isSeated: (room: string, identity: string) => boolean,
+): readonly Route<'client'>[] {
+  const uploads = perMinute(uploadsPerPerson);
+  const uploadsFrom = perMinute(uploadsPerAddress);
+  const downloads = perMinute(downloadsPerPerson);
 
-  constructor(options: AvatarRoutesOptions) {
-    this.#options = options;
-    const route = (method: 'GET' | 'PUT', path: string, handle: Route['handle']): Route<'client'> => ({
-      ...{ method, path, access: 'client', handle },
-      // Uploads are not JSON: their handler reads them.
-      bodyLimit: 0,
-    });
-    this.routes = [
-      route('GET', '/api/avatars', (call) => this.#terms(call)),
-      route('GET', '/api/avatars/:hash', (call) => this.#download(call)),
-      route('PUT', '/api/avatars/:hash', (call) => this.#upload(call)),
-    ];
+  async function spend(limiter: RateLimiterMemory, key: string, what: string): Promise<void> {
+    const wait = await consumePoint(limiter, key);
+    if (wait === null) return;
+    metrics.refused('avatar', what);
+    throw tooManyRequests(`too many avatars; try again in ${wait} s`, wait);
   }
 
   /** Answers with the size limit, and with the hash of the person's stored file. */
-  async #terms(call: Call): Promise<HttpResponse> {
-    const { configuration, store } = this.#options;
-    const { room, identity } = await requirePass(call, this.#options.tokens);
-    const taken = Math.min(maxAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
+  async function answerTerms(call: Call): Promise<HttpResponse> {
+    const { room, identity } = await requirePass(call, tokens);
     return jsonResponse({
-      maxBytes: taken,
+      maxBytes: Math.min(maxAvatarBytes, configuration.avatarMegabytes * 2 ** 20),
       elsewhere: configuration.avatarsFrom,
       yours: store.hashOf(room, identity),
     });
   }
 
-  async #download(call: Call): Promise<HttpResponse> {
-    const { room, identity } = await requirePass(call, this.#options.tokens);
-    await this.#spend(this.#downloads, identity, 'download');
-    const bytes = this.#options.store.get(room, hashIn(call));
+  async function download(call: Call): Promise<HttpResponse> {
+    const { room, identity } = await requirePass(call, tokens);
+    await spend(downloads, identity, 'download');
+    const bytes = store.get(room, hashIn(call));
     if (!bytes) throw new HttpError(404, 'nobody in this room has uploaded this avatar');
     return { status: 200, headers: asFile, body: bytes };
   }
 
-  async #upload(call: Call): Promise<HttpResponse> {
-    const { request } = call;
-    const { room, identity, assigned } = await requirePass(call, this.#options.tokens);
-    const hash = hashIn(call);
-    if (assigned) throw new HttpError(403, 'in the rooms of a study everybody has the same avatar');
-    if (!this.#options.isSeated(room, identity))
-      throw new HttpError(403, 'only people on a seat of the room may upload avatars');
-    if ((request.headers['content-type'] ?? '').toLowerCase() !== glb) throw new HttpError(415, `send ${glb}`);
-    const length = lengthOf(request);
-    await this.#spend(this.#uploads, identity, 'upload');
-    const { network } = clientAddressOf(request, this.#options.configuration.trustProxy);
-    await this.#spend(this.#uploadsFrom, network, 'upload');
-    const reserved = this.#reserve({ room, identity, address: network }, length);
-    try {
-      reserved.keep(hash, await this.#receive(request, length, hash));
-      return noContent;
-    } finally {
-      reserved.cancel();
-    }
-  }
-
-  #reserve(owner: AvatarOwner, length: number): Reservation {
-    const reserved = this.#options.store.reserve(owner, length);
+  function reserve(owner: AvatarOwner, length: number): Reservation {
+    const reserved = store.reserve(owner, length);
     if (typeof reserved === 'object') return reserved;
-    this.#options.metrics.refused('avatar', reserved);
+    metrics.refused('avatar', reserved);
     if (reserved === 'busy')
       throw new HttpError(409, 'another upload of yours is under way; try again when it has ended');
     if (reserved === 'crowded')
@@ -120,34 +83,48 @@ export class AvatarRoutes {
     throw new HttpError(507, 'this server has no space for another avatar; try again later');
   }
 
-  /** Reads the file and hashes each chunk as it arrives, so that rooms are never blocked for long. */
-  async #receive(request: IncomingMessage, length: number, expected: string): Promise<Buffer> {
-    const bytes = Buffer.allocUnsafeSlow(length);
-    const hash = createHash('sha256');
-    let at = 0;
-    await readBody(request, length, (chunk) => {
-      at += chunk.copy(bytes, at);
-      hash.update(chunk);
-    });
-    if (at < length) throw new HttpError(400, 'the body has no end');
-    if (hash.digest('base64url') !== expected)
-      throw new HttpError(422, 'the SHA-256 of the file differs from its name');
-    if (!isGlb(bytes)) throw new HttpError(422, 'this is not a VRM or GLB file');
-    return bytes;
-  }
-
-  async #spend(limiter: RateLimiterMemory, key: string, what: string): Promise<void> {
+  async function upload(call: Call): Promise<HttpResponse> {
+    const { request } = call;
+    const { room, identity, assigned } = await requirePass(call, tokens);
+    const hash = hashIn(call);
+    if (assigned) throw new HttpError(403, 'in the rooms of a study everybody has the same avatar');
+    if (!isSeated(room, identity)) throw new HttpError(403, 'only people on a seat of the room may upload avatars');
+    if ((request.headers['content-type'] ?? '').toLowerCase() !== glb) throw new HttpError(415, `send ${glb}`);
+    const length = lengthOf(request);
+    await spend(uploads, identity, 'upload');
+    const { network } = clientAddressOf(request, configuration.trustProxy);
+    await spend(uploadsFrom, network, 'upload');
+    const reserved = reserve({ room, identity, address: network }, length);
     try {
-      await limiter.consume(key);
-    } catch (error) {
-      if (!(error instanceof RateLimiterRes)) throw error;
-      this.#options.metrics.refused('avatar', what);
-      const wait = Math.ceil(error.msBeforeNext / 1000);
-      throw new HttpError(429, `too many avatars; try again in ${wait} s`, {
-        headers: { 'retry-after': String(wait) },
-      });
+      reserved.keep(hash, await receiveFile(request, length, hash));
+      return noContent;
+    } finally {
+      reserved.cancel();
     }
   }
+
+  // Uploads are not JSON: their handler reads them.
+  const common = { access: 'client', bodyLimit: 0 } as const;
+  return [
+    { ...common, method: 'GET', path: '/api/avatars', handle: answerTerms },
+    { ...common, method: 'GET', path: '/api/avatars/:hash', handle: download },
+    { ...common, method: 'PUT', path: '/api/avatars/:hash', handle: upload },
+  ];
+}
+
+/** Reads the file and hashes each chunk as it arrives, so that rooms are never blocked for long. */
+async function receiveFile(request: IncomingMessage, length: number, expected: string): Promise<Buffer> {
+  const bytes = Buffer.allocUnsafeSlow(length);
+  const hash = createHash('sha256');
+  let at = 0;
+  await readBody(request, length, (chunk) => {
+    at += chunk.copy(bytes, at);
+    hash.update(chunk);
+  });
+  if (at < length) throw new HttpError(400, 'the body has no end');
+  if (hash.digest('base64url') !== expected) throw new HttpError(422, 'the SHA-256 of the file differs from its name');
+  if (!isGlb(bytes)) throw new HttpError(422, 'this is not a VRM or GLB file');
+  return bytes;
 }
 
 function hashIn({ names }: Call): string {

@@ -57,16 +57,15 @@ export class AvatarStore {
 
   /** Bytes of all files and uploads under way; equal files count separately. */
   get bytes(): number {
-    let sum = 0;
-    for (const { bytes } of this.#files.values()) sum += bytes.length;
-    for (const { length } of this.#uploads.values()) sum += length;
-    return sum;
+    return this.#bytesFrom(null);
   }
 
-  #bytesFrom(asked: string): number {
+  /** Returns the bytes of files and uploads from an address; null: from all. */
+  #bytesFrom(asked: string | null): number {
+    const isAsked = ({ address }: { readonly address: string }) => asked === null || address === asked;
     let sum = 0;
-    for (const { address, bytes } of this.#files.values()) if (address === asked) sum += bytes.length;
-    for (const { address, length } of this.#uploads.values()) if (address === asked) sum += length;
+    for (const file of this.#files.values()) if (isAsked(file)) sum += file.bytes.length;
+    for (const upload of this.#uploads.values()) if (isAsked(upload)) sum += upload.length;
     return sum;
   }
 

@@ -1,17 +1,8 @@
-import type { Logger } from 'pino';
 import { type ClientMessage, clientMessageFrom, protocolVersion } from '../../protocol/messages';
 import type { TokenBucket } from '../../room/token-bucket';
-import type { RelayMetrics } from '../settings/relay-metrics';
+import type { RelayContext } from '../relay-context';
 import { type Client, disconnect } from './client';
 import type { RoomRegistry } from './room-registry';
-
-export interface MessageHandlerOptions {
-  readonly rooms: RoomRegistry;
-  readonly log: Logger;
-  readonly metrics: RelayMetrics;
-  /** Seconds, monotonic. */
-  readonly now: () => number;
-}
 
 const badMessagesAllowed = 3;
 /** The most messages in a row beyond the limit; more count as an attack. */
@@ -31,14 +22,16 @@ const isSignal = (value: unknown): boolean => ((value ?? {}) as { readonly type?
  * other messages is disconnected.
  */
 export class MessageHandler {
-  readonly #options: MessageHandlerOptions;
+  readonly #rooms: RoomRegistry;
+  readonly #context: RelayContext;
 
-  constructor(options: MessageHandlerOptions) {
-    this.#options = options;
+  constructor(rooms: RoomRegistry, context: RelayContext) {
+    this.#rooms = rooms;
+    this.#context = context;
   }
 
   onPose(client: Client, bytes: Uint8Array): void {
-    const { rooms, metrics, now } = this.#options;
+    const { metrics, now } = this.#context;
     const { counts } = metrics;
     counts.posesIn += 1;
     if (client.ended) return;
@@ -48,22 +41,22 @@ export class MessageHandler {
       counts.posesIgnored += 1;
       return;
     }
-    const hosted = rooms.get(client.pass.room);
+    const hosted = this.#rooms.get(client.pass.room);
     const result = hosted?.room.onPose(client.id, bytes, at);
     if (result === 'bad') this.#countBad(client, 'pose');
-    if (hosted && result === 'taken') rooms.sendPoses(hosted);
+    if (hosted && result === 'taken') this.#rooms.sendPoses(hosted);
     else counts.posesIgnored += 1;
   }
 
   onMessage(client: Client, value: unknown): void {
-    const { rooms, metrics, log, now } = this.#options;
+    const { metrics, log, now } = this.#context;
     metrics.counts.messagesIn += 1;
     const at = now();
     if (client.ended || !this.#isWithin(client, isSignal(value) ? client.signals : client.events, at)) return;
     const message = clientMessageFrom(value);
     if (message?.type === 'join') this.#join(client, message);
     else if (message) {
-      const result = rooms.wake(client.pass.room)?.room.onMessage(client.id, message, at);
+      const result = this.#rooms.wake(client.pass.room)?.room.onMessage(client.id, message, at);
       if (result === 'bad') this.#countBad(client, message.type);
     } else if (isOtherVersion(value)) {
       log.info({ room: client.pass.room, client: client.id }, 'page of another version');
@@ -73,16 +66,16 @@ export class MessageHandler {
 
   /** Removes a client whose connection has ended. */
   onDisconnect({ id, pass }: Client): void {
-    const hosted = this.#options.rooms.wake(pass.room);
+    const hosted = this.#rooms.wake(pass.room);
     hosted?.clients.delete(id);
-    hosted?.room.disconnect(id, this.#options.now());
+    hosted?.room.disconnect(id, this.#context.now());
   }
 
   /** Disconnects a client that harms others. `because`: the label of the metric. */
   kick(client: Client, reason: 'misbehaved' | 'slow', because: string): void {
     if (client.ended) return;
-    this.#options.metrics.kicked(because);
-    this.#options.log.warn({ room: client.pass.room, client: client.id, because }, 'kicked');
+    this.#context.metrics.kicked(because);
+    this.#context.log.warn({ room: client.pass.room, client: client.id, because }, 'kicked');
     this.onDisconnect(client);
     disconnect(client, reason);
   }
@@ -92,7 +85,7 @@ export class MessageHandler {
       this.#countBad(client, 'second join');
       return;
     }
-    const hosted = this.#options.rooms.getOrCreate(client.pass);
+    const hosted = this.#rooms.getOrCreate(client.pass);
     if (!hosted) {
       this.kick(client, 'misbehaved', 'rooms-full');
       return;
@@ -104,7 +97,7 @@ export class MessageHandler {
     const { identity, assigned } = client.pass;
     // An assigned place overrides the page's request.
     const joining = assigned ? { ...request, ...assigned, spectate: assigned.seat === null, bot: false } : request;
-    hosted.room.join(client.id, identity, joining, this.#options.now());
+    hosted.room.join(client.id, identity, joining, this.#context.now());
   }
 
   /** Returns whether a message is within the client's limit. */
@@ -116,7 +109,7 @@ export class MessageHandler {
 
   #countBad(client: Client, why: string): void {
     client.badMessages += 1;
-    this.#options.log.info({ room: client.pass.room, client: client.id, why }, 'bad message');
+    this.#context.log.info({ room: client.pass.room, client: client.id, why }, 'bad message');
     if (client.badMessages >= badMessagesAllowed) this.kick(client, 'misbehaved', 'bad-messages');
   }
 }

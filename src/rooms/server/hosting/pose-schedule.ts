@@ -23,11 +23,6 @@ const weight = 0.25;
 /** In a room of two, waiting saves no message: two packets of one sender rarely arrive within the interval. */
 const pair = 2;
 
-function send(sender: ScheduledRoom, now: number): void {
-  sender.sentAt = now;
-  sender.room.sendPoses();
-}
-
 /** Returns a function that measures the load of the event loop since its last call, in [0, 1]. */
 function ownBusyShare(): () => number {
   let last = performance.eventLoopUtilization();
@@ -47,8 +42,7 @@ function ownBusyShare(): () => number {
 export class PoseSchedule {
   readonly #now: () => number;
   readonly #busyShare: () => number;
-  /** Senders of this turn of the event loop, and those that wait for the timer. */
-  readonly #fresh = new Set<ScheduledRoom>();
+  /** Senders that wait for the end of this turn of the event loop, or for the timer. */
   readonly #waiting = new Set<ScheduledRoom>();
   #immediate: NodeJS.Immediate | null = null;
   #timer: NodeJS.Timeout | null = null;
@@ -65,55 +59,48 @@ export class PoseSchedule {
   /** Schedules a send. */
   add(sender: ScheduledRoom): void {
     if (this.#waiting.has(sender)) return;
-    this.#fresh.add(sender);
-    this.#immediate ??= setImmediate(this.#sendFresh);
+    this.#waiting.add(sender);
+    this.#immediate ??= setImmediate(this.#onImmediate);
   }
 
   stop(): void {
     if (this.#immediate) clearImmediate(this.#immediate);
     if (this.#timer) clearTimeout(this.#timer);
-    this.#fresh.clear();
     this.#waiting.clear();
   }
 
-  readonly #sendFresh = (): void => {
+  readonly #onImmediate = (): void => {
     this.#immediate = null;
+    this.#sendDue();
+  };
+
+  readonly #onTimer = (): void => {
+    this.#timer = null;
+    this.#timerAt = Number.POSITIVE_INFINITY;
+    this.#sendDue();
+  };
+
+  #sendDue(): void {
     const now = this.#now();
     this.#measureLoad(now);
     let next = Number.POSITIVE_INFINITY;
-    for (const sender of this.#fresh) {
-      const due = sender.clients.size > pair ? sender.sentAt + this.#pace : now;
-      if (due <= now) send(sender, now);
-      else {
-        this.#waiting.add(sender);
-        next = Math.min(next, due);
-      }
-    }
-    this.#fresh.clear();
-    this.#wakeAt(next, now);
-  };
-
-  readonly #sendDue = (): void => {
-    this.#timer = null;
-    this.#timerAt = Number.POSITIVE_INFINITY;
-    const now = this.#now();
-    let next = Number.POSITIVE_INFINITY;
     for (const sender of this.#waiting) {
-      const due = sender.sentAt + this.#pace;
+      const due = sender.clients.size > pair ? sender.sentAt + this.#pace : now;
       if (due > now) {
         next = Math.min(next, due);
         continue;
       }
       this.#waiting.delete(sender);
-      send(sender, now);
+      sender.sentAt = now;
+      sender.room.sendPoses();
     }
     this.#wakeAt(next, now);
-  };
+  }
 
   #wakeAt(time: number, now: number): void {
     if (time >= this.#timerAt) return;
     if (this.#timer) clearTimeout(this.#timer);
-    this.#timer = setTimeout(this.#sendDue, (time - now) * 1000);
+    this.#timer = setTimeout(this.#onTimer, (time - now) * 1000);
     this.#timerAt = time;
   }
 

@@ -1,15 +1,14 @@
 import { randomBytes } from 'node:crypto';
-import type { Logger } from 'pino';
-import type { RoomMessage } from '../../protocol/messages';
+import type { Server } from 'socket.io';
+import { messageEvent } from '../../protocol/socket-parsers';
 import type { HostedGame } from '../../room/match-policy';
 import { Room, type RoomCensus } from '../../room/room';
 import type { PassClaims } from '../access/room-tokens';
-import type { RelayConfiguration } from '../settings/relay-configuration';
-import type { HostCensus, RelayMetrics } from '../settings/relay-metrics';
+import type { RelayContext } from '../relay-context';
+import type { HostCensus } from '../settings/relay-metrics';
 import { type Client, disconnect, send, sendPoses } from './client';
 import { PoseSchedule, type ScheduledRoom } from './pose-schedule';
-import type { RoomKinds } from './room-kinds';
-import { createTicker } from './ticker';
+import { createTicker, type Ticker } from './ticker';
 
 /** The public description of a room. Rooms with assigned places are not listed. */
 export interface RoomListing extends Omit<RoomCensus, 'empty'> {
@@ -29,120 +28,27 @@ export interface RegisteredRoom extends ScheduledRoom {
   tickAt: number;
 }
 
-export interface RoomRegistryOptions {
-  readonly configuration: RelayConfiguration;
-  readonly kinds: RoomKinds;
-  readonly log: Logger;
-  readonly metrics: RelayMetrics;
-  /** Seconds, monotonic. */
-  readonly now: () => number;
-  /** Sends a message to all clients that have joined a room. */
-  readonly broadcast: (name: string, message: RoomMessage<HostedGame>) => void;
-}
-
 /** An empty room is closed after this time [s]. */
 const emptyRoomSeconds = 5;
 
-/** Returns a function that creates the room of a pass; the pass of the first person decides its terms. */
-function roomFactory({ configuration, kinds, log, metrics, broadcast }: RoomRegistryOptions) {
-  const epoch = randomBytes(6).toString('base64url');
-  let made = 0;
-  return ({ room: id, kind, terms, assigned }: PassClaims): RegisteredRoom | null => {
-    const policy = kinds.get(kind)?.(terms, assigned !== null);
-    if (!policy) return null;
-    made += 1;
-    const joined = new Map<string, Client>();
-    const room = new Room(
-      policy,
-      {
-        ...{ id, epoch: `${epoch}${made}`, pausable: terms.pausable ?? false, assigned: assigned !== null },
-        // Studies do not ask for consent to voices.
-        voices: configuration.voices !== null && assigned === null,
-      },
-      {
-        send(to, message) {
-          const client = joined.get(to);
-          if (client) send(client, message);
-        },
-        broadcast: (message) => broadcast(id, message),
-        sendPoses: (poses) => sendPoses(joined.values(), poses, metrics.counts),
-        disconnect(id, reason) {
-          const client = joined.get(id);
-          joined.delete(id);
-          if (client) disconnect(client, reason);
-        },
-        refused({ client, seat, what, reason }) {
-          metrics.refused(what, reason);
-          log.info({ room: id, client, seat, what, reason }, 'refused');
-        },
-      },
-    );
-    log.info({ room: id, kind, terms }, 'room opened');
-    return { room, listed: assigned === null, clients: joined, sentAt: 0, emptySince: null, tickAt: 0 };
-  };
-}
-
-/** Ticks the rooms that are not idle. */
-class ActiveRooms {
-  readonly #rooms = new Set<RegisteredRoom>();
-  readonly #options: RoomRegistryOptions;
-  readonly #ticker: ReturnType<typeof createTicker>;
-
-  constructor(options: RoomRegistryOptions) {
-    this.#options = options;
-    this.#ticker = createTicker(options.configuration.tickHz, options.now, () => this.#tick());
-  }
-
-  add(hosted: RegisteredRoom): void {
-    this.#rooms.add(hosted);
-    this.#ticker.wake();
-  }
-
-  /** Adds a room and ticks it with the next tick. */
-  wake(hosted: RegisteredRoom): RegisteredRoom {
-    hosted.tickAt = 0;
-    this.add(hosted);
-    return hosted;
-  }
-
-  delete(hosted: RegisteredRoom): void {
-    this.#rooms.delete(hosted);
-  }
-
-  stop(): void {
-    this.#ticker.stop();
-    this.#rooms.clear();
-  }
-
-  /** Ticks the rooms that are due. Returns whether any is still active. */
-  #tick(): boolean {
-    const { configuration, metrics, now } = this.#options;
-    const started = now();
-    const latest = started + 0.5 / configuration.tickHz;
-    for (const hosted of this.#rooms) {
-      if (hosted.tickAt > latest) continue;
-      hosted.room.tick(now());
-      hosted.tickAt = started + hosted.room.tickPeriod;
-      if (hosted.room.isIdle) this.#rooms.delete(hosted);
-    }
-    metrics.tick.observe(now() - started);
-    return this.#rooms.size > 0;
-  }
-}
-
-/** The rooms of this process. */
+/** The rooms of this process. Those that are not idle are ticked. */
 export class RoomRegistry {
-  readonly #options: RoomRegistryOptions;
+  readonly #context: RelayContext;
+  readonly #io: Server;
   readonly #rooms = new Map<string, RegisteredRoom>();
-  readonly #active: ActiveRooms;
-  readonly #create: (pass: PassClaims) => RegisteredRoom | null;
+  /** The rooms that are ticked. */
+  readonly #active = new Set<RegisteredRoom>();
+  readonly #ticker: Ticker;
   readonly #schedule: PoseSchedule;
+  readonly #epoch = randomBytes(6).toString('base64url');
+  #created = 0;
 
-  constructor(options: RoomRegistryOptions) {
-    this.#options = options;
-    this.#active = new ActiveRooms(options);
-    this.#create = roomFactory(options);
-    this.#schedule = new PoseSchedule(options.now);
+  /** `io` has a socket.io room of the same name for each room, with its clients. */
+  constructor(context: RelayContext, io: Server) {
+    this.#context = context;
+    this.#io = io;
+    this.#ticker = createTicker(context.configuration.tickHz, context.now, () => this.#tick());
+    this.#schedule = new PoseSchedule(context.now);
   }
 
   get listings(): readonly RoomListing[] {
@@ -169,13 +75,17 @@ export class RoomRegistry {
    */
   wake(name: string): RegisteredRoom | undefined {
     const hosted = this.#rooms.get(name);
-    return hosted && this.#active.wake(hosted);
+    if (hosted) {
+      hosted.tickAt = 0;
+      this.#activate(hosted);
+    }
+    return hosted;
   }
 
   /** Schedules the sending of a room's poses, and ticks it until it is idle again. */
   sendPoses(hosted: RegisteredRoom): void {
     this.#schedule.add(hosted);
-    this.#active.add(hosted);
+    this.#activate(hosted);
   }
 
   /**
@@ -183,13 +93,8 @@ export class RoomRegistry {
    * game.
    */
   getOrCreate(pass: PassClaims): RegisteredRoom | null {
-    const existing = this.wake(pass.room);
-    if (existing) return existing;
-    if (this.#rooms.size >= this.#options.configuration.maxRooms) return null;
-    const hosted = this.#create(pass);
-    if (!hosted) return null;
-    this.#rooms.set(pass.room, hosted);
-    return this.#active.wake(hosted);
+    if (!this.#rooms.has(pass.room) && !this.#create(pass)) return null;
+    return this.wake(pass.room) ?? null;
   }
 
   /** Closes rooms that have been empty for `emptyRoomSeconds`; called periodically. `now`: seconds. */
@@ -202,28 +107,87 @@ export class RoomRegistry {
       hosted.emptySince ??= now;
       if (now - hosted.emptySince < emptyRoomSeconds) continue;
       this.#remove(id, hosted);
-      this.#options.log.info({ room: id }, 'room closed');
+      this.#context.log.info({ room: id }, 'room closed');
     }
   }
 
-  /** Closes a room and disconnects its clients; returns false if there is none. */
-  end(name: string): boolean {
+  /** Closes a room and disconnects its clients; does nothing if there is none. */
+  end(name: string): void {
     const hosted = this.#rooms.get(name);
-    if (!hosted) return false;
+    if (!hosted) return;
     this.#remove(name, hosted);
     for (const client of hosted.clients.values()) disconnect(client, 'closed');
-    return true;
   }
 
   /** Removes all rooms and stops ticking. */
   clear(): void {
-    this.#active.stop();
+    this.#ticker.stop();
     this.#schedule.stop();
+    this.#active.clear();
     this.#rooms.clear();
+  }
+
+  /** Creates the room of a pass, whose terms it gets. Returns whether the server has the game and a place for it. */
+  #create({ room: id, kind, terms, assigned }: PassClaims): boolean {
+    const { configuration, kinds, log, metrics } = this.#context;
+    if (this.#rooms.size >= configuration.maxRooms) return false;
+    const policy = kinds.get(kind)?.(terms, assigned !== null);
+    if (!policy) return false;
+    this.#created += 1;
+    const clients = new Map<string, Client>();
+    const room = new Room(
+      policy,
+      {
+        ...{ id, epoch: `${this.#epoch}${this.#created}`, pausable: terms.pausable ?? false },
+        assigned: assigned !== null,
+        // Studies do not ask for consent to voices.
+        voices: configuration.voices !== null && assigned === null,
+      },
+      {
+        send(to, message) {
+          const client = clients.get(to);
+          if (client) send(client, message);
+        },
+        broadcast: (message) => void this.#io.to(id).emit(messageEvent, message),
+        sendPoses: (poses) => sendPoses(clients.values(), poses, metrics.counts),
+        disconnect(id, reason) {
+          const client = clients.get(id);
+          clients.delete(id);
+          if (client) disconnect(client, reason);
+        },
+        refused({ client, seat, what, reason }) {
+          metrics.refused(what, reason);
+          log.info({ room: id, client, seat, what, reason }, 'refused');
+        },
+      },
+    );
+    log.info({ room: id, kind, terms }, 'room opened');
+    this.#rooms.set(id, { room, listed: assigned === null, clients, sentAt: 0, emptySince: null, tickAt: 0 });
+    return true;
+  }
+
+  #activate(hosted: RegisteredRoom): void {
+    this.#active.add(hosted);
+    this.#ticker.wake();
   }
 
   #remove(name: string, hosted: RegisteredRoom): void {
     this.#rooms.delete(name);
     this.#active.delete(hosted);
+  }
+
+  /** Ticks the rooms that are due. Returns whether any is still active. */
+  #tick(): boolean {
+    const { configuration, metrics, now } = this.#context;
+    const started = now();
+    const latest = started + 0.5 / configuration.tickHz;
+    for (const hosted of this.#active) {
+      if (hosted.tickAt > latest) continue;
+      hosted.room.tick(now());
+      hosted.tickAt = started + hosted.room.tickPeriod;
+      if (hosted.room.isIdle) this.#active.delete(hosted);
+    }
+    metrics.tick.observe(now() - started);
+    return this.#active.size > 0;
   }
 }

@@ -1,28 +1,12 @@
-import type { Logger } from 'pino';
-import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { RateLimiterMemory } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
+import { consumePoint } from 'threepoint-http/rate-limit';
 import { messageEvent } from '../../protocol/socket-parsers';
-import type { HostedGame } from '../../room/match-policy';
-import type { Room } from '../../room/room';
-import type { RoomTokens } from '../access/room-tokens';
-import type { RelayConfiguration } from '../settings/relay-configuration';
-import type { HostCensus, RelayMetrics } from '../settings/relay-metrics';
+import type { RelayContext } from '../relay-context';
 import type { RelayTransport } from '../sockets/relay-transport';
 import { type Client, createClient, disconnect } from './client';
 import { MessageHandler } from './message-handler';
-import type { RoomKinds } from './room-kinds';
-import { type RoomListing, RoomRegistry } from './room-registry';
-
-export interface SocketHostOptions {
-  readonly configuration: RelayConfiguration;
-  /** The games of the server. */
-  readonly kinds: RoomKinds;
-  readonly tokens: RoomTokens;
-  readonly log: Logger;
-  readonly metrics: RelayMetrics;
-  /** Seconds, monotonic: the clock of all rooms. */
-  readonly now: () => number;
-}
+import type { RoomRegistry } from './room-registry';
 
 /** A client that has not joined a room this long after connecting is disconnected [s]. */
 const joinTimeout = 5;
@@ -32,7 +16,7 @@ const sweepMs = 1000;
 const connectsPerMinute = 30;
 
 /** Returns middleware that accepts sockets with a valid pass, and limits the connections of each person. */
-function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Parameters<Server['use']>[0] {
+function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<Server['use']>[0] {
   const connects = new RateLimiterMemory({ points: connectsPerMinute, duration: 60 });
   async function refusalOf(socket: Socket): Promise<'refused' | 'too-often' | null> {
     const { token } = socket.handshake.auth as { token?: unknown };
@@ -41,10 +25,7 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
       metrics.kicked('token');
       return 'refused';
     }
-    try {
-      await connects.consume(pass.identity);
-    } catch (error) {
-      if (!(error instanceof RateLimiterRes)) throw error;
+    if ((await consumePoint(connects, pass.identity)) !== null) {
       metrics.kicked('connects');
       return 'too-often';
     }
@@ -62,25 +43,20 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
   };
 }
 
-export type SocketHost = ReturnType<typeof createSocketHost>;
-
-/** Connects the sockets of a transport to the rooms of this process. */
-export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions) {
-  const { configuration, kinds, log, metrics, now } = options;
+/**
+ * Connects the sockets of a transport to the rooms of this process. Returns a function that disconnects all clients
+ * with the reason 'stopping', and closes rooms and transport.
+ */
+export function hostSockets(
+  { io, listen, close }: RelayTransport,
+  rooms: RoomRegistry,
+  context: RelayContext,
+): () => Promise<void> {
+  const { configuration, log, now } = context;
   const clients = new Set<Client>();
-  const rooms = new RoomRegistry({
-    configuration,
-    kinds,
-    log,
-    metrics,
-    now,
-    broadcast: (name, message) => {
-      io.to(name).emit(messageEvent, message);
-    },
-  });
-  const messages = new MessageHandler({ rooms, log, metrics, now });
+  const messages = new MessageHandler(rooms, context);
 
-  io.use(createGate(options));
+  io.use(createGate(context));
   io.on('connection', (socket) => {
     const client = createClient(socket, configuration, now());
     clients.add(client);
@@ -109,25 +85,11 @@ export function createSocketHost({ io, listen, close }: RelayTransport, options:
     rooms.sweep(at);
   }, sweepMs);
 
-  return {
-    io,
-    get rooms(): readonly RoomListing[] {
-      return rooms.listings;
-    },
-    get census(): HostCensus {
-      return rooms.census;
-    },
-    /** Returns the room of this name; null: there is none. */
-    room: (name: string): Room<HostedGame> | null => rooms.get(name)?.room ?? null,
-    /** Closes a room and disconnects its clients; returns false if there is none. */
-    end: (name: string): boolean => rooms.end(name),
-    /** Disconnects all clients with the reason 'stopping'. */
-    async close(): Promise<void> {
-      clearInterval(sweeping);
-      for (const client of clients) disconnect(client, 'stopping');
-      rooms.clear();
-      await new Promise((resolve) => setTimeout(resolve, 50));
-      close();
-    },
+  return async () => {
+    clearInterval(sweeping);
+    for (const client of clients) disconnect(client, 'stopping');
+    rooms.clear();
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    close();
   };
 }

@@ -2,7 +2,7 @@ import { createAdapter } from '@socket.io/redis-adapter';
 import type { Redis } from 'ioredis';
 import type { Server, Socket } from 'socket.io';
 import { Adapter } from 'socket.io-adapter';
-import type { RoomListing } from '../hosting/room-registry';
+import type { RoomRegistry } from '../hosting/room-registry';
 import type { Lobby } from './lobby';
 
 /** The socket.io namespace in which pages receive the rooms of all processes. */
@@ -22,9 +22,7 @@ export interface LobbyPublisherOptions {
   /** null: a single process. */
   readonly channel: FleetChannel | null;
   /** The rooms of this process. */
-  readonly rooms: () => readonly RoomListing[];
-  /** Ends the room of this name, if this process has it. */
-  readonly endRoom: (room: string) => void;
+  readonly rooms: Pick<RoomRegistry, 'listings' | 'end'>;
 }
 
 const lobbyEveryMs = 1000;
@@ -41,7 +39,7 @@ export class LobbyPublisher {
 
   constructor(options: LobbyPublisherOptions) {
     this.#options = options;
-    const { io, lobby, channel, endRoom } = options;
+    const { io, lobby, channel, rooms } = options;
     if (channel) shareNamespace(io, channel);
     this.#namespace = io.of(lobbyNamespace);
     // The list is a thousand times as long as the request: once for each connection.
@@ -55,13 +53,13 @@ export class LobbyPublisher {
       void lobby.list().then((all) => socket.emit('rooms', all));
       socket.onAny(() => socket.disconnect(true));
     });
-    this.#namespace.on(endEvent, (room: string) => endRoom(room));
+    this.#namespace.on(endEvent, (room: string) => rooms.end(room));
     this.#timer = setInterval(() => this.#publish(), lobbyEveryMs);
   }
 
   /** Ends a room in all processes that are reachable. */
   endRoom(room: string): void {
-    this.#options.endRoom(room);
+    this.#options.rooms.end(room);
     if (this.#reachesAll) this.#namespace.serverSideEmit(endEvent, room);
   }
 
@@ -75,14 +73,15 @@ export class LobbyPublisher {
   }
 
   #publish(): void {
-    const rooms = this.#options.rooms();
-    this.#options.lobby.publish(rooms);
+    const { lobby, node, rooms: own } = this.#options;
+    const rooms = own.listings;
+    lobby.publish(rooms);
     const text = JSON.stringify(rooms);
     if (text === this.#published) return;
     this.#published = text;
     // While Redis is down, other processes' pages receive the list with the next change; nothing is queued.
     const listeners = this.#reachesAll ? this.#namespace : this.#namespace.local;
-    listeners.emit('node', { node: this.#options.node, rooms });
+    listeners.emit('node', { node, rooms });
   }
 }
 

@@ -19,6 +19,14 @@ export interface HostCensus {
   readonly spectators: number;
 }
 
+/** The connections of an HTTP server. */
+export interface ConnectionCounts {
+  /** Open connections, silent ones included. */
+  readonly open: number;
+  /** Connections refused since the start because their address had too many. */
+  readonly refused: number;
+}
+
 /** The gauges of a relay, read with the metrics. */
 export interface RelayCensus extends HostCensus {
   /** Open WebSockets, silent ones included. */

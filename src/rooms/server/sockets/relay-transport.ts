@@ -3,7 +3,6 @@ import type { IncomingMessage } from 'node:http';
 import type { Socket as NetSocket } from 'node:net';
 import type { Duplex } from 'node:stream';
 import { Server as Engine } from 'engine.io';
-import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
 import { HttpError } from 'threepoint-http/http-error';
 import { parseRequestTarget } from 'threepoint-http/request-target';
@@ -11,9 +10,8 @@ import { errorResponse, sendRawResponse } from 'threepoint-http/response';
 import { handshakeTimeoutMs } from 'threepoint-http/web-server';
 import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
-import type { RelayConfiguration } from '../settings/relay-configuration';
-import type { RelayMetrics } from '../settings/relay-metrics';
-import { createFloodLimiter } from './flood-limiter';
+import { TokenBucket } from '../../room/token-bucket';
+import type { RelayContext } from '../relay-context';
 import { SlowReaders } from './slow-readers';
 import { createUpgradeAdmission } from './upgrade-admission';
 
@@ -34,6 +32,13 @@ export interface WireListener {
  * A connection is destroyed this long after it was closed [ms], whether or not the client has read the last message.
  */
 const closingMs = 1000;
+
+/**
+ * The most frames of any kind that a connection may send [1/s], before and after it joins a room: messages, poses,
+ * acknowledgements, pings and pongs. A page sends 40 poses, 20 messages and 20 signals a second (80 signals in a
+ * burst), and after an outage what it queued for 5 s.
+ */
+const framesPerSecond = 300;
 
 /** Destroys a socket that its client does not close in time. */
 const destroySoon = (raw: NetSocket | undefined): void => {
@@ -66,17 +71,28 @@ function routeBinaryMessages(conn: Socket['conn'], take: () => boolean, listener
   websocket.on('pong', take);
 }
 
+/**
+ * Returns a function that counts a frame of one connection and returns whether to handle it. Once the limit is exceeded
+ * no further frame is handled, and `onFlood` is called once. `now`: seconds, monotonic.
+ */
+function createFloodLimiter(now: () => number, onFlood: () => void): () => boolean {
+  const bucket = new TokenBucket(framesPerSecond);
+  let isFlooded = false;
+  return () => {
+    if (isFlooded || bucket.take(now())) return !isFlooded;
+    isFlooded = true;
+    // Earlier packets are still on their way through socket.io, which takes a tick for each.
+    setImmediate(onFlood);
+    return false;
+  };
+}
+
 export type RelayTransport = ReturnType<typeof createRelayTransport>;
 
-/**
- * The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. `now`: seconds,
- * monotonic.
- */
-export function createRelayTransport(
-  configuration: RelayConfiguration,
-  { log, metrics, now }: { readonly log: Logger; readonly metrics: RelayMetrics; readonly now: () => number },
-) {
-  const admit = createUpgradeAdmission(configuration, { log, metrics });
+/** The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. */
+export function createRelayTransport(context: RelayContext) {
+  const { log, metrics, now } = context;
+  const admit = createUpgradeAdmission(context);
   const engine = new Engine({
     transports: ['websocket'],
     allowUpgrades: false,

@@ -1,11 +1,9 @@
 import type { IncomingMessage } from 'node:http';
-import type { Logger } from 'pino';
 import { clientAddressOf } from 'threepoint-http/client-address';
 import { createSlotCounter } from 'threepoint-http/connection-limiter';
 import { HttpError } from 'threepoint-http/http-error';
 import { createSitePolicy } from 'threepoint-http/site-policy';
-import type { RelayConfiguration } from '../settings/relay-configuration';
-import type { RelayMetrics } from '../settings/relay-metrics';
+import type { RelayContext } from '../relay-context';
 
 /** Returns why a request is not one for a WebSocket of the relay's protocol; null: it is one. */
 function protocolErrorOf({ method, headers }: IncomingMessage, query: URLSearchParams): HttpError | null {
@@ -32,10 +30,11 @@ function protocolErrorOf({ method, headers }: IncomingMessage, query: URLSearchP
  * client's address and returns the function that releases it. It throws an HttpError that states why a request is
  * refused.
  */
-export function createUpgradeAdmission(
-  configuration: RelayConfiguration,
-  { log, metrics }: { readonly log: Logger; readonly metrics: RelayMetrics },
-): (request: IncomingMessage, query: URLSearchParams) => () => void {
+export function createUpgradeAdmission({
+  configuration,
+  log,
+  metrics,
+}: RelayContext): (request: IncomingMessage, query: URLSearchParams) => () => void {
   const addresses = createSlotCounter(configuration.connectionsPerAddress);
   const site = createSitePolicy(configuration);
   return (request, query) => {

@@ -1,17 +1,8 @@
 import { createHash, createHmac } from 'node:crypto';
-import { type HttpResponse, jsonResponse } from 'threepoint-http/response';
-import type { Call, Route } from 'threepoint-http/router';
-import { requirePass } from '../access/request-pass';
-import type { RoomTokens } from '../access/room-tokens';
+import { jsonResponse } from 'threepoint-http/response';
+import type { Route } from 'threepoint-http/router';
+import { type RoomTokens, requirePass } from '../access/room-tokens';
 import type { VoiceConfiguration } from '../settings/voice-configuration';
-
-export interface VoiceRoutesOptions {
-  /** null: voices are off. */
-  readonly voices: VoiceConfiguration | null;
-  readonly tokens: Pick<RoomTokens, 'verify'>;
-  /** Seconds since 1970. */
-  readonly now: () => number;
-}
 
 /** Lifetime of a TURN credential [s]; pages request the next one earlier. */
 const turnSeconds = 4 * 3600;
@@ -29,21 +20,19 @@ function turnCredential(secret: string, identity: string, until: number): { user
 }
 
 /**
- * The route that answers whether a room has voices, and by which ICE servers. A proxy in front of several processes
- * routes by `?room=`.
+ * Returns the route that answers whether a room has voices (`voices` null: none has), and by which ICE servers. A proxy
+ * in front of several processes routes by `?room=`. `now`: seconds since 1970.
  */
-export class VoiceRoutes {
-  readonly routes: readonly Route<'client'>[];
-  readonly #options: VoiceRoutesOptions;
-
-  constructor(options: VoiceRoutesOptions) {
-    this.#options = options;
-    const handle = (call: Call) => this.#terms(call);
-    this.routes = [{ method: 'GET', path: '/api/voices', access: 'client', handle, bodyLimit: 0 }];
-  }
-
-  async #terms(call: Call): Promise<HttpResponse> {
-    const { voices, tokens, now } = this.#options;
+export const voiceRoute = (
+  voices: VoiceConfiguration | null,
+  tokens: Pick<RoomTokens, 'verify'>,
+  now: () => number,
+): Route<'client'> => ({
+  method: 'GET',
+  path: '/api/voices',
+  access: 'client',
+  bodyLimit: 0,
+  async handle(call) {
     const { identity, assigned } = await requirePass(call, tokens);
     if (!voices || assigned) return jsonResponse(noVoices);
     const { stun, turn } = voices;
@@ -55,5 +44,5 @@ export class VoiceRoutes {
       ],
       ttlSeconds: turn ? turnSeconds : null,
     });
-  }
-}
+  },
+});

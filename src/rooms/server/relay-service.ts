@@ -1,7 +1,6 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
-import type { Logger } from 'pino';
 import { checked } from 'threepoint/core/validation/validation';
 import { AdminGuard } from 'threepoint-http/admin-guard';
 import { clientAddressOf } from 'threepoint-http/client-address';
@@ -10,32 +9,24 @@ import { type HttpResponse, jsonResponse } from 'threepoint-http/response';
 import { type Call, jsonOf, type Route, type Service } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { roomTerms } from '../protocol/messages';
-import { JoinLimits } from './access/join-limits';
-import { assignedRoomName, type RoomTokens, roomName } from './access/room-tokens';
-import type { AvatarRoutes } from './avatars/avatar-routes';
+import { createJoinLimit } from './access/join-limit';
+import { assignedRoomName, roomName } from './access/room-tokens';
 import type { RoomKinds } from './hosting/room-kinds';
 import type { RoomListing } from './hosting/room-registry';
 import type { Lobby } from './lobby/lobby';
-import type { RelayConfiguration } from './settings/relay-configuration';
-import type { RelayCensus, RelayMetrics } from './settings/relay-metrics';
+import type { RelayContext } from './relay-context';
+import type { RelayCensus } from './settings/relay-metrics';
 import { relayPath } from './sockets/relay-transport';
-import type { VoiceRoutes } from './voices/voice-routes';
 
-export interface RelayRoutesOptions {
-  readonly configuration: RelayConfiguration;
-  /** The games of the server. */
-  readonly kinds: RoomKinds;
-  readonly tokens: RoomTokens;
+export interface RelayServiceOptions {
   readonly lobby: Lobby;
   readonly census: () => RelayCensus;
-  readonly metrics: RelayMetrics;
-  readonly log: Logger;
   /** Ends a room in whichever process has it. */
   readonly endRoom: (room: string) => void;
   /** Stores the join counts of all processes; null: a single process. */
   readonly redis: Redis | null;
-  readonly avatars: Pick<AvatarRoutes, 'routes'>;
-  readonly voices: Pick<VoiceRoutes, 'routes'>;
+  /** The routes of avatars and voices. */
+  readonly roomRoutes: readonly Route<'client'>[];
 }
 
 const longestBody = 4096;
@@ -102,82 +93,67 @@ const post = (path: string, access: RelayAccess, handle: RelayRoute['handle']): 
   handle,
 });
 
-/** The HTTP service of the relay: tokens, rooms, health and metrics. */
-export class RelayRoutes implements Service<RelayAccess> {
-  readonly routes: readonly RelayRoute[];
-  readonly #options: RelayRoutesOptions;
-  readonly #requests: ReturnType<typeof roomRequests>;
-  readonly #joins: JoinLimits;
-  readonly #admin: AdminGuard;
+/** Creates the HTTP service of the relay: tokens, rooms, health and metrics. */
+export function createRelayService(context: RelayContext, options: RelayServiceOptions): Service<RelayAccess> {
+  const { configuration, kinds, tokens, log, metrics } = context;
+  const { lobby, census, endRoom, redis, roomRoutes } = options;
+  const requests = roomRequests(kinds);
+  const countJoin = createJoinLimit(context, redis);
+  const admin = new AdminGuard(configuration, log);
 
-  constructor(options: RelayRoutesOptions) {
-    this.#options = options;
-    this.#requests = roomRequests(options.kinds);
-    this.#joins = new JoinLimits(options);
-    this.#admin = new AdminGuard(options.configuration, options.log);
-    this.routes = [
-      get('/healthz', 'anyone', () => jsonResponse({ status: 'ok', ...options.census() })),
-      get('/metrics', 'this-machine', () => this.#metrics()),
-      get(relayPath, 'anyone', () => {
-        throw new HttpError(426, 'this address serves WebSockets only', { headers: { upgrade: 'websocket' } });
-      }),
-      get('/api/rooms', 'anyone', async () => jsonResponse(await options.lobby.list())),
-      post('/api/rooms/match', 'anyone', (call) => this.#match(call)),
-      post('/api/rooms/new', 'anyone', (call) => {
-        checked(this.#requests.kind, jsonOf(call));
-        return jsonResponse({ room: newRoomName() });
-      }),
-      post('/api/rooms/end', 'admin', (call) => {
-        const ended = checked(endRequest, jsonOf(call));
-        options.endRoom(ended.room);
-        return jsonResponse(ended);
-      }),
-      post('/api/rooms/token', 'anyone', (call) => this.#token(call)),
-      ...options.avatars.routes,
-      ...options.voices.routes,
-    ];
-  }
-
-  async admit({ access }: RelayRoute, { request }: { readonly request: IncomingMessage }): Promise<void> {
-    if (access === 'admin' && !(await this.#admin.admits(request))) {
-      throw new HttpError(403, 'this needs the admin token (THREEPOINT_ADMIN_TOKEN)');
-    }
-    if (access === 'this-machine' && !isOnThisMachine(request)) {
-      throw new HttpError(403, 'only programs on this machine may use this address');
-    }
-  }
-
-  refusalOf(): null {
-    return null;
-  }
-
-  onFault(error: unknown): void {
-    this.#options.log.error({ error: String(error) }, 'request failed');
-  }
-
-  async #metrics(): Promise<HttpResponse> {
-    const { registry } = this.#options.metrics;
-    return { status: 200, headers: { 'content-type': registry.contentType }, body: await registry.metrics() };
-  }
-
-  async #token(call: Call): Promise<HttpResponse> {
-    const { tokens } = this.#options;
-    const request = checked(this.#requests.token, jsonOf(call));
+  async function answerToken(call: Call): Promise<HttpResponse> {
+    const request = checked(requests.token, jsonOf(call));
     const before = request.token === undefined ? null : await tokens.verifyRenewable(request.token);
     if (before && before.room === request.room && before.kind === request.kind) {
       return jsonResponse({ token: await tokens.sign({ ...before, terms: request.terms ?? before.terms }) });
     }
-    await this.#joins.spend(call.request);
+    await countJoin(call.request);
     return jsonResponse({ token: await tokens.issue(request.room, request.kind, request.terms) });
   }
 
   /** Answers with the best room that has people and a free seat; otherwise with the name of a new one. */
-  async #match(call: Call): Promise<HttpResponse> {
-    const { kind } = checked(this.#requests.kind, jsonOf(call));
-    const { rooms } = await this.#options.lobby.list();
+  async function answerMatch(call: Call): Promise<HttpResponse> {
+    const { kind } = checked(requests.kind, jsonOf(call));
+    const { rooms } = await lobby.list();
     const [best] = rooms
       .filter((listed) => listed.kind === kind && listed.free > 0 && listed.players > 0)
       .sort(byPreference);
     return jsonResponse({ room: best?.room ?? newRoomName(), found: best !== undefined });
   }
+
+  return {
+    routes: [
+      get('/healthz', 'anyone', () => jsonResponse({ status: 'ok', ...census() })),
+      get('/metrics', 'this-machine', async () => {
+        const { registry } = metrics;
+        return { status: 200, headers: { 'content-type': registry.contentType }, body: await registry.metrics() };
+      }),
+      get(relayPath, 'anyone', () => {
+        throw new HttpError(426, 'this address serves WebSockets only', { headers: { upgrade: 'websocket' } });
+      }),
+      get('/api/rooms', 'anyone', async () => jsonResponse(await lobby.list())),
+      post('/api/rooms/match', 'anyone', answerMatch),
+      post('/api/rooms/new', 'anyone', (call) => {
+        checked(requests.kind, jsonOf(call));
+        return jsonResponse({ room: newRoomName() });
+      }),
+      post('/api/rooms/end', 'admin', (call) => {
+        const ended = checked(endRequest, jsonOf(call));
+        endRoom(ended.room);
+        return jsonResponse(ended);
+      }),
+      post('/api/rooms/token', 'anyone', answerToken),
+      ...roomRoutes,
+    ],
+    async admit({ access }, { request }) {
+      if (access === 'admin' && !(await admin.admits(request))) {
+        throw new HttpError(403, 'this needs the admin token (THREEPOINT_ADMIN_TOKEN)');
+      }
+      if (access === 'this-machine' && !isOnThisMachine(request)) {
+        throw new HttpError(403, 'only programs on this machine may use this address');
+      }
+    },
+    refusalOf: () => null,
+    onFault: (error) => log.error({ error: String(error) }, 'request failed'),
+  };
 }

@@ -1,0 +1,17 @@
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { type AttachRoomsOptions, attachRooms } from 'threepoint-rooms/server/attach-rooms';
+import { onTestFinished } from 'vitest';
+
+/** Starts a server of somebody else's with rooms on it, until the test is over. */
+export async function servedRooms(options: AttachRoomsOptions = {}) {
+  const server = createServer((request, response) => response.end(`mine: ${request.url}`));
+  const rooms = attachRooms(server, { logLevel: 'silent', ...options });
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  onTestFinished(async () => {
+    await rooms.close();
+    server.closeAllConnections();
+    await new Promise((resolve) => server.close(resolve));
+  });
+  return { rooms, server, url: `http://127.0.0.1:${(server.address() as AddressInfo).port}` };
+}
