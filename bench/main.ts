@@ -1,5 +1,4 @@
 import { writeFileSync } from 'node:fs';
-import { parseArgs } from 'node:util';
 import { type Browser, chromium } from '@playwright/test';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { median } from 'threepoint/core/math/statistics';
@@ -28,16 +27,15 @@ import {
   type Visit,
 } from './tables';
 
-const { values: options, positionals } = parseArgs({
-  options: {
-    json: { type: 'string' },
-    allocations: { type: 'boolean' },
-    rounds: { type: 'string' },
-    device: { type: 'boolean' },
-    avatar: { type: 'string' },
-  },
-  allowPositionals: true,
-});
+/** The options of the npm script; `rest`: the names of the parts. */
+const options = JSON.parse(process.argv[2] ?? '{"rest":[]}') as {
+  readonly json?: string;
+  readonly allocations?: boolean;
+  readonly rounds?: string;
+  readonly device?: boolean;
+  readonly avatar?: string;
+  readonly rest: readonly string[];
+};
 
 /** What is measured without --allocations; named on the command line, only these. */
 const everyPart = [
@@ -52,7 +50,7 @@ const everyPart = [
   'avatar',
 ] as const;
 type Part = (typeof everyPart)[number];
-const parts: readonly string[] = options.allocations || positionals.length === 0 ? everyPart : positionals;
+const parts: readonly string[] = options.allocations || options.rest.length === 0 ? everyPart : options.rest;
 const unknown = parts.filter((part) => !everyPart.some((known) => known === part));
 if (unknown.length > 0)
   throw new Error(`bench: no part is called ${unknown.join(', ')}; there are ${everyPart.join(', ')}`);
@@ -124,7 +122,7 @@ const browser = await chromium.launch({
   ],
 });
 async function measureWhereAllocated(browser: Browser): Promise<void> {
-  const only = positionals.length > 0 ? positionals : undefined;
+  const only = options.rest.length > 0 ? options.rest : undefined;
   const allocations = await measureAllocations(browser, builtIn('.cache/bench-of-page'), only);
   printSites(allocations);
   printAllocations(allocations);

@@ -120,6 +120,6 @@ export async function runTraining(module, args, { extras = [], ...options } = {}
  * and people of an npm script. Resolves to an exit code.
  */
 export async function prepareRecordings(given, out, options) {
-  const args = passedOn({ ...given, out }, ['people'], ['mocap', 'skeleton', 'out']);
+  const args = passedOn({ ...given, out }, ['people', 'mocap', 'skeleton', 'out']);
   return (await runTraining('threepoint_training.recordings', args, options)).code;
 }

@@ -1,5 +1,4 @@
 import { writeFileSync } from 'node:fs';
-import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { recordOf } from 'threepoint/core/records';
@@ -18,20 +17,11 @@ import { addSpeeds, emptySpeedTally, type SpeedTally, speedTable } from './speed
 /** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
 const robustnessFrames = 12_000;
 
-const { values: options } = parseArgs({
-  options: {
-    recordings: { type: 'string' },
-    models: { type: 'string' },
-    json: { type: 'string' },
-    robustness: { type: 'boolean' },
-    noise: { type: 'string' },
-    speed: { type: 'boolean' },
-    'hands-measured': { type: 'boolean' },
-    'forearm-typed': { type: 'boolean' },
-    figures: { type: 'string' },
-    fp32: { type: 'string' },
-  },
-});
+const options = JSON.parse(process.argv[2] ?? '') as Readonly<
+  Record<'recordings' | 'models', string> &
+    Partial<Record<'json' | 'noise' | 'figures' | 'fp32', string>> &
+    Partial<Record<'robustness' | 'speed' | 'hands-measured' | 'forearm-typed', boolean>>
+>;
 
 /** Returns the calibration of a clip: eye height and span, and on request hand tilts and forearm. */
 const clipCalibration = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
@@ -219,8 +209,6 @@ async function measureSpeeds(corpus: Corpus) {
 
 async function main(): Promise<void> {
   const { recordings, models, json, robustness, noise, figures, fp32 } = options;
-  if (!recordings || !models)
-    throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
   // A file with a fault is refused before minutes of work.
   const checked = noise ? trackingOf(readCheckFile(noise), noise) : null;
   for (const remark of checked?.remarks ?? []) console.log(remark);

@@ -31,7 +31,9 @@ function folderWith(seconds: number) {
 
 describe('npm run motion', () => {
   test.each(['--help', '-h'])('%s prints how it is used, and is no error', (flag) => {
-    const { status, stdout } = spawnSync(process.execPath, ['scripts/motion.mjs', flag], { encoding: 'utf8' });
+    const { status, stdout } = spawnSync(process.execPath, ['scripts/program.mjs', 'motion', flag], {
+      encoding: 'utf8',
+    });
     expect(stdout).toMatch(/^npm run motion -- FILE --to bvh\|csv\|vrma\|glb /);
     expect(status).toBe(0);
   });

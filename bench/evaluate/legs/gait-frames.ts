@@ -3,7 +3,6 @@
 
 import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { gaitOutputCount } from 'threepoint/core/estimation/gait/gait';
 import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estimation/gait/gait-features';
@@ -49,10 +48,10 @@ function framesOf(clip: DrivenLegs, driver: (typeof drivers)[number], rateHz: nu
 }
 
 async function main(): Promise<void> {
-  const text = { type: 'string' } as const;
-  const { recordings, models, out } = parseArgs({ options: { recordings: text, models: text, out: text } }).values;
-  if (!recordings || !models || !out)
-    throw new Error('gait-frames: --recordings, --models and --out are needed; `npm run train:gait` gives them');
+  const { recordings, models, out } = JSON.parse(process.argv[2] ?? '') as Record<
+    'recordings' | 'models' | 'out',
+    string
+  >;
   const index = readIndex(recordings);
   const learned = (await loadRegressors(models)).get('learned') ?? null;
   mkdirSync(out, { recursive: true });

@@ -1,6 +1,5 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { parseArgs } from 'node:util';
 import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait/gait';
@@ -44,15 +43,15 @@ interface PersonLegs extends Record<LegDriver, LegReport> {
 }
 
 async function main(): Promise<void> {
-  const text = { type: 'string' } as const;
-  const { values } = parseArgs({ options: { recordings: text, models: text, json: text, gaits: text } });
-  const { recordings, models, json } = values;
-  if (!recordings || !models)
-    throw new Error('legs: --recordings and --models are needed; `npm run evaluate` gives them');
+  const { recordings, models, json, gaits } = JSON.parse(process.argv[2] ?? '') as Record<
+    'recordings' | 'models',
+    string
+  > &
+    Partial<Record<'json' | 'gaits', string>>;
   const index = readIndex(recordings);
   const learned = (await loadRegressors(models)).get('learned') ?? null;
   const seen = new Set(learned?.contract.trainedOn.people);
-  const gaitOf = gaitsOf(values.gaits);
+  const gaitOf = gaitsOf(gaits);
   const legsOf = await mannequinLegs();
   const people: Record<string, PersonLegs> = {};
   for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
