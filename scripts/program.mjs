@@ -32,7 +32,7 @@ const programs = {
     usage: 'npm run bench:relay [-- --json FILE] [--quick] [--rooms N] [--hz N] [--seconds N] [--count N]',
     options: { texts: ['rooms', 'hz', 'seconds', 'count'], paths: ['json'], flags: ['quick'] },
   },
-  /** Measures concurrent participants of one study on one server. --flush-ms delays each flush of the disk, by strace. */
+  /** Measures concurrent participants of a study on one server. --flush-ms delays each flush of the disk, by strace. */
   'bench:study': {
     program: 'bench/study-load.ts',
     usage: 'npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]',
