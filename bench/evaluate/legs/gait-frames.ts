@@ -9,7 +9,7 @@ import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estim
 import { sides } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { loadRegressors } from '../networks';
-import { readIndex } from '../recordings';
+import { peopleOf, readIndex } from '../recordings';
 import { type DrivenLegs, driveLegs } from './leg-drivers';
 
 /** Bodies that people wear: with both kinds of pelvis above them the feet are the same. */
@@ -56,7 +56,7 @@ async function main(): Promise<void> {
   const learned = (await loadRegressors(models)).get('learned') ?? null;
   mkdirSync(out, { recursive: true });
   const people: Record<string, number> = {};
-  for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
+  for (const person of peopleOf(index.clips)) {
     const clips = await driveLegs(recordings, index, person, learned);
     if (clips.length === 0) {
       console.log(`${person}: no legs with toes in these recordings`);

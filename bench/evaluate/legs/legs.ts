@@ -5,10 +5,9 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait/gait';
 import { recordOf } from 'threepoint/core/records';
 import { tableRow } from '../../table-row';
-import { mannequinLegs } from '../leg-proportions';
 import { loadRegressors } from '../networks';
-import { readIndex } from '../recordings';
-import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
+import { peopleOf, readIndex } from '../recordings';
+import { bodyOf, driveLegs, type LegDriver, legDrivers, mannequinLegs } from './leg-drivers';
 import { addLegs, emptyLegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
 
 function print(title: string, reports: readonly (readonly [string, LegReport])[]): void {
@@ -54,7 +53,7 @@ async function main(): Promise<void> {
   const gaitOf = gaitsOf(gaits);
   const legsOf = await mannequinLegs();
   const people: Record<string, PersonLegs> = {};
-  for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
+  for (const person of peopleOf(index.clips)) {
     const measures = recordOf(legDrivers, emptyLegMeasures);
     const clips = await driveLegs(recordings, index, person, learned);
     const network = gaitOf(person);
