@@ -1,5 +1,3 @@
-import { createAvatar } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { identity } from 'threepoint/core/math/quat';
@@ -17,7 +15,7 @@ import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { reportOutcome } from './outcome';
 import { createSenders } from './senders';
-import { withoutDevice } from './stage';
+import { openAvatar, withoutDevice } from './stage';
 import { TextureMemory } from './texture-memory';
 
 const rateHz = 72;
@@ -33,8 +31,8 @@ const larger = (a: DrawnCounts, b: DrawnCounts): DrawnCounts => ({
 
 type CountedStage = Awaited<ReturnType<typeof openStage>>;
 
-/** Opens the page's stage in an emulated headset with two eyes, at a headset's quality, with a body on it. */
-async function openStage(body: ArrayBuffer) {
+/** Opens the page's stage in an emulated headset with two eyes, at a headset's quality, with an avatar. */
+async function openStage() {
   const canvas = document.createElement('canvas');
   document.body.append(canvas);
   const gl = canvas.getContext('webgl2', { antialias: true });
@@ -47,9 +45,7 @@ async function openStage(body: ArrayBuffer) {
   const { renderer } = stage;
   await renderer.xr.setSession(await requestVrSession());
   const estimator = createEstimator('ik', defaultCalibration);
-  const avatar = createAvatar(await parseAvatar(body, 'body.vrm'));
-  avatar.setCalibration(defaultCalibration);
-  stage.studio.scene.add(avatar.object);
+  const { avatar, file: body } = await openAvatar(stage.studio.scene, 'man');
 
   const draw = (picture: Picture) => {
     stage.look(picture);
@@ -104,7 +100,7 @@ async function openStage(body: ArrayBuffer) {
     return { ...most, texturesMB: Number(textures.megabytes.toFixed(1)) };
   }
 
-  return { stage, count };
+  return { stage, body, count };
 }
 
 async function countArchery({ stage, count }: CountedStage): Promise<WorldCounts> {
@@ -143,7 +139,7 @@ async function countArchery({ stage, count }: CountedStage): Promise<WorldCounts
   return counts;
 }
 
-async function countCourt({ stage, count }: CountedStage, body: ArrayBuffer, people: number): Promise<WorldCounts> {
+async function countCourt({ stage, body, count }: CountedStage, people: number): Promise<WorldCounts> {
   const court = new Court(stage.studio, body, people, 'high');
   const others = people - 1;
   const { packetsAt } = createSenders(others);
@@ -167,14 +163,13 @@ async function countCourt({ stage, count }: CountedStage, body: ArrayBuffer, peo
 
 /** Counts what every world of the page draws in a headset of two eyes. Nothing reaches a graphics device. */
 async function countWorlds(): Promise<Record<World, WorldCounts>> {
-  const body = await (await fetch('/avatars/man.vrm')).arrayBuffer();
-  const counted = await openStage(body);
+  const counted = await openStage();
   return {
     mirror: await counted.count(true, (index) => actorFrame((index * stride) / rateHz, defaultCalibration)),
     archery: await countArchery(counted),
-    ball3: await countCourt(counted, body, 3),
-    ball8: await countCourt(counted, body, 8),
-    ball16: await countCourt(counted, body, 16),
+    ball3: await countCourt(counted, 3),
+    ball8: await countCourt(counted, 8),
+    ball16: await countCourt(counted, 16),
   };
 }
 
