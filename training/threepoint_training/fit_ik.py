@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, mirror, quaternion, solve_ik
+from .arrays import Array
 from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
-
-Array = NDArray[np.float64]
 
 # The initial parameters, which are the target of the ridge penalty: an upright trunk, elbows down, back and a little
 # outward.

@@ -27,8 +27,9 @@ from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .lockbox_log import LockboxAccess, git_commit
 from .prepared_corpus import PreparedCorpus
+from .shared_constants import REPOSITORY
 from .splits import LOCKBOX, evaluation_only, trainable
-from .training_config import REPOSITORY, Task, TrainConfig
+from .training_config import Task, TrainConfig
 from .training_report import LABELS, TrainingReport
 
 TITLE = "MPJPE: IK and ours after torso and arm fitting, the paper's network raw [cm]"
