@@ -139,7 +139,8 @@ class Client {
   readonly #bytes: Uint8Array;
   /** The time at which each packet was sent, by its packet time [ms]. */
   readonly #sent = new Float64Array(2 ** timeBits);
-  readonly #joined: Promise<void>;
+  /** Resolves once the relay has let it in. */
+  readonly joined: Promise<void>;
   #join: () => void = () => undefined;
   #seat: number;
   /** The offset of the relay's clock to the local clock [ms]. */
@@ -160,17 +161,12 @@ class Client {
     const address = `ws://127.0.0.1:${port}/relay/?EIO=4&transport=websocket&room=${roomName}&seat=${seat}`;
     const socket = new WebSocket(address, { perMessageDeflate: false });
     this.#socket = socket;
-    this.#joined = new Promise((resolve, reject) => {
+    this.joined = new Promise((resolve, reject) => {
       this.#join = resolve;
       socket.on('error', reject);
       socket.on('close', () => reject(new Error('bench/relay: a connection was closed')));
     });
     socket.on('message', (received: Buffer, isBinary) => this.#receive(received, isBinary));
-  }
-
-  /** Resolves once the relay has let it in. */
-  joined(): Promise<void> {
-    return this.#joined;
   }
 
   send(): void {
@@ -297,7 +293,7 @@ class Crowd {
       const token =
         relay === 'ours' ? await tokens.issue(roomName, kindFor(people), plays ? { seconds: 3600 } : {}) : '';
       const client = new Client(this.#meeting, this.#template, { room, roomName, seat, token });
-      await client.joined();
+      await client.joined;
       room.push(client);
     }
     this.#rooms.push(room);
