@@ -4,6 +4,7 @@ table.
 A run is seeded: the same data and options write the same weights on the same machine.
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -160,16 +161,10 @@ def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
 
 
 def _prepared(config: TrainConfig, mocap: Path, report: TrainingReport) -> PreparedCorpus:
-    done = 0
+    numbers = itertools.count(1)
     with report.task("prepare", None) as advance:
-
-        def file(name: str) -> None:
-            nonlocal done
-            done += 1
-            advance(done, f"prepare {name}")
-
         prepared = prepare.PrepareConfig(mocap, config.skeleton_map, cache=config.cache)
         if config.task == "lockbox":
             access = LockboxAccess("npm run train -- --lockbox", config.lockbox_log)
             prepared = replace(prepared, people=LOCKBOX, lockbox=access)
-        return prepare.main(prepared, file)
+        return prepare.main(prepared, lambda name: advance(next(numbers), f"prepare {name}"))
