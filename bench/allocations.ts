@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import { SourceMap } from 'node:module';
 import type { Browser, CDPSession, Page } from '@playwright/test';
 import { driveTime, pass } from '../e2e/driven-time';
-import { builtPages, outcomeOf, withServed } from './bench-page';
+import { builtPages, outcomeOf, withPage, withServed } from './bench-page';
 import type { AllocationScene } from './page/allocations';
 
 /**
@@ -232,21 +232,16 @@ async function sampleBenchPage(page: Page, session: CDPSession, sourceOf: Source
   return sample(session, sourceOf, () => run(sampledFrames));
 }
 
-/** A page of its own for each: what one has compiled and collected is no concern of the next. */
-async function visit<T>(
+/** Opens each address in a page of its own: what one has compiled and collected does not affect the next. */
+const visit = (
   browser: Browser,
   address: string,
-  measure: (page: Page, session: CDPSession) => Promise<T>,
-): Promise<T> {
-  const context = await browser.newContext({ viewport: { width: 240, height: 135 } });
-  try {
-    const page = await context.newPage();
+  measure: (page: Page, session: CDPSession) => Promise<Sample>,
+): Promise<Sample> =>
+  withPage(browser, [240, 135], async (page) => {
     await page.goto(address);
-    return await measure(page, await context.newCDPSession(page));
-  } finally {
-    await context.close();
-  }
-}
+    return measure(page, await page.context().newCDPSession(page));
+  });
 
 function sitesOf({ frames, functions }: Sample, sourceOf: SourceOf): AllocationSite[] {
   const placeOf = ({ url, lineNumber, columnNumber }: CallFrame) => sourceOf(url, lineNumber, columnNumber);

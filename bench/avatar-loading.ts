@@ -1,6 +1,7 @@
 import { readFileSync } from 'node:fs';
 import type { Browser } from '@playwright/test';
 import { largeAvatar } from '../tests/threepoint/avatar/large-avatar';
+import { withPage } from './bench-page';
 
 /** One file on its way onto the stage of the page. */
 export interface AvatarLoading {
@@ -50,18 +51,17 @@ export async function measureAvatarLoading(browser: Browser, address: string, pa
   const file = path
     ? readFileSync(path)
     : Buffer.from(largeAvatar({ pictures: 8, layers: 5, shapes: 40, mtoon: true }));
-  const page = await browser.newPage({ viewport: { width: 320, height: 200 } });
-  const pictures = (count: number) =>
-    page.evaluate(async (wanted) => {
-      for (let i = 0; i < wanted; i++) await new Promise(requestAnimationFrame);
-      return performance.now();
-    }, count);
-  const traced = async (work: () => Promise<void>) => {
-    await browser.startTracing(page, { categories: ['toplevel'] });
-    await work();
-    return longestTasksIn(await browser.stopTracing());
-  };
-  try {
+  return withPage(browser, [320, 200], async (page) => {
+    const pictures = (count: number) =>
+      page.evaluate(async (wanted) => {
+        for (let i = 0; i < wanted; i++) await new Promise(requestAnimationFrame);
+        return performance.now();
+      }, count);
+    const traced = async (work: () => Promise<void>) => {
+      await browser.startTracing(page, { categories: ['toplevel'] });
+      await work();
+      return longestTasksIn(await browser.stopTracing());
+    };
     await page.route(
       ({ pathname }) => pathname === '/measured.vrm',
       (route) => route.fulfill({ contentType: 'model/gltf-binary', body: file }),
@@ -101,7 +101,5 @@ export async function measureAvatarLoading(browser: Browser, address: string, pa
       longestTasks,
       longestWithout,
     };
-  } finally {
-    await page.close();
-  }
+  });
 }

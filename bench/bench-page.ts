@@ -1,5 +1,5 @@
 import { fileURLToPath } from 'node:url';
-import type { Page } from '@playwright/test';
+import type { Browser, Page } from '@playwright/test';
 import { serve } from 'threepoint-http/web-server';
 import { createPageHandler } from '../server/page-handler';
 
@@ -33,6 +33,20 @@ export async function withServed<T>(
     return await measure(`http://localhost:${server.port}`, server.port);
   } finally {
     await server.close();
+  }
+}
+
+/** Opens a page in a context of its own, with a window of this size [pixels], and closes it after the measurement. */
+export async function withPage<T>(
+  browser: Browser,
+  [width, height]: readonly [width: number, height: number],
+  measure: (page: Page) => Promise<T>,
+): Promise<T> {
+  const context = await browser.newContext({ viewport: { width, height } });
+  try {
+    return await measure(await context.newPage());
+  } finally {
+    await context.close();
   }
 }
 

@@ -1,5 +1,5 @@
 import type { Browser } from '@playwright/test';
-import { outcomeOf } from './bench-page';
+import { outcomeOf, withPage } from './bench-page';
 
 /** What a picture, or a part of it, asks of the graphics device. */
 export interface DrawnCounts {
@@ -56,13 +56,9 @@ export function overBudget(counts: Readonly<Record<World, WorldCounts>>): string
 }
 
 /** Counts what every world draws; address: of the bench's pages. */
-export async function countWorlds(browser: Browser, address: string): Promise<Readonly<Record<World, WorldCounts>>> {
+export const countWorlds = (browser: Browser, address: string): Promise<Readonly<Record<World, WorldCounts>>> =>
   // An emulated headset draws into the whole window: both eyes of a Quest 3 in its browser.
-  const page = await browser.newPage({ viewport: { width: 2 * 1680, height: 1760 } });
-  try {
+  withPage(browser, [2 * 1680, 1760], async (page) => {
     await page.goto(`${address}/counts.html`);
-    return await outcomeOf(page, 600_000);
-  } finally {
-    await page.close();
-  }
-}
+    return outcomeOf(page, 600_000);
+  });

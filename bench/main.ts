@@ -1,13 +1,12 @@
 import { writeFileSync } from 'node:fs';
-import { parseArgs } from 'node:util';
-import { type Browser, chromium } from '@playwright/test';
+import { type Browser, chromium, type Page } from '@playwright/test';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { median } from 'threepoint/core/math/statistics';
 import { findChromium } from '../scripts/chromium.mjs';
 import { printFigures } from '../tests/print-figures';
 import { measureAllocations } from './allocations';
 import { measureAvatarLoading } from './avatar-loading';
-import { builtIn, builtPages, outcomeOf, withServed } from './bench-page';
+import { builtIn, builtPages, outcomeOf, withPage, withServed } from './bench-page';
 import { countWorlds, overBudget } from './counts';
 import { measureNetworks } from './networks';
 import type { PagePart, PageResult } from './page/main';
@@ -28,16 +27,15 @@ import {
   type Visit,
 } from './tables';
 
-const { values: options, positionals } = parseArgs({
-  options: {
-    json: { type: 'string' },
-    allocations: { type: 'boolean' },
-    rounds: { type: 'string' },
-    device: { type: 'boolean' },
-    avatar: { type: 'string' },
-  },
-  allowPositionals: true,
-});
+/** The options of the npm script; `rest`: the names of the parts. */
+const options = JSON.parse(process.argv[2] ?? '{"rest":[]}') as {
+  readonly json?: string;
+  readonly allocations?: boolean;
+  readonly rounds?: string;
+  readonly device?: boolean;
+  readonly avatar?: string;
+  readonly rest: readonly string[];
+};
 
 /** What is measured without --allocations; named on the command line, only these. */
 const everyPart = [
@@ -52,7 +50,7 @@ const everyPart = [
   'avatar',
 ] as const;
 type Part = (typeof everyPart)[number];
-const parts: readonly string[] = options.allocations || positionals.length === 0 ? everyPart : positionals;
+const parts: readonly string[] = options.allocations || options.rest.length === 0 ? everyPart : options.rest;
 const unknown = parts.filter((part) => !everyPart.some((known) => known === part));
 if (unknown.length > 0)
   throw new Error(`bench: no part is called ${unknown.join(', ')}; there are ${everyPart.join(', ')}`);
@@ -62,49 +60,45 @@ const longestPartMs = 3_600_000;
 
 /** A part that is measured on the bench's own page. */
 const measureOnPage = <Part extends PagePart>(browser: Browser, part: Part): Promise<PageResult<Part>> =>
-  withServed(builtPages.bench, async (address) => {
-    const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
-    try {
+  withServed(builtPages.bench, (address) =>
+    withPage(browser, [480, 270], async (page) => {
       const asked = new URLSearchParams({ part, ...(options.rounds && { rounds: options.rounds }) });
       await page.goto(`${address}/?${asked}`);
-      return await outcomeOf<PageResult<Part>>(page, longestPartMs);
-    } finally {
-      await page.close();
-    }
-  });
+      return outcomeOf<PageResult<Part>>(page, longestPartMs);
+    }),
+  );
 
-/** Opens the real page afresh: when the first body is on the screen, and what had to travel for it. */
+/** Returns what a file of the page is, by its path. */
+function kindOf(path: string): keyof Visit['bytes'] {
+  if (path.endsWith('.wasm')) return 'wasm';
+  if (path.startsWith('/models/')) return 'models';
+  return path.startsWith('/avatars/') ? 'avatars' : 'app';
+}
+
+/** Opens the real page without a cache: when the first body is on the screen [ms], and the bytes loaded for it. */
+async function visitOnce(page: Page, address: string): Promise<Visit> {
+  const bytes = { app: 0, wasm: 0, models: 0, avatars: 0 };
+  const bodies: Promise<void>[] = [];
+  page.on('response', (response) => {
+    const kind = kindOf(new URL(response.url()).pathname);
+    bodies.push(
+      response.body().then((body) => {
+        bytes[kind] += body.length;
+      }),
+    );
+  });
+  await page.goto(`${address}/?actor=on`);
+  await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 60_000 });
+  const firstBodyMs = await page.evaluate(() => window.threepoint?.probe().loading.firstBody ?? Number.NaN);
+  await Promise.all(bodies);
+  return { firstBodyMs, bytes };
+}
+
 async function measureVisit(browser: Browser, address: string): Promise<Visit> {
-  const times: number[] = [];
-  let bytes: Visit['bytes'] | undefined;
-  for (let visit = 0; visit < 3; visit++) {
-    const context = await browser.newContext({ viewport: { width: 960, height: 600 } });
-    const page = await context.newPage();
-    const arrived = { app: 0, wasm: 0, models: 0, avatars: 0 };
-    const bodies: Promise<void>[] = [];
-    page.on('response', (response) => {
-      const path = new URL(response.url()).pathname;
-      const kind = path.endsWith('.wasm')
-        ? 'wasm'
-        : path.startsWith('/models/')
-          ? 'models'
-          : path.startsWith('/avatars/')
-            ? 'avatars'
-            : 'app';
-      bodies.push(
-        response.body().then((body) => {
-          arrived[kind] += body.length;
-        }),
-      );
-    });
-    await page.goto(`${address}/?actor=on`);
-    await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 60_000 });
-    times.push(await page.evaluate(() => window.threepoint?.probe().loading.firstBody ?? Number.NaN));
-    await Promise.all(bodies);
-    bytes = arrived;
-    await context.close();
-  }
-  return { firstBodyMs: median(times), bytes: bytes! };
+  const visits: Visit[] = [];
+  for (let visit = 0; visit < 3; visit++)
+    visits.push(await withPage(browser, [960, 600], (page) => visitOnce(page, address)));
+  return { firstBodyMs: median(visits.map(({ firstBodyMs }) => firstBodyMs)), bytes: visits[0]!.bytes };
 }
 
 const executablePath = await findChromium();
@@ -124,7 +118,7 @@ const browser = await chromium.launch({
   ],
 });
 async function measureWhereAllocated(browser: Browser): Promise<void> {
-  const only = positionals.length > 0 ? positionals : undefined;
+  const only = options.rest.length > 0 ? options.rest : undefined;
   const allocations = await measureAllocations(browser, builtIn('.cache/bench-of-page'), only);
   printSites(allocations);
   printAllocations(allocations);

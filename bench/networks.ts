@@ -1,5 +1,5 @@
 import type { Browser } from '@playwright/test';
-import { outcomeOf } from './bench-page';
+import { outcomeOf, withPage } from './bench-page';
 
 /**
  * Ways to run the learned network: our forward pass, onnxruntime-web's WebAssembly in the page's worker, its WebGPU.
@@ -31,24 +31,16 @@ export async function measureNetworks(
 ): Promise<Readonly<Record<NetworkWay, MeasuredNetwork>>> {
   const costs: Partial<Record<NetworkWay, MeasuredNetwork>> = {};
   for (const way of networkWays) {
-    const context = await browser.newContext({ viewport: { width: 320, height: 200 } });
-    const page = await context.newPage();
-    let bytes = 0;
-    const arriving: Promise<void>[] = [];
-    context.on('response', (response) => {
-      // The browser keeps no file as large as WebGPU's runtime for those who watch it.
-      const body = response.body().catch(async () => (await context.request.get(response.url())).body());
-      arriving.push(
-        body.then(({ length }) => {
-          bytes += length;
-        }),
-      );
+    costs[way] = await withPage(browser, [320, 200], async (page) => {
+      const bodies: Promise<Buffer>[] = [];
+      page.context().on('response', (response) => {
+        // The browser does not keep a file as large as WebGPU's runtime: it is requested again.
+        bodies.push(response.body().catch(async () => (await page.request.get(response.url())).body()));
+      });
+      await page.goto(`${address}/networks.html?way=${way}`);
+      const cost = await outcomeOf<NetworkCost>(page, 300_000);
+      return { ...cost, bytes: (await Promise.all(bodies)).reduce((sum, { length }) => sum + length, 0) };
     });
-    await page.goto(`${address}/networks.html?way=${way}`);
-    const cost = await outcomeOf<NetworkCost>(page, 300_000);
-    await Promise.all(arriving);
-    costs[way] = { ...cost, bytes };
-    await context.close();
   }
   return costs as Readonly<Record<NetworkWay, MeasuredNetwork>>;
 }

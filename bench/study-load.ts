@@ -6,7 +6,6 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { parseArgs } from 'node:util';
 import { quantile } from 'threepoint/core/math/statistics';
 import { parsePlan, participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
@@ -26,20 +25,16 @@ const recordSeconds = 10;
 /** A round with its recording ends about so often [s]. */
 const roundSeconds = 60;
 
-const { values: options } = parseArgs({
-  options: {
-    participants: { type: 'string', default: '200' },
-    seconds: { type: 'string', default: '60' },
-    /**
-     * Flushes of the server's disk take so much longer [ms], by strace, which must be installed: those of virtual disks
-     * may cost nothing.
-     */
-    'flush-ms': { type: 'string' },
-    json: { type: 'string' },
-  },
-});
-const count = Number(options.participants);
-const seconds = Number(options.seconds);
+const options = JSON.parse(process.argv[2] ?? '{}') as Partial<
+  Record<'participants' | 'seconds' | 'flush-ms' | 'json', string>
+>;
+const count = Number(options.participants ?? 200);
+const seconds = Number(options.seconds ?? 60);
+/**
+ * By how much flushes of the server's disk are delayed [ms], by strace, which must be installed: those of virtual disks
+ * may cost nothing.
+ */
+const flushMs = Number(options['flush-ms'] ?? 0);
 
 type Times = Map<string, number[]>;
 
@@ -139,7 +134,6 @@ const slowDisk = (ms: number) =>
   `-D -f --seccomp-bpf -qqq -o /dev/null -e trace=fsync,fdatasync -e inject=fsync,fdatasync:delay_exit=${1000 * ms}`.split(
     ' ',
   );
-const flushMs = Number(options['flush-ms'] ?? 0);
 const [command, ...words] = [
   ...(flushMs > 0 ? ['strace', ...slowDisk(flushMs)] : []),
   ...[

@@ -4,7 +4,7 @@
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { readOptions } from './command-line.mjs';
-import { main, root, typedPath } from './run-command.mjs';
+import { main, root } from './run-command.mjs';
 
 const usage = 'npm run avatars:fetch -- DIR';
 const limitMs = 120_000;
@@ -26,10 +26,10 @@ async function fetchFile(file) {
 }
 
 await main(async () => {
-  const { rest } = readOptions('avatars:fetch', usage, { rest: true }, ({ rest }) => {
+  const { rest } = readOptions('avatars:fetch', usage, { rest: 'paths' }, ({ rest }) => {
     if (rest.length !== 1) throw new Error('a folder is needed');
   });
-  const folder = typedPath(rest[0]);
+  const [folder] = rest;
   mkdirSync(folder, { recursive: true });
   const files = JSON.parse(readFileSync(join(root, 'tools/avatars/try/public-files.json'), 'utf8'));
   let missing = 0;

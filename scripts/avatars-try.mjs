@@ -6,18 +6,17 @@ import { basename, extname, join } from 'node:path';
 import { ensureChromium } from './chromium.mjs';
 import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, SetupError, typedPath } from './run-command.mjs';
+import { main, root, SetupError } from './run-command.mjs';
 
 const usage = 'npm run avatars:try -- DIR [--out OUT]';
 
 function options() {
-  const { rest, out } = readOptions('avatars:try', usage, { texts: ['out'], rest: true }, ({ rest }) => {
+  const { rest, out } = readOptions('avatars:try', usage, { paths: ['out'], rest: 'paths' }, ({ rest }) => {
     if (rest.length !== 1) throw new Error('a folder with avatars is needed');
-    if (!statSync(typedPath(rest[0]), { throwIfNoEntry: false })?.isDirectory())
-      throw new Error(`${typedPath(rest[0])}: no such folder`);
+    if (!statSync(rest[0], { throwIfNoEntry: false })?.isDirectory()) throw new Error(`${rest[0]}: no such folder`);
   });
-  const folder = typedPath(rest[0]);
-  return { folder, out: out ? typedPath(out) : join(folder, 'sheets') };
+  const [folder] = rest;
+  return { folder, out: out ?? join(folder, 'sheets') };
 }
 
 /** Starts a server for the page and the folder's files on a free port of this machine. */

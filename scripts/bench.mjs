@@ -7,7 +7,7 @@
 // measures only the garbage that frames allocate, and the functions that allocate it.
 import { buildWhenStale } from './build.mjs';
 import { ensureChromium } from './chromium.mjs';
-import { passedOn, readOptions } from './command-line.mjs';
+import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, run, runProgram } from './run-command.mjs';
 
@@ -18,8 +18,8 @@ const vite = (...options) => run('npx', ['vite', 'build', '--logLevel', 'warn', 
 const readable = ['--minify', 'false', '--sourcemap'];
 
 await main(async () => {
-  const flags = ['allocations', 'device'];
-  const given = readOptions('bench', usage, { texts: ['json', 'rounds', 'avatar'], flags, rest: true });
+  const known = { texts: ['rounds'], paths: ['json', 'avatar'], flags: ['allocations', 'device'], rest: 'words' };
+  const given = readOptions('bench', usage, known);
   await ensureInstalled();
   await ensureChromium();
   if (given.allocations) {
@@ -28,6 +28,5 @@ await main(async () => {
   } else await buildWhenStale();
   const page = await vite('--config', 'bench/vite.config.ts', ...(given.allocations ? readable : []));
   if (page.code !== 0) return page.code;
-  const measure = [...passedOn(given, ['rounds', ...flags], ['json', 'avatar']), ...given.rest];
-  return runProgram('bench/main.ts', measure);
+  return runProgram('bench/main.ts', [JSON.stringify(given)]);
 });

@@ -346,7 +346,7 @@ async function checkDocuments(sizes) {
   if (stale.length > 0) throw new SetupError(`${stale.join('.\n')}.`);
 }
 
-function tellSizes(sizes) {
+function printSizes(sizes) {
   const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(10);
   console.log(`${''.padEnd(32)}${'min'.padStart(10)}${'brotli'.padStart(10)}`);
   for (const [what, { min, brotli }] of Object.entries(sizes))
@@ -356,6 +356,6 @@ function tellSizes(sizes) {
 await mainOf(import.meta.url, async () => {
   await buildLibrary();
   const sizes = await measureSizes();
-  tellSizes(sizes);
+  printSizes(sizes);
   await checkDocuments(sizes);
 });

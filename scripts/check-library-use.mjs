@@ -4,6 +4,7 @@ import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { join } from 'node:path';
 import { build } from 'esbuild';
 import { rolldown } from 'rolldown';
+import { packages } from './build-packages.mjs';
 import { main, root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const folder = join(root, 'artifacts/library-consumer');
@@ -12,9 +13,6 @@ const resolutions = [
   { module: 'node16', moduleResolution: 'node16' },
 ];
 
-/** The built folders of the packages. */
-const packages = { threepoint: 'dist-library', 'threepoint-rooms': 'dist-rooms' };
-
 /** The consumers, and the types of its surroundings that each may use. */
 const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'rooms-server-consumer.ts': ['node'] };
 
@@ -22,7 +20,7 @@ const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'rooms-server-co
 async function unpack(name) {
   const into = join(folder, 'node_modules', name);
   mkdirSync(into, { recursive: true });
-  const packed = await runQuietly('npm', ['pack', join(root, packages[name]), '--pack-destination', into]);
+  const packed = await runQuietly('npm', ['pack', join(root, packages[name].folder), '--pack-destination', into]);
   const tarball = readdirSync(into).find((file) => file.endsWith('.tgz'));
   if (packed?.code !== 0 || !tarball) throw new SetupError(`npm pack failed:\n${packed?.output ?? 'npm is not there'}`);
   const unpacked = await runQuietly('tar', ['-xzf', join(into, tarball), '-C', into, '--strip-components=1']);

@@ -1,6 +1,6 @@
 import { existsSync } from 'node:fs';
 import { delimiter, isAbsolute, join } from 'node:path';
-import { root, run, runQuietly, SetupError } from './run-command.mjs';
+import { installWithApt, root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const installedNames = [
   'chromium',
@@ -55,20 +55,13 @@ async function installWithPlaywright() {
   return playwrightsOwn();
 }
 
-async function installWithDistribution() {
-  if (process.getuid?.() !== 0 || onPath('apt-get') === null) return null;
-  const env = { DEBIAN_FRONTEND: 'noninteractive' };
-  await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
-  await run('apt-get', ['install', '-y', '-qq', '--no-install-recommends', 'chromium'], { env, limitSeconds: 900 });
-  return findChromium();
-}
-
 /** Like `findChromium`, but installs Chromium if none is found. Throws a SetupError that says what to do. */
 export async function ensureChromium() {
   const found = await findChromium();
   if (found !== null) return found;
   console.log('No Chromium is installed; fetching the one that belongs to Playwright ...');
-  const installed = (await installWithPlaywright()) ?? (await installWithDistribution());
+  const installed =
+    (await installWithPlaywright()) ?? ((await installWithApt('chromium')) ? await findChromium() : null);
   if (installed !== null) return installed;
   throw new SetupError(
     'No Chromium could be found or installed. Install Chromium or Chrome, or set CHROMIUM_PATH to one, and run this again.',

@@ -1,12 +1,14 @@
 import { parseArgs } from 'node:util';
-import { ensureInstalled } from './installation.mjs';
-import { main, runProgram, SetupError, typedPath } from './run-command.mjs';
+import { SetupError, typedPath } from './run-command.mjs';
 
 const options = (names, option) => Object.fromEntries(names.map((name) => [name, option]));
 
+const fullPath = (value) => (Array.isArray(value) ? value.map(typedPath) : typedPath(value));
+
 /**
  * Returns the options of an npm script by name, and its other arguments as `rest`. `texts`, `lists` and `flags` name
- * the options that take a value, may be repeated, and take none; `rest`: whether other arguments are allowed.
+ * the options that take a value, may be repeated, and take none. `paths` names those whose values become full paths.
+ * `rest`: what other arguments are, 'paths' or 'words'; absent: none are allowed.
  *
  * `check` throws what is wrong with them otherwise. Every fault becomes a SetupError with the usage.
  * @returns {Record<string, any>}
@@ -14,19 +16,20 @@ const options = (names, option) => Object.fromEntries(names.map((name) => [name,
 export function readOptions(
   script,
   usage,
-  { texts = [], lists = [], flags = [], rest = false },
+  { texts = [], paths = [], lists = [], flags = [], rest = undefined },
   check = (_) => undefined,
 ) {
   try {
     const { values, positionals } = parseArgs({
       options: {
-        ...options(texts, { type: 'string' }),
+        ...options([...texts, ...paths], { type: 'string' }),
         ...options(lists, { type: 'string', multiple: true }),
         ...options(flags, { type: 'boolean' }),
       },
-      allowPositionals: rest,
+      allowPositionals: rest !== undefined,
     });
-    const given = { ...values, rest: positionals };
+    const given = { ...values, rest: rest === 'paths' ? fullPath(positionals) : positionals };
+    for (const name of paths) if (given[name] !== undefined) given[name] = fullPath(given[name]);
     check(given);
     return given;
   } catch (error) {
@@ -34,19 +37,8 @@ export function readOptions(
   }
 }
 
-/** Returns some options as arguments of another program; those named in `paths` with full paths. */
-export const passedOn = (given, names, paths = []) =>
-  [...names, ...paths].flatMap((name) =>
-    [given[name] ?? []].flat().map((value) => {
-      if (value === true) return `--${name}`;
-      return `--${name}=${paths.includes(name) ? typedPath(value) : value}`;
-    }),
+/** Returns some options as arguments of another program. */
+export const passedOn = (given, names) =>
+  names.flatMap((name) =>
+    [given[name] ?? []].flat().map((value) => (value === true ? `--${name}` : `--${name}=${value}`)),
   );
-
-/** Is the whole of an npm script that runs a TypeScript program with these arguments, once all packages are there. */
-export const runAsScript = (program, argumentsOf, options) =>
-  main(async () => {
-    const given = argumentsOf();
-    await ensureInstalled();
-    return runProgram(program, given, options);
-  });

@@ -6,7 +6,7 @@
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { passedOn, readOptions } from './command-line.mjs';
+import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { prepareRecordings } from './python-environment.mjs';
 import { main, root, runProgram } from './run-command.mjs';
@@ -18,14 +18,14 @@ const usage =
   'DIR holds .asf and .amc or .bvh files; docs/accuracy.md says the rest.';
 const twoHours = { limitSeconds: 2 * 3600 };
 
-/** The options of an evaluation on motion capture that --legs does not take, and the paths and flags among all. */
-const notOfLegs = ['robustness', 'noise', 'speed', 'hands-measured', 'forearm-typed', 'figures', 'fp32'];
-const paths = ['models', 'json', 'noise', 'figures', 'fp32', 'gaits'];
 const flags = ['robustness', 'speed', 'hands-measured', 'forearm-typed'];
+/** The options of an evaluation on motion capture that --legs does not take. */
+const notOfLegs = [...flags, 'noise', 'figures', 'fp32'];
 
 function options() {
   const known = {
-    texts: ['mocap', 'skeleton', 'people', ...paths],
+    texts: ['people'],
+    paths: ['mocap', 'skeleton', 'models', 'json', 'noise', 'figures', 'fp32', 'gaits', 'recording'],
     lists: ['recording'],
     flags: ['legs', ...flags],
   };
@@ -44,14 +44,13 @@ function options() {
 await main(async () => {
   const given = { models: join(root, 'public/models'), ...options() };
   await ensureInstalled();
-  if (given.recording)
-    return runProgram('bench/evaluate/recorded.ts', passedOn(given, [], ['models', 'recording', 'json']), twoHours);
+  if (given.recording) return runProgram('bench/evaluate/recorded.ts', [JSON.stringify(given)], twoHours);
   const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
   try {
     const code = await prepareRecordings(given, recordings, twoHours);
     if (code !== 0) return code;
     const program = given.legs ? 'bench/evaluate/legs/legs.ts' : 'bench/evaluate/main.ts';
-    return await runProgram(program, ['--recordings', recordings, ...passedOn(given, flags, paths)], twoHours);
+    return await runProgram(program, [JSON.stringify({ ...given, recordings })], twoHours);
   } finally {
     rmSync(recordings, { recursive: true, force: true });
   }

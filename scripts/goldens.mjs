@@ -3,20 +3,18 @@
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
-import { passedOn, readOptions } from './command-line.mjs';
+import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { prepareRecordings } from './python-environment.mjs';
-import { main, root, runProgram, SetupError, typedPath } from './run-command.mjs';
+import { main, root, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
   'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
   'DIR holds the recordings that the goldens were frozen with; docs/accuracy.md says the rest.';
 const halfAnHour = 1800;
 
-const flags = ['write', 'quick', 'all'];
-
 function options() {
-  const known = { texts: ['mocap', 'only', 'frames', 'models'], flags: ['compare', ...flags] };
+  const known = { texts: ['only'], paths: ['mocap', 'frames', 'models'], flags: ['compare', 'write', 'quick', 'all'] };
   return readOptions('goldens', usage, known, ({ mocap, write, compare }) => {
     if (!mocap) throw new Error('--mocap is needed');
     if (write && compare) throw new Error('either --compare or --write');
@@ -55,17 +53,15 @@ async function prepareOnce(mocap, folder) {
 }
 
 await main(async () => {
-  const given = options();
+  const { mocap, ...given } = options();
   await ensureInstalled();
-  const mocap = typedPath(given.mocap);
   if (!existsSync(mocap)) throw new SetupError(`goldens: ${mocap}: no such folder\n${usage}`);
   const recordings = join(root, '.cache/goldens', `recordings-${recordingsKey(mocap)}`);
   const code = await prepareOnce(mocap, recordings);
   if (code !== 0) return code;
-  const drive = {
-    ...{ models: join(root, 'public/models'), frames: join(root, '.cache/goldens/frames'), ...given },
-    ...{ recordings, golden: join(root, 'tests/golden/estimates.json') },
-  };
-  const args = passedOn(drive, [...flags, 'only'], ['recordings', 'models', 'golden', 'frames']);
-  return runProgram('bench/evaluate/golden/goldens.ts', args, { limitSeconds: halfAnHour });
+  const [models, frames, golden] = ['public/models', '.cache/goldens/frames', 'tests/golden/estimates.json'].map(
+    (path) => join(root, path),
+  );
+  const request = JSON.stringify({ models, frames, ...given, golden, recordings });
+  return runProgram('bench/evaluate/golden/goldens.ts', [request], { limitSeconds: halfAnHour });
 });

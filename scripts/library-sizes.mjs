@@ -16,8 +16,7 @@ export function staleSizes(file, text, claims) {
     if (!said) return [`${file} does not say what ${what} weighs`];
     if (said.every((kB, i) => isTrue(kB, bytes[i]))) return [];
     const digits = digitsOf(said[0]);
-    const told = (sizes) => sizes.join(' and ');
-    const is = told(bytes.map((size) => kilobytes(size, digits)));
-    return [`${file} says ${told(said.map((kB) => `${kB} kB`))} of ${what}, it is ${is}`];
+    const is = bytes.map((size) => kilobytes(size, digits)).join(' and ');
+    return [`${file} says ${said.map((kB) => `${kB} kB`).join(' and ')} of ${what}, it is ${is}`];
   });
 }

@@ -2,7 +2,7 @@ import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn } from './command-line.mjs';
-import { root, run, runQuietly, SetupError } from './run-command.mjs';
+import { installWithApt, root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const projectFile = join(root, 'training/pyproject.toml');
 /** The installer of the packages in pyproject.toml; nothing else needs it. */
@@ -23,14 +23,6 @@ async function findInterpreter() {
     if ((await runQuietly(name, ['-c', test]))?.code === 0) return name;
   }
   return null;
-}
-
-async function installDistributionPython() {
-  if (process.getuid?.() !== 0 || (await runQuietly('apt-get', ['--version'])) === null) return;
-  console.log('Installing python3 and python3-venv ...');
-  const env = { DEBIAN_FRONTEND: 'noninteractive' };
-  await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
-  await run('apt-get', ['install', '-y', '-qq', 'python3', 'python3-venv'], { env, limitSeconds: 600 });
 }
 
 async function createVenv(directory) {
@@ -87,7 +79,7 @@ export async function pythonEnvironment({ extras = [] } = {}) {
   try {
     let problem = await createVenv(unfinished);
     if (problem !== null) {
-      await installDistributionPython();
+      await installWithApt('python3', 'python3-venv');
       problem = await createVenv(unfinished);
     }
     if (problem !== null) {
@@ -120,6 +112,6 @@ export async function runTraining(module, args, { extras = [], ...options } = {}
  * and people of an npm script. Resolves to an exit code.
  */
 export async function prepareRecordings(given, out, options) {
-  const args = passedOn({ ...given, out }, ['people'], ['mocap', 'skeleton', 'out']);
+  const args = passedOn({ ...given, out }, ['people', 'mocap', 'skeleton', 'out']);
   return (await runTraining('threepoint_training.recordings', args, options)).code;
 }

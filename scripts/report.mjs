@@ -7,7 +7,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
 import { runTraining } from './python-environment.mjs';
-import { main, root, run, SetupError, typedPath } from './run-command.mjs';
+import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
   'npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
@@ -25,7 +25,7 @@ const measured = join(root, '.cache/report');
 const python = { limitSeconds: 600 };
 
 function options() {
-  const known = { texts: ['mocap', 'people', 'skeleton', 'models', 'fp32'], flags: ['redraw', 'legs'] };
+  const known = { texts: ['people'], paths: ['mocap', 'skeleton', 'models', 'fp32'], flags: ['redraw', 'legs'] };
   return readOptions('report', usage, known, ({ mocap, people, fp32, redraw, legs }) => {
     if (legs && (fp32 || redraw)) throw new Error('--legs is measured by itself');
     if (!mocap === !redraw) throw new Error('either --mocap or --redraw is needed');
@@ -35,7 +35,7 @@ function options() {
 
 /** Runs npm run evaluate on the given motion with these additional options; resolves to its exit code. */
 async function evaluate(given, ...beside) {
-  const command = [join(root, 'scripts/evaluate.mjs'), ...passedOn(given, [], ['mocap', 'skeleton']), ...beside];
+  const command = [join(root, 'scripts/evaluate.mjs'), ...passedOn(given, ['mocap', 'skeleton']), ...beside];
   return (await run(process.execPath, command, { limitSeconds: sixHours })).code;
 }
 
@@ -47,7 +47,7 @@ async function reportLegs(given) {
   const gaits = join(root, '.cache/gait');
   if (!existsSync(gaits))
     throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
-  const beside = ['--legs', '--json', json, '--gaits', gaits, ...passedOn(given, ['people'], ['models'])];
+  const beside = ['--legs', '--json', json, '--gaits', gaits, ...passedOn(given, ['people', 'models'])];
   const code = await evaluate(given, ...beside);
   return code || (await runTraining('threepoint_training.legs_page', ['--legs', json], python)).code;
 }
@@ -73,14 +73,14 @@ async function peopleIn(mocap) {
 
 /** Measures the data of all tables and figures except those of legs; resolves to an exit code. */
 async function measure(given, models, { evaluation, figures }) {
-  const there = await peopleIn(typedPath(given.mocap));
+  const there = await peopleIn(given.mocap);
   mkdirSync(measured, { recursive: true });
   // Earlier results are deleted, because they may be from other networks or people.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
   const people = given.people?.split(',') ?? there.tables;
   const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
   if (people.length > 0) tables.push('--people', people.join(','));
-  const code = await evaluate(given, ...tables, ...passedOn(given, [], ['fp32']));
+  const code = await evaluate(given, ...tables, ...passedOn(given, ['fp32']));
   if (code !== 0) return code;
   const { trainedOn } = JSON.parse(readFileSync(join(models, 'learned.json'), 'utf8'));
   const groups = { home: people.filter((name) => !trainedOn.people.includes(name)), elsewhere: there.elsewhere };
@@ -101,7 +101,7 @@ await main(async () => {
   const given = options();
   if (given.legs) return reportLegs(given);
   const [evaluation, figures] = ['evaluation.json', 'figures.json'].map((name) => join(measured, name));
-  const models = given.models ? typedPath(given.models) : join(root, '.cache/cross-validation');
+  const { models = join(root, '.cache/cross-validation') } = given;
   if (!existsSync(join(models, 'learned.json')))
     throw new SetupError(`report: there are no networks in ${models}; npm run train makes them\n${usage}`);
   if (given.mocap) {

@@ -98,6 +98,16 @@ export async function runQuietly(command, args, options = {}) {
   }
 }
 
+/** Installs packages of Debian or Ubuntu, as root on such a system only. Resolves to whether it could. */
+export async function installWithApt(...packages) {
+  if (process.getuid?.() !== 0 || (await runQuietly('apt-get', ['--version'])) === null) return false;
+  const env = { DEBIAN_FRONTEND: 'noninteractive' };
+  console.log(`Installing ${packages.join(' and ')} ...`);
+  await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
+  await run('apt-get', ['install', '-y', '-qq', '--no-install-recommends', ...packages], { env, limitSeconds: 900 });
+  return true;
+}
+
 /** Ends this process when its parent shell has ended: npm passes signals only to that shell. */
 function stopWithParent() {
   const parent = process.ppid;

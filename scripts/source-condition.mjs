@@ -3,13 +3,7 @@ const sourceCondition = 'source';
 
 /** Returns a bundler's resolve options that map these packages to their sources; `platform`: 'browser' or 'node'. */
 export const sourceResolution = (platform) => ({
-  conditionNames: [
-    sourceCondition,
-    ...(platform === 'browser' ? ['browser'] : ['node']),
-    'import',
-    'module',
-    'default',
-  ],
+  conditionNames: [sourceCondition, platform, 'import', 'module', 'default'],
 });
 
 /** Returns the NODE_OPTIONS of a child process that resolves these packages to their sources. */

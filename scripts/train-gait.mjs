@@ -14,8 +14,8 @@ const usage = 'npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people
 const python = { extras: ['train'], limitSeconds: 2 * 3600 };
 
 await main(async () => {
-  const texts = ['mocap', 'skeleton', 'people', 'steps', 'seed'];
-  const given = readOptions('train:gait', usage, { texts }, ({ mocap }) => {
+  const known = { texts: ['people', 'steps', 'seed'], paths: ['mocap', 'skeleton'] };
+  const given = readOptions('train:gait', usage, known, ({ mocap }) => {
     if (!mocap) throw new Error('--mocap is needed');
   });
   await ensureInstalled();
@@ -25,12 +25,12 @@ await main(async () => {
   const heldOut = join(root, '.cache/gait');
   rmSync(heldOut, { recursive: true, force: true });
   mkdirSync(heldOut, { recursive: true });
-  const inputs = ['--recordings', recordings, '--out', frames, '--models', join(root, 'public/models')];
+  const inputs = JSON.stringify({ recordings, out: frames, models: join(root, 'public/models') });
   const training = ['--frames', frames, '--held-out', heldOut, ...passedOn(given, ['steps', 'seed'])];
   try {
     return (
       (await prepareRecordings(given, recordings, python)) ||
-      (await runProgram('bench/evaluate/legs/gait-frames.ts', inputs, { limitSeconds: python.limitSeconds })) ||
+      (await runProgram('bench/evaluate/legs/gait-frames.ts', [inputs], { limitSeconds: python.limitSeconds })) ||
       (await runTraining('threepoint_training.train_gait', training, python)).code
     );
   } finally {

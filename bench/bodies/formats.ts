@@ -6,8 +6,7 @@ import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { copyQuat, type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
 import { copyVec3, lerp, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
 import { recordOf } from 'threepoint/core/records';
-import type { PoseSource } from 'threepoint-rooms/peers/pose-sender';
-import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
+import { PoseSender, type PoseSource } from 'threepoint-rooms/peers/pose-sender';
 import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
 
 /** What one page draws of another, and by which time of the sender [ms]; null: nothing yet. */
@@ -61,7 +60,8 @@ class BufferedPerson {
   readonly #joints = createJointPoses();
   #shown: Packet | null = null;
   #offset = Number.POSITIVE_INFINITY;
-  #drawn: Drawn | null = null;
+  /** What was drawn at the last update; null: no packet has arrived. */
+  drawn: Drawn | null = null;
 
   constructor(place: BufferedFormat['place']) {
     this.#place = place;
@@ -85,11 +85,7 @@ class BufferedPerson {
     for (const [i, shown] of this.#shown.positions.entries()) lerp(a.positions[i]!, b.positions[i]!, t, shown);
     for (const [i, shown] of this.#shown.rotations.entries()) slerp(a.rotations[i]!, b.rotations[i]!, t, shown);
     this.#place(this.#shown, this.#joints);
-    this.#drawn = { joints: this.#joints, senderMs: a.timeMs + t * (b.timeMs - a.timeMs) };
-  }
-
-  get drawn(): Drawn | null {
-    return this.#drawn;
+    this.drawn = { joints: this.#joints, senderMs: a.timeMs + t * (b.timeMs - a.timeMs) };
   }
 }
 

@@ -2,7 +2,6 @@
 // which they are sent. One motion at 30 packets a second goes over the same simulated network in all formats.
 
 import { writeFileSync } from 'node:fs';
-import { parseArgs } from 'node:util';
 import { BodySolver } from 'threepoint/api/body-solver';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
@@ -123,8 +122,8 @@ function timeOf(format: BodyFormat, packets: readonly Sent[], durationMs: number
   return spent / frames;
 }
 
-const { values } = parseArgs({ options: { json: { type: 'string' }, seconds: { type: 'string', default: '60' } } });
-const durationMs = 1000 * Number(values.seconds);
+const { json, seconds = '60' } = JSON.parse(process.argv[2] ?? '{}') as { json?: string; seconds?: string };
+const durationMs = 1000 * Number(seconds);
 const truth = record(durationMs);
 const sent = formats.map((format) => ({ format, ...transmit(format, durationMs) }));
 /** Three rounds, each with all formats in turn: the median of a shared machine. */
@@ -145,5 +144,4 @@ console.table(
     ),
   ),
 );
-if (values.json)
-  writeFileSync(values.json, `${JSON.stringify({ network, seconds: durationMs / 1000, table }, null, 2)}\n`);
+if (json) writeFileSync(json, `${JSON.stringify({ network, seconds: durationMs / 1000, table }, null, 2)}\n`);

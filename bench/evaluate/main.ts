@@ -1,5 +1,4 @@
 import { writeFileSync } from 'node:fs';
-import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
 import { recordOf } from 'threepoint/core/records';
@@ -10,7 +9,7 @@ import { addFigures, emptyCollection, figuresOf } from './figures';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';
 import { loadRegressors } from './networks';
 import { addReach, emptyReach, mergeReaches, type Reach, reachReport, reachText } from './reach';
-import { calibrationOf, type RecordingIndex, readClip, readIndex } from './recordings';
+import { calibrationOf, peopleOf, type RecordingIndex, readClip, readIndex } from './recordings';
 import { printReports } from './report-text';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
 import { addSpeeds, emptySpeedTally, type SpeedTally, speedTable } from './speed';
@@ -18,20 +17,11 @@ import { addSpeeds, emptySpeedTally, type SpeedTally, speedTable } from './speed
 /** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
 const robustnessFrames = 12_000;
 
-const { values: options } = parseArgs({
-  options: {
-    recordings: { type: 'string' },
-    models: { type: 'string' },
-    json: { type: 'string' },
-    robustness: { type: 'boolean' },
-    noise: { type: 'string' },
-    speed: { type: 'boolean' },
-    'hands-measured': { type: 'boolean' },
-    'forearm-typed': { type: 'boolean' },
-    figures: { type: 'string' },
-    fp32: { type: 'string' },
-  },
-});
+const options = JSON.parse(process.argv[2] ?? '') as Readonly<
+  Record<'recordings' | 'models', string> &
+    Partial<Record<'json' | 'noise' | 'figures' | 'fp32', string>> &
+    Partial<Record<'robustness' | 'speed' | 'hands-measured' | 'forearm-typed', boolean>>
+>;
 
 /** Returns the calibration of a clip: eye height and span, and on request hand tilts and forearm. */
 const clipCalibration = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
@@ -56,20 +46,20 @@ interface Corpus {
   /** People that a network was trained on. */
   readonly seen: ReadonlySet<string>;
   readonly unseen: readonly string[];
+  /** The clips that are shown and compared: of people never trained on, if there are any. */
+  readonly judged: RecordingIndex['clips'];
 }
 
 async function readCorpus(recordings: string, models: string, fp32: string | undefined): Promise<Corpus> {
   const index = readIndex(recordings);
   const regressors = await loadRegressors(models);
   const seen = new Set([...regressors.values()].flatMap(({ contract }) => contract.trainedOn.people));
-  const people = [...new Set(index.clips.map(({ person }) => person))].sort();
+  const people = peopleOf(index.clips);
   const exactRegressors = fp32 ? await loadRegressors(fp32) : null;
   const unseen = people.filter((person) => !seen.has(person));
-  return { recordings, index, regressors, exactRegressors, people, seen, unseen };
+  const judged = index.clips.filter(({ person }) => unseen.length === 0 || !seen.has(person));
+  return { recordings, index, regressors, exactRegressors, people, seen, unseen, judged };
 }
-
-/** Who is shown and compared: people never trained on, as long as there are any. */
-const judgedOf = ({ people, unseen }: Corpus): ReadonlySet<string> => new Set(unseen.length > 0 ? unseen : people);
 
 interface Measured {
   readonly byPerson: ReadonlyMap<string, Record<MeasuredMethod, Measures>>;
@@ -81,8 +71,7 @@ interface Measured {
 
 /** Drives every method through every clip. */
 async function measureClips(corpus: Corpus): Promise<Measured> {
-  const { recordings, index, regressors, exactRegressors } = corpus;
-  const judged = judgedOf(corpus);
+  const { recordings, index, regressors, exactRegressors, judged } = corpus;
   const byPerson = new Map<string, Record<MeasuredMethod, Measures>>();
   const reaches = new Map<string, Reach>();
   const exact = new Map<MeasuredMethod, Measures>();
@@ -91,11 +80,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
   let done = 0;
   for (const clip of index.clips) {
     const calibration = clipCalibration(index, clip);
-    const person = byPerson.get(clip.person) ?? {
-      ik: emptyMeasures(),
-      paper: emptyMeasures(),
-      learned: emptyMeasures(),
-    };
+    const person = byPerson.get(clip.person) ?? recordOf(measuredMethods, emptyMeasures);
     byPerson.set(clip.person, person);
     const frames = readClip(recordings, index, clip);
     const reach = reaches.get(clip.person) ?? emptyReach();
@@ -106,7 +91,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
       driven[name] = await drive(name, calibration, regressors.get(name) ?? null, frames);
       addClip(person[name], driven[name], index.rateHz);
     }
-    if (judged.has(clip.person)) {
+    if (judged.includes(clip)) {
       if (options.figures) addFigures(collection, clip.name, driven, index.rateHz);
       for (const [name, regressor] of exactRegressors ?? []) {
         const measures = exact.get(name) ?? emptyMeasures();
@@ -181,13 +166,10 @@ function printResult(
 }
 
 /** The judged clips again, each with one thing wrong; `tracking`: the device whose noise and losses they have. */
-function measureDisturbed(corpus: Corpus, tracking: DeviceTracking) {
-  const { recordings, index, regressors } = corpus;
-  const judged = judgedOf(corpus);
-  const clips = index.clips.filter(({ person }) => judged.has(person));
+function measureDisturbed({ recordings, index, regressors, judged }: Corpus, tracking: DeviceTracking) {
   return measureRobustness({
     methods: measuredMethods,
-    clips: chooseClips(clips, robustnessFrames),
+    clips: chooseClips(judged, robustnessFrames),
     load: (clip) => ({
       name: clip.name,
       calibration: clipCalibration(index, clip),
@@ -201,11 +183,9 @@ function measureDisturbed(corpus: Corpus, tracking: DeviceTracking) {
 }
 
 /** The judged clips by speed, on the shipping path and frame by frame. */
-async function measureSpeeds(corpus: Corpus) {
-  const { recordings, index, regressors } = corpus;
-  const judged = judgedOf(corpus);
+async function measureSpeeds({ recordings, index, regressors, judged }: Corpus) {
   const tallies: Partial<Record<MeasuredMethod, SpeedTally>> = {};
-  for (const clip of index.clips.filter(({ person }) => judged.has(person))) {
+  for (const clip of judged) {
     const calibration = clipCalibration(index, clip);
     const frames = readClip(recordings, index, clip);
     for (const name of measuredMethods) {
@@ -219,8 +199,6 @@ async function measureSpeeds(corpus: Corpus) {
 
 async function main(): Promise<void> {
   const { recordings, models, json, robustness, noise, figures, fp32 } = options;
-  if (!recordings || !models)
-    throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
   // A file with a fault is refused before minutes of work.
   const checked = noise ? trackingOf(readCheckFile(noise), noise) : null;
   for (const remark of checked?.remarks ?? []) console.log(remark);

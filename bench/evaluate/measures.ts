@@ -2,10 +2,9 @@ import { estimatedJoints } from 'threepoint/core/body/joints';
 import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
 import { sides } from 'threepoint/core/math/side';
 import { mean } from 'threepoint/core/math/statistics';
-import { distance, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { cross, distance, dot, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import { recordOf } from 'threepoint/core/records';
 import type { TruthJoint } from './recordings';
-import { swivelAngle } from './swivel-angle';
 
 /** Names of the six joints in every report. */
 export const reportNames = ['leftElbow', 'rightElbow', 'leftShoulder', 'rightShoulder', 'spine', 'pelvis'] as const;
@@ -96,6 +95,14 @@ const jointOf = (joints: Readonly<Record<string, Vec3>>, name: string): Vec3 => 
 export function thirdDifference(a: Vec3, b: Vec3, c: Vec3, d: Vec3): number {
   const along = (axis: 'x' | 'y' | 'z') => d[axis] - 3 * c[axis] + 3 * b[axis] - a[axis];
   return Math.hypot(along('x'), along('y'), along('z'));
+}
+
+/** The signed angle (−π, π] [rad] about shoulder→wrist from one elbow to another: the error in swivel. */
+export function swivelAngle(shoulder: Vec3, wrist: Vec3, elbow: Vec3, otherElbow: Vec3): number {
+  const axis = normalise(subtract(wrist, shoulder));
+  const from = reject(subtract(elbow, shoulder), axis);
+  const to = reject(subtract(otherElbow, shoulder), axis);
+  return Math.atan2(dot(cross(from, to), axis), dot(from, to));
 }
 
 /** Adds one clip's frames, in order, at `rateHz`. */

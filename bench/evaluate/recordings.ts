@@ -34,6 +34,10 @@ export type RecordingIndex = v.InferOutput<typeof indexSchema>;
 export const readIndex = (folder: string): RecordingIndex =>
   v.parse(indexSchema, JSON.parse(readFileSync(join(folder, 'index.json'), 'utf8')));
 
+/** Returns the people of these clips, sorted by name. */
+export const peopleOf = (clips: readonly { readonly person: string }[]): string[] =>
+  [...new Set(clips.map(({ person }) => person))].sort();
+
 /** Joints of the truth that the measures and figures use. */
 export const truthJoints = [...estimatedJoints, 'leftHand', 'rightHand', 'neck', 'head'] as const;
 export type TruthJoint = (typeof truthJoints)[number];

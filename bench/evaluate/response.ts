@@ -23,6 +23,8 @@ export interface Response {
 const ways: Readonly<Record<WavedPoint, Vec3>> = { head: vec3(0.08, 0, 0), rightHand: vec3(0, 0.15, -0.05) };
 /** A frequency [Hz] at which filters have no effect. */
 const slowHz = 0.1;
+/** The rate of the frames [Hz]. */
+const rateHz = 60;
 /** Before anything counts, and at least counted, in whole cycles. */
 const [settleSeconds, countedSeconds] = [3, 4];
 /** Joints that go less [m] than this do not follow at all. */
@@ -53,7 +55,6 @@ async function fundamentals(
   point: WavedPoint,
   hz: number,
   joints: readonly string[],
-  rateHz: number,
 ): Promise<Readonly<Record<string, Fundamental>>> {
   const cycles = Math.max(1, Math.ceil(countedSeconds * hz));
   const counted = Math.round((cycles * rateHz) / hz);
@@ -86,12 +87,11 @@ export async function measureResponse(
   point: WavedPoint,
   frequencies: readonly number[],
   joints: readonly string[],
-  rateHz = 60,
 ): Promise<Readonly<Record<string, Response | null>>[]> {
-  const slow = await fundamentals(driver(), point, slowHz, joints, rateHz);
+  const slow = await fundamentals(driver(), point, slowHz, joints);
   const responses: Readonly<Record<string, Response | null>>[] = [];
   for (const hz of frequencies) {
-    const quick = await fundamentals(driver(), point, hz, joints, rateHz);
+    const quick = await fundamentals(driver(), point, hz, joints);
     responses.push(Object.fromEntries(joints.map((joint) => [joint, responseOf(slow[joint]!, quick[joint]!, hz)])));
   }
   return responses;
@@ -115,7 +115,6 @@ export async function measureTremble(
   driver: Driver,
   joints: readonly string[],
   noise: TrackingNoise = simulatedNoise,
-  rateHz = 60,
 ): Promise<Readonly<Record<string, number>>> {
   const normal = createNormalRandom(15);
   const sums = new Map(joints.map((joint) => [joint, 0]));

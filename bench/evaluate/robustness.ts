@@ -23,7 +23,7 @@ import {
 import { createDriver, drive, type MeasuredMethod } from './drive';
 import { addLosses, emptyLossTally, type LongestStep, type LossReport, reportLosses } from './losses';
 import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
-import type { RecordedFrame } from './recordings';
+import { peopleOf, type RecordedFrame } from './recordings';
 import { methodRow } from './report-text';
 import { measureTremble, standing } from './response';
 
@@ -239,7 +239,7 @@ export async function measureRobustness<
     ];
   });
   return {
-    people: [...new Set(clips.map(({ person }) => person))].sort(),
+    people: peopleOf(clips),
     clips: clips.length,
     frames: total,
     tracking: tracking.name,

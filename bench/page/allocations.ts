@@ -1,16 +1,12 @@
-import { createAvatar } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { Mirror } from 'threepoint/avatar/mirror';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
-import { loadRegressor } from 'threepoint/onnx/load-regressor';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { Court } from './court';
 import { reportOutcome } from './outcome';
 import { createSenders } from './senders';
-import { openStudio } from './stage';
+import { loadNetwork, openAvatar, openStudio } from './stage';
 import { trackedHandsDevice } from './tracked-hands';
 
 /**
@@ -38,8 +34,7 @@ type FrameOf = (index: number) => void;
 
 /** Estimates alone, of frames that were there before. */
 async function estimates(name: 'ik' | 'paper' | 'learned'): Promise<FrameOf> {
-  const regressor =
-    name === 'ik' ? null : await loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
+  const regressor = name === 'ik' ? null : await loadNetwork(name);
   const estimator = createEstimator(name, defaultCalibration, regressor);
   const frames = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
   return (index) => {
@@ -57,18 +52,11 @@ function picture() {
   return { renderer, studio, camera, draw: () => renderer.render(studio.scene, camera) };
 }
 
-function stillScene(): FrameOf {
-  return picture().draw;
-}
-
 /** A court of eight: one's own body, and seven whose packets arrive. */
 async function crowd(): Promise<FrameOf> {
   const { studio, draw } = picture();
-  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
-  const court = new Court(studio, mannequin, bodies);
-  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
-  avatar.setCalibration(defaultCalibration);
-  studio.scene.add(avatar.object);
+  const { avatar, file } = await openAvatar(studio.scene);
+  const court = new Court(studio, file, bodies);
   const estimator = createEstimator('ik', defaultCalibration);
   const senders = createSenders(bodies - 1);
   const frames = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
@@ -88,11 +76,9 @@ async function crowd(): Promise<FrameOf> {
 /** One's own body before the mirror, its hands tracked: read, estimated, bent finger by finger, drawn twice. */
 async function hands(): Promise<FrameOf> {
   const { renderer, studio, camera, draw } = picture();
-  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
-  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
-  avatar.setCalibration(defaultCalibration);
+  const { avatar } = await openAvatar(studio.scene);
   const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
-  studio.scene.add(mirror.object, avatar.object);
+  studio.scene.add(mirror.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const moves = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
   const device = trackedHandsDevice(moves);
@@ -114,7 +100,7 @@ function frameOf(scene: string | null): Promise<FrameOf> | FrameOf {
   if (scene === 'ik' || scene === 'paper' || scene === 'learned') return estimates(scene);
   if (scene === 'ball8') return crowd();
   if (scene === 'hands') return hands();
-  if (scene === 'stillScene') return stillScene();
+  if (scene === 'stillScene') return picture().draw;
   throw new Error(`the address asks for the scene ${scene}`);
 }
 

@@ -4,7 +4,7 @@ import { identity } from 'threepoint/core/math/quat';
 import { zero } from 'threepoint/core/math/vec3';
 import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
-import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
+import { type FrameTimes, frameTimes, timeFrame } from './frame-times';
 import type { BenchStage } from './stage';
 
 /** Frame times of a whole round as in the paper's table 5, and its result: all play the same one to its end. */
@@ -43,8 +43,6 @@ export async function measureArchery(stage: BenchStage): Promise<Record<Estimato
   camera.position.set(-1.35, 1.85, 3.3);
   camera.lookAt(0.15, 0.8, -2);
 
-  const gl = renderer.getContext();
-  const pixel = new Uint8Array(4);
   const running = () =>
     rounds.filter(({ play, frame }) => play.newest?.state.phase !== 'over' && frame < longestRound * rateHz);
   while (running().length > 0) {
@@ -52,23 +50,21 @@ export async function measureArchery(stage: BenchStage): Promise<Record<Estimato
       const estimator = estimators[round.name];
       estimator.reset();
       for (let i = 0; i < blockFrames && round.play.newest?.state.phase !== 'over'; i++) {
-        await nextFrame();
-        const started = performance.now();
-        const { frame, buttons } = round.play.act(round.frame / rateHz);
-        const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
-        view.playEvents(events, cues);
-        const { pose, request } = estimator.update(frame);
-        avatar.setPose(pose, frame.time);
-        view.show(state, bow, time, frame.head);
-        mirror.reflect(renderer, studio.scene, camera, frame.time);
-        renderer.render(studio.scene, camera);
-        void request?.ask();
-        const ended = performance.now();
-        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+        const spent = await timeFrame(renderer, () => {
+          const { frame, buttons } = round.play.act(round.frame / rateHz);
+          const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
+          view.playEvents(events, cues);
+          const { pose, request } = estimator.update(frame);
+          avatar.setPose(pose, frame.time);
+          view.show(state, bow, time, frame.head);
+          mirror.reflect(renderer, studio.scene, camera, frame.time);
+          renderer.render(studio.scene, camera);
+          void request?.ask();
+        });
         round.frame += 1;
         if (i < settleFrames) continue;
-        round.thread.push(ended - started);
-        round.drawn.push(performance.now() - started);
+        round.thread.push(spent.thread);
+        round.drawn.push(spent.drawn);
       }
     }
   }

@@ -4,7 +4,7 @@ import { quantile } from 'threepoint/core/math/statistics';
 import { recordOf } from 'threepoint/core/records';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { Court } from './court';
-import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
+import { type FrameTimes, frameTimes, timeFrame } from './frame-times';
 import { createSenders } from './senders';
 import type { BenchStage } from './stage';
 
@@ -53,38 +53,35 @@ async function measureCrowd(
 ): Promise<CourtTimes> {
   const estimator = estimators[name];
   estimator.reset();
-  const gl = renderer.getContext();
-  const pixel = new Uint8Array(4);
   const thread: number[] = [];
   const drawn: number[] = [];
   const remote: number[] = [];
   let sent = -1;
   let complete = 0;
   for (let i = 0; complete < settleFrames + countedFrames; i++) {
-    await nextFrame();
     if (i > 3000) throw new Error(`of ${count} others some never came`);
     const time = i / rateHz;
     const due = Math.floor(time * packetHz) > sent ? packetsAt(time) : [];
     if (due.length > 0) sent = Math.floor(time * packetHz);
-    const started = performance.now();
-    const frame = actorFrame(time, defaultCalibration);
-    const { pose, request } = estimator.update(frame);
-    avatar.setPose(pose, frame.time);
-    const receiving = performance.now();
-    court.receive(due, time);
-    court.showOthers(time);
-    const received = performance.now();
-    court.showCourt(time, frame.head);
-    renderer.render(studio.scene, camera);
-    void request?.ask();
-    const ended = performance.now();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    let othersMs = 0;
+    const spent = await timeFrame(renderer, () => {
+      const frame = actorFrame(time, defaultCalibration);
+      const { pose, request } = estimator.update(frame);
+      avatar.setPose(pose, frame.time);
+      const receiving = performance.now();
+      court.receive(due, time);
+      court.showOthers(time);
+      othersMs = performance.now() - receiving;
+      court.showCourt(time, frame.head);
+      renderer.render(studio.scene, camera);
+      void request?.ask();
+    });
     if (!court.shows(count)) continue;
     complete += 1;
     if (complete <= settleFrames) continue;
-    thread.push(ended - started);
-    drawn.push(performance.now() - started);
-    if (count > 0) remote.push((received - receiving) / count);
+    thread.push(spent.thread);
+    drawn.push(spent.drawn);
+    if (count > 0) remote.push(othersMs / count);
   }
   const at = (share: number) => Number(quantile(remote, share).toFixed(4));
   return {

@@ -4,8 +4,7 @@ import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { createSenders } from './senders';
-import type { BenchStage } from './stage';
-import { withoutDevice } from './without-device';
+import { type BenchStage, withoutDevice } from './stage';
 
 /** What fifteen others cost the page's thread beyond the own body, frames of 72 Hz, medians [ms]. */
 export interface CrowdTimes {

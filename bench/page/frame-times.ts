@@ -1,7 +1,22 @@
+import type { WebGLRenderer } from 'three';
 import { mean, median, quantile } from 'threepoint/core/math/statistics';
 
 /** Resolves in the next animation frame. */
 export const nextFrame = (): Promise<number> => new Promise((resolve) => requestAnimationFrame(resolve));
+
+const pixel = new Uint8Array(4);
+
+/** Does the work of the next animation frame; resolves to its time [ms] on the page's thread, and until it is drawn. */
+export async function timeFrame(renderer: WebGLRenderer, work: () => void) {
+  await nextFrame();
+  const started = performance.now();
+  work();
+  const thread = performance.now() - started;
+  // Commands are only queued so far: asking for a pixel waits until all of them are drawn.
+  const gl = renderer.getContext();
+  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+  return { thread, drawn: performance.now() - started };
+}
 
 /** Frame times [ms]; missed: share of frames too late for that rate. */
 export interface FrameTimes {

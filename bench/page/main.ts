@@ -15,7 +15,7 @@ import { measureArchery } from './archery';
 import { measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
 import { measureSixteen } from './crowd';
-import { nextFrame } from './frame-times';
+import { timeFrame } from './frame-times';
 import { reportOutcome } from './outcome';
 import { loadNetwork, openPicture, openStage } from './stage';
 
@@ -106,7 +106,6 @@ class FrameBench {
   readonly #stages = recordOf(estimatorNames, () => empty(stageNames));
   readonly #spent = recordOf(stageNames, () => 0);
   readonly #loop: (timestampMs: number) => void;
-  readonly #pixel = new Uint8Array(4);
   #method: EstimatorName = 'ik';
   /** What the newest frame took [ms]. */
   #inFrameMs = 0;
@@ -204,25 +203,21 @@ class FrameBench {
 
   async #runBlock(name: Method, round: number, condition: Condition): Promise<void> {
     const { inFrame, withLater, whole, thread } = this.#measured[condition];
-    const gl = this.#picture.renderer.getContext();
     if (name !== 'ccdik') this.#method = name;
     for (const body of Object.values(this.#bodies)) body.discontinuity();
     for (let i = 0; i < settleFrames + blockFrames; i++) {
-      await nextFrame();
       // Every method of a round gets the same motion, because the cost of a frame depends on its content.
       const timeMs = ((round * blockFrames + i) * 1000) / 60;
-      const started = performance.now();
-      if (name === 'ccdik') this.#solveByCcd(timeMs);
-      else this.#estimate(timeMs);
-      if (this.#failure) throw this.#failure;
-      const ended = performance.now();
-      // Commands are only queued so far: asking for a pixel waits until all of them are drawn.
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.#pixel);
+      const spent = await timeFrame(this.#picture.renderer, () => {
+        if (name === 'ccdik') this.#solveByCcd(timeMs);
+        else this.#estimate(timeMs);
+        if (this.#failure) throw this.#failure;
+      });
       if (i < settleFrames) continue;
       inFrame[name].push(this.#inFrameMs);
       withLater[name].push(this.#withLaterMs);
-      thread[name].push(ended - started);
-      whole[name].push(performance.now() - started);
+      thread[name].push(spent.thread);
+      whole[name].push(spent.drawn);
       if (name === 'ccdik' || condition !== 'settled') continue;
       for (const stage of stageNames) this.#stages[name][stage].push(this.#spent[stage]);
     }

@@ -1,4 +1,4 @@
-import { PerspectiveCamera } from 'three';
+import { PerspectiveCamera, type Scene } from 'three';
 import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { Mirror } from 'threepoint/avatar/mirror';
@@ -21,15 +21,22 @@ export function openStudio() {
   return { renderer, studio: createStudio(renderer, 'low'), camera: new PerspectiveCamera(42, 480 / 270, 0.05, 90) };
 }
 
+/** Loads an avatar of the page and adds it to a scene, with the default calibration; `file`: its bytes. */
+export async function openAvatar(scene: Scene, name = 'mannequin') {
+  const file = await (await fetch(`/avatars/${name}.vrm`)).arrayBuffer();
+  const avatar = createAvatar(await parseAvatar(file, `${name}.vrm`));
+  avatar.setCalibration(defaultCalibration);
+  scene.add(avatar.object);
+  return { avatar, file };
+}
+
 /** What is drawn in every frame, as on the page. */
 export async function openPicture() {
   const { renderer, studio, camera } = openStudio();
   // The page's settings for software rendering.
   const mirror = new Mirror({ distance: 1.5, resolution: 256, samples: 0 });
-  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
-  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
-  studio.scene.add(mirror.object, avatar.object);
-  avatar.setCalibration(defaultCalibration);
+  studio.scene.add(mirror.object);
+  const { avatar, file: mannequin } = await openAvatar(studio.scene);
   camera.position.set(1.9, 1.5, 2.75);
   camera.lookAt(0, 1, -0.4);
   return { renderer, studio, mirror, avatar, camera, mannequin };
@@ -46,6 +53,15 @@ export async function openStage() {
     createEstimator(name, defaultCalibration, regressors[name] ?? null),
   );
   return { ...(await openPicture()), estimators };
+}
+
+/**
+ * Draw calls reach no device from now on: in software drawing would be most of a frame, and the page's thread would
+ * wait for it.
+ */
+export function withoutDevice(gl: WebGLRenderingContext | WebGL2RenderingContext): void {
+  for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
+    Object.assign(gl, { [name]: () => undefined });
 }
 
 export type BenchStage = Awaited<ReturnType<typeof openStage>>;

@@ -139,7 +139,8 @@ class Client {
   readonly #bytes: Uint8Array;
   /** The time at which each packet was sent, by its packet time [ms]. */
   readonly #sent = new Float64Array(2 ** timeBits);
-  readonly #joined: Promise<void>;
+  /** Resolves once the relay has let it in. */
+  readonly joined: Promise<void>;
   #join: () => void = () => undefined;
   #seat: number;
   /** The offset of the relay's clock to the local clock [ms]. */
@@ -160,17 +161,12 @@ class Client {
     const address = `ws://127.0.0.1:${port}/relay/?EIO=4&transport=websocket&room=${roomName}&seat=${seat}`;
     const socket = new WebSocket(address, { perMessageDeflate: false });
     this.#socket = socket;
-    this.#joined = new Promise((resolve, reject) => {
+    this.joined = new Promise((resolve, reject) => {
       this.#join = resolve;
       socket.on('error', reject);
       socket.on('close', () => reject(new Error('bench/relay: a connection was closed')));
     });
-    socket.on('message', (received: Buffer, isBinary) => this.#hear(received, isBinary));
-  }
-
-  /** Resolves once the relay has let it in. */
-  joined(): Promise<void> {
-    return this.#joined;
+    socket.on('message', (received: Buffer, isBinary) => this.#receive(received, isBinary));
   }
 
   send(): void {
@@ -188,28 +184,28 @@ class Client {
   }
 
   #sendMessage(message: object): void {
-    this.#say(`42${JSON.stringify(['/', ['message', message]])}`);
+    this.#sendText(`42${JSON.stringify(['/', ['message', message]])}`);
   }
 
-  #say(text: string): void {
+  #sendText(text: string): void {
     this.#socket.send(text);
   }
 
-  #hear(received: Buffer, isBinary: boolean): void {
+  #receive(received: Buffer, isBinary: boolean): void {
     if (!isBinary) {
-      this.#hearText(received.toString());
+      this.#receiveText(received.toString());
       return;
     }
     if (this.#plain) {
-      this.#hearPose(this.#from, received, this.#announced + received.length);
+      this.#receivePose(this.#from, received, this.#announced + received.length);
       return;
     }
     const poses = decodeFrame(received) ?? [];
-    for (const { seat, bytes } of poses) this.#hearPose(seat, bytes, received.length / poses.length);
+    for (const { seat, bytes } of poses) this.#receivePose(seat, bytes, received.length / poses.length);
   }
 
   /** `cost`: this pose's share of what came [bytes]. */
-  #hearPose(seat: number, bytes: Uint8Array, cost: number): void {
+  #receivePose(seat: number, bytes: Uint8Array, cost: number): void {
     if (seat === this.#seat) return;
     for (const client of this.#room) {
       if (client.#seat !== seat) continue;
@@ -219,17 +215,17 @@ class Client {
     }
   }
 
-  /** The words of socket.io's protocol, as far as the relays speak it with a client. */
-  #hearText(text: string): void {
+  /** Answers the messages of socket.io's protocol that the relays send. */
+  #receiveText(text: string): void {
     const plain = this.#plain;
-    if (text === '2') this.#say('3');
-    else if (text[0] === '0') this.#say(plain ? '40' : `40${JSON.stringify(['/', { token: this.#token }])}`);
-    else if (plain) this.#hearPlain(text);
-    else if (text.startsWith('40')) this.#askIn();
+    if (text === '2') this.#sendText('3');
+    else if (text[0] === '0') this.#sendText(plain ? '40' : `40${JSON.stringify(['/', { token: this.#token }])}`);
+    else if (plain) this.#receivePlain(text);
+    else if (text.startsWith('40')) this.#requestToJoin();
     else if (text.includes('"welcome"')) this.#welcomed(JSON.parse(text.slice(2))[1][1]);
   }
 
-  #hearPlain(text: string): void {
+  #receivePlain(text: string): void {
     const pose = /^451-\["pose",(\d+),/.exec(text);
     if (pose) {
       this.#from = Number(pose[1]);
@@ -237,7 +233,7 @@ class Client {
     } else if (text.startsWith('40')) this.#join();
   }
 
-  #askIn(): void {
+  #requestToJoin(): void {
     const person = {
       name: `P${this.#seat}`,
       calibration: defaultCalibration,
@@ -297,7 +293,7 @@ class Crowd {
       const token =
         relay === 'ours' ? await tokens.issue(roomName, kindFor(people), plays ? { seconds: 3600 } : {}) : '';
       const client = new Client(this.#meeting, this.#template, { room, roomName, seat, token });
-      await client.joined();
+      await client.joined;
       room.push(client);
     }
     this.#rooms.push(room);
@@ -331,14 +327,14 @@ const kindFor = (people: number): string => (people === 3 ? ballKind : countingK
 
 let crowd: Crowd | null = null;
 
-async function hear(message: Meeting | Load | Farewell): Promise<void> {
+async function answer(message: Meeting | Load | Farewell): Promise<void> {
   if (message === 'leave') crowd?.leave();
   else if ('port' in message) crowd = new Crowd(message);
   else if (crowd) process.send?.((await crowd.play(message)) satisfies ClientAnswer);
 }
 
 process.on('message', (message: Meeting | Load | Farewell) => {
-  hear(message).catch((error: Error) => {
+  answer(message).catch((error: Error) => {
     console.error(error.message);
     process.exit(1);
   });

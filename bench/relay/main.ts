@@ -3,26 +3,17 @@
 import { writeFileSync } from 'node:fs';
 import { availableParallelism, cpus } from 'node:os';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
-import { parseArgs } from 'node:util';
 import { seenOver, tremors, ways } from './ages';
 import type { Cell, RelaySort } from './conversation';
 import { bound, type Found, search } from './search';
 
-const { values: options } = parseArgs({
-  options: {
-    json: { type: 'string' },
-    /** Two sizes of rooms, in 3 minutes. */
-    quick: { type: 'boolean', default: false },
-    rooms: { type: 'string' },
-    hz: { type: 'string', default: '30,72' },
-    seconds: { type: 'string' },
-    /** A fixed number of rooms, measured without a search. */
-    count: { type: 'string' },
-  },
-});
+/** quick: two sizes of rooms, in 3 minutes; count: a fixed number of rooms, measured without a search. */
+const options = JSON.parse(process.argv[2] ?? '{}') as { readonly quick?: boolean } & Partial<
+  Record<'json' | 'rooms' | 'hz' | 'seconds' | 'count', string>
+>;
 const numbers = (text: string): number[] => text.split(',').map(Number);
 const sizes = numbers(options.rooms ?? (options.quick ? '3,16' : '2,3,4,8,16'));
-const rates = numbers(options.hz);
+const rates = numbers(options.hz ?? '30,72');
 const seconds = Number(options.seconds ?? (options.quick ? '1' : '1.5'));
 const rooms = options.count ? Number(options.count) : null;
 const nearness = options.quick ? 0.2 : 0.1;

@@ -109,7 +109,7 @@ class Drive {
 
 const holds = ({ p99Ms, delivered }: Trial): boolean => p99Ms < bound && delivered >= minDelivered;
 
-function tell({ relay, room, hz }: Cell, { clients, p99Ms, cpu, clientLoad, delivered }: Trial): void {
+function printTrial({ relay, room, hz }: Cell, { clients, p99Ms, cpu, clientLoad, delivered }: Trial): void {
   console.log(
     `  ${relay.padEnd(5)} rooms of ${String(room).padStart(2)} at ${hz} Hz, ${String(clients).padStart(4)} clients: ` +
       `p99 ${p99Ms.toFixed(1)} ms, relay ${(100 * cpu).toFixed(0)} %, clients ${(100 * clientLoad).toFixed(0)} % of a core, ` +
@@ -120,10 +120,10 @@ function tell({ relay, room, hz }: Cell, { clients, p99Ms, cpu, clientLoad, deli
 /** Twice at most: a busy moment of the machine is no answer. */
 async function attempt(drive: Drive, cell: Cell, rooms: number): Promise<Trial> {
   const first = await drive.trial(rooms);
-  tell(cell, first);
+  printTrial(cell, first);
   if (holds(first)) return first;
   const second = await drive.trial(rooms);
-  tell(cell, second);
+  printTrial(cell, second);
   return holds(second) ? second : first;
 }
 

@@ -24,8 +24,8 @@ async function openOnTrackingHeadset(page: Page): Promise<void> {
 /** What `npm run evaluate -- --recording` says of the only recording. */
 function evaluated(recording: string, json: string) {
   const root = fileURLToPath(new URL('../..', import.meta.url));
-  const program = ['--import', 'tsx', 'bench/evaluate/recorded.ts'];
-  execFileSync(process.execPath, [...program, '--recording', recording, '--json', json], { cwd: root });
+  const request = JSON.stringify({ recording: [recording], models: 'public/models', json });
+  execFileSync(process.execPath, ['--import', 'tsx', 'bench/evaluate/recorded.ts', request], { cwd: root });
   const [only] = Object.values(JSON.parse(readFileSync(json, 'utf8')).recordings);
   return only as { frames: number; estimators: Record<string, { mpjpeCm: { mean: number; median: number } }> };
 }

@@ -23,6 +23,10 @@ function script(directory: string, plugins: string, ...args: readonly string[]):
   return stdout;
 }
 
+/** Runs an npm script of a study with the plug-in. */
+const program = (directory: string, ...args: readonly string[]) =>
+  script(directory, 'agreement.mjs', 'scripts/program.mjs', ...args);
+
 /** The example of docs/study.md in a folder of its own, beside a page and a server that are built with it. */
 const test = base.extend<{ directory: string; origin: string }>({
   // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
@@ -72,19 +76,10 @@ test('a kind of question from outside works in command line, server, export and 
   const plan = JSON.stringify(planWithAgreement());
   const file = join(directory, 'plan.json');
   writeFileSync(file, plan);
-  expect(script(directory, 'agreement.mjs', 'scripts/study-check.mjs', file)).toContain('the plan is valid');
-  script(
-    directory,
-    'agreement.mjs',
-    'scripts/study-simulate.mjs',
-    file,
-    '--out',
-    join(directory, 'simulated'),
-    '--participants',
-    '2',
-  );
+  expect(program(directory, 'study:check', file)).toContain('the plan is valid');
+  program(directory, 'study:simulate', file, '--out', join(directory, 'simulated'), '--participants', '2');
   const zip = join(directory, 'simulated/SIMULATED-agreement-simulated.zip');
-  expect(script(directory, 'agreement.mjs', 'scripts/study-verify.mjs', zip)).toContain('sound');
+  expect(program(directory, 'study:verify', zip)).toContain('sound');
 
   const { ask } = experimenter(origin);
   expect((await ask('', 'POST', { plan: JSON.parse(plan), simulated: false })).status).toBe(201);

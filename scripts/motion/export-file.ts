@@ -1,5 +1,5 @@
-import { existsSync, readFileSync } from 'node:fs';
-import { basename, extname, join } from 'node:path';
+import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
+import { basename, dirname, extname, join } from 'node:path';
 import { type MotionWriter, writeMotionFile } from 'threepoint/api/motion-file';
 import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
 import type { WorkOptions } from 'threepoint/api/run-work';
@@ -16,7 +16,6 @@ import { parseRecording, type Replayable } from 'threepoint/core/tracking/record
 import { startRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract } from 'threepoint/onnx/model-contract';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
-import { writeWhole } from './write-whole';
 
 /** The options of the command line, with absolute paths. */
 export interface MotionRequest {
@@ -28,9 +27,6 @@ export interface MotionRequest {
   readonly rate?: string;
   readonly avatar?: string;
 }
-
-/** An error whose message is shown without a stack. */
-class MotionError extends Error {}
 
 const root = join(import.meta.dirname, '../..');
 
@@ -45,19 +41,19 @@ async function network(name: NetworkName): Promise<PoseRegressor> {
 }
 
 function readGiven(path: string, what: string): Buffer {
-  if (!existsSync(path)) throw new MotionError(`${what}: there is no file ${path}`);
+  if (!existsSync(path)) throw new Error(`${what}: there is no file ${path}`);
   try {
     return readFileSync(path);
   } catch (error) {
-    throw new MotionError(`${what}: ${path} cannot be read (${reasonOf(error)})`);
+    throw new Error(`${what}: ${path} cannot be read (${reasonOf(error)})`);
   }
 }
 
 async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | MotionWriter> {
   if (to !== 'glb') {
-    if (avatar) throw new MotionError('--avatar is for --to glb alone');
+    if (avatar) throw new Error('--avatar is for --to glb alone');
     const format = motionFormats.find((name) => name === to);
-    if (!format) throw new MotionError(`--to: “${to}” is none of ${motionFormats.join(', ')}, glb`);
+    if (!format) throw new Error(`--to: “${to}” is none of ${motionFormats.join(', ')}, glb`);
     return format;
   }
   const path = avatar ?? join(root, 'public/avatars/mannequin.vrm');
@@ -67,14 +63,14 @@ async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | M
 
 function checked<Name extends string>(option: string, value: string, names: readonly Name[]): Name {
   const found = names.find((name) => name === value);
-  if (!found) throw new MotionError(`${option}: “${value}” is none of ${names.join(', ')}`);
+  if (!found) throw new Error(`${option}: “${value}” is none of ${names.join(', ')}`);
   return found;
 }
 
 function rateOf(rate: string | undefined): { rateHz?: number } {
   if (rate === undefined) return {};
   const rateHz = Number(rate);
-  if (!(rateHz >= 1 && rateHz <= 1000)) throw new MotionError(`--rate: “${rate}” is no rate from 1 to 1000 Hz`);
+  if (!(rateHz >= 1 && rateHz <= 1000)) throw new Error(`--rate: “${rate}” is no rate from 1 to 1000 Hz`);
   return { rateHz };
 }
 
@@ -97,7 +93,31 @@ async function recordingIn(path: string): Promise<Replayable> {
     return isMocap(path) ? await simulatedRecording(path, bytes) : parseRecording(bytes.toString('utf8'));
   } catch (error) {
     const reason = reasonOf(error);
-    throw new MotionError(reason.startsWith(basename(path)) ? reason : `${basename(path)}: ${reason}`);
+    throw new Error(reason.startsWith(basename(path)) ? reason : `${basename(path)}: ${reason}`);
+  }
+}
+
+/**
+ * Writes a file atomically: to a temporary file in the same folder, which is then renamed. Throws errors of the file
+ * system.
+ */
+export function writeWhole(path: string, parts: Iterable<string | Uint8Array>): void {
+  const temporary = join(dirname(path), `.${basename(path)}.${process.pid}.part`);
+  const file = openSync(temporary, 'wx');
+  try {
+    try {
+      for (const part of parts) {
+        const bytes = typeof part === 'string' ? Buffer.from(part) : part;
+        for (let at = 0; at < bytes.length; ) at += writeSync(file, bytes, at);
+      }
+      fsyncSync(file);
+    } finally {
+      closeSync(file);
+    }
+    renameSync(temporary, path);
+  } catch (error) {
+    rmSync(temporary, { force: true });
+    throw error;
   }
 }
 
@@ -119,12 +139,12 @@ export async function exportFile(request: MotionRequest, work: WorkOptions = {})
     networks: network,
   });
   const out = request.out ?? join(file, '..', `${basename(file, extname(file))}.${made.extension}`);
-  if (out === file) throw new MotionError(`${out} would be overwritten; give another file by --out`);
+  if (out === file) throw new Error(`${out} would be overwritten; give another file by --out`);
   work.signal?.throwIfAborted();
   try {
     writeWhole(out, made.parts);
   } catch (error) {
-    throw new MotionError(`${out} could not be written (${reasonOf(error)}): nothing is there that was not before`);
+    throw new Error(`${out} could not be written (${reasonOf(error)}): nothing is there that was not before`);
   }
   return out;
 }

@@ -23,7 +23,6 @@ try {
   console.log(path);
 } catch (error) {
   if (terminal) process.stderr.write('\r\u001b[K');
-  // An unexpected error is printed with its stack, an expected one as its message.
   console.error(reasonOf(error));
   process.exitCode = 1;
 }

@@ -1,6 +1,3 @@
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
 import { distance } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
 import { createDriver } from '../../bench/evaluate/drive';
@@ -14,14 +11,27 @@ import {
 import { compareFrames, keepFrames, readFrames, writeFrames } from '../../bench/evaluate/golden/golden-frames';
 import { planGoldens } from '../../bench/evaluate/golden/golden-plan';
 import { driveStaged } from '../../bench/evaluate/golden/golden-worker';
-import { type Piece, situations, undisturbed } from '../../bench/evaluate/situations';
+import type { MeasuredFrame } from '../../bench/evaluate/measures';
+import { type Piece, type Staged, situations, undisturbed } from '../../bench/evaluate/situations';
+import { directoryWith } from '../temporary-directory';
 import { person, recordedMotion } from './recorded-motion';
 
 const rateHz = 60;
 const piece: Piece = { name: 'generated', calibration: person, frames: recordedMotion(31, 600) };
 const staged = (situation: string) => situations[situation]!(piece, rateHz, 0);
 const still = () => undisturbed(piece, rateHz, 0);
-const driveIk = (of: ReturnType<typeof still>) => driveStaged('ik', of, new Map());
+const driveIk = (of: Staged) => driveStaged('ik', of, new Map());
+
+/** Returns the figures of one driven piece. */
+function figuresOf(
+  { rateHz: stagedHz, frames, losses }: Staged,
+  driven: readonly MeasuredFrame[],
+  seen: readonly MeasuredFrame[] | null = null,
+) {
+  const tally = emptyGoldenTally();
+  addPiece(tally, { name: 'generated', rateHz: stagedHz, recordedHz: rateHz, staged: frames, driven, losses, seen });
+  return goldenFigures(tally);
+}
 
 describe('a situation of the goldens', () => {
   test('a recentred wearer is drawn where nothing was recentred, once the filters have settled', async () => {
@@ -60,19 +70,7 @@ describe('a situation of the goldens', () => {
     for (const [situation, stage] of Object.entries(situations)) {
       const of = stage(short, rateHz, 0);
       const driven = await driveIk(of);
-      const tally = emptyGoldenTally();
-      const seen = of.losses.length > 0 ? before : null;
-      const { frames, losses } = of;
-      addPiece(tally, {
-        name: 'generated',
-        rateHz: of.rateHz,
-        recordedHz: rateHz,
-        staged: frames,
-        driven,
-        losses,
-        seen,
-      });
-      const { figures, places } = goldenFigures(tally);
+      const { figures, places } = figuresOf(of, driven, of.losses.length > 0 ? before : null);
       expect(
         Object.entries(figures).filter(([, value]) => !Number.isFinite(value)),
         situation,
@@ -89,10 +87,7 @@ test('a joint that is moved by 40 cm in one frame is the largest step, with its 
     const { chest } = frame.joints;
     return row < 200 ? frame : { ...frame, joints: { ...frame.joints, chest: { ...chest!, y: chest!.y + 0.4 } } };
   });
-  const tally = emptyGoldenTally();
-  const { frames } = of;
-  addPiece(tally, { name: 'generated', rateHz, recordedHz: rateHz, staged: frames, driven, losses: [], seen: null });
-  const { figures, places } = goldenFigures(tally);
+  const { figures, places } = figuresOf(of, driven);
   expect(figures.excessCm).toBeGreaterThan(35);
   expect(places.excessCm).toBe('generated, 3.33 s, chest');
 });
@@ -126,16 +121,12 @@ describe('comparing with what was frozen', () => {
       const { hips } = frame.joints;
       return row === 300 ? { ...frame, joints: { ...frame.joints, hips: { ...hips!, y: hips!.y + 0.005 } } } : frame;
     });
-    const folder = mkdtempSync(join(tmpdir(), 'goldens-'));
-    try {
-      writeFrames(folder, { ik: [keepFrames('generated', driven, times)] });
-      const [difference] = compareFrames(readFrames(folder)!, { ik: [keepFrames('generated', moved, times)] });
-      expect(difference?.maxMm).toBeCloseTo(5, 2);
-      expect(difference?.worst).toBe('generated, 5.00 s, hips');
-      expect(difference?.p99Mm).toBe(0);
-    } finally {
-      rmSync(folder, { recursive: true });
-    }
+    const folder = directoryWith();
+    writeFrames(folder, { ik: [keepFrames('generated', driven, times)] });
+    const [difference] = compareFrames(readFrames(folder)!, { ik: [keepFrames('generated', moved, times)] });
+    expect(difference?.maxMm).toBeCloseTo(5, 2);
+    expect(difference?.worst).toBe('generated, 5.00 s, hips');
+    expect(difference?.p99Mm).toBe(0);
   });
 });
 

@@ -3,7 +3,7 @@ import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
 import { rotate } from 'threepoint/core/math/quat';
 import { add, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
-import { mannequinLegs } from '../../bench/evaluate/leg-proportions';
+import { mannequinLegs } from '../../bench/evaluate/legs/leg-drivers';
 import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/legs/leg-measures';
 import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/legs/leg-truth';
 import { eyeHeight, proportions, standing, walking } from '../threepoint/avatar/walking-person';
@@ -68,7 +68,7 @@ test('feet stand while a person stands, and in turns while they walk', () => {
   }
 });
 
-test('hips that are drawn 5 cm aside are told as 5 cm', () => {
+test('hips that are drawn 5 cm aside are measured as 5 cm', () => {
   expect(reportOf(stood, movedBy(stood, 0.05, 0)).pelvisCm).toBeCloseTo(5, 1);
 });
 

@@ -27,7 +27,7 @@ describe('a size that a document says', () => {
     ]);
   });
 
-  test('is told beside what was measured where it is further off', () => {
+  test('is reported with what was measured where it is further off', () => {
     expect(stale('threepoint/motion', 45_500, 18_049)).toEqual([
       'src/threepoint/README.md says 45.5 kB and 17.0 kB of threepoint/motion, it is 45.5 kB and 18.0 kB',
     ]);

@@ -7,8 +7,7 @@ import { finishWork } from 'threepoint/core/motion/work';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { writeRecording } from 'threepoint/core/tracking/recording';
 import { describe, expect, test } from 'vitest';
-import { exportFile } from '../../scripts/motion/export-file';
-import { writeWhole } from '../../scripts/motion/write-whole';
+import { exportFile, writeWhole } from '../../scripts/motion/export-file';
 import { directoryWith } from '../temporary-directory';
 import { builtFbx } from '../threepoint/avatar/built-fbx';
 import { fbxBinary, fbxText } from '../threepoint/avatar/fbx-file';
@@ -31,7 +30,9 @@ function folderWith(seconds: number) {
 
 describe('npm run motion', () => {
   test.each(['--help', '-h'])('%s prints how it is used, and is no error', (flag) => {
-    const { status, stdout } = spawnSync(process.execPath, ['scripts/motion.mjs', flag], { encoding: 'utf8' });
+    const { status, stdout } = spawnSync(process.execPath, ['scripts/program.mjs', 'motion', flag], {
+      encoding: 'utf8',
+    });
     expect(stdout).toMatch(/^npm run motion -- FILE --to bvh\|csv\|vrma\|glb /);
     expect(status).toBe(0);
   });

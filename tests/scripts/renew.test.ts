@@ -2,7 +2,7 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
-import { chosenSteps, commandLineOf, commandOf, steps } from '../../scripts/renew-steps.mjs';
+import { chosenSteps, commandLineOf, commandOf, steps } from '../../scripts/renew.mjs';
 import { root } from '../../scripts/run-command.mjs';
 import { directoryWith } from '../temporary-directory';
 

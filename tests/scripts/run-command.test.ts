@@ -15,7 +15,7 @@ function answers(port: number): Promise<boolean> {
 }
 
 describe('a program that is run', () => {
-  test('tells its exit code and its output', async () => {
+  test('reports its exit code and its output', async () => {
     const result = await node("console.log('out'); console.error('err'); process.exit(3)");
     expect(result).toMatchObject({ code: 3, timedOut: false });
     expect(result.output).toContain('out\n');

@@ -60,7 +60,7 @@ describe('unit tests', () => {
     expect(await filters('unit-nightly')).toEqual([]);
   });
 
-  test('look further by night: what asks for the night is told of it', async () => {
+  test('run more cases by night, and know that it is night', async () => {
     for (const name of ['THREEPOINT_TESTS', 'PROPERTY_RUNS', 'THREEPOINT_NIGHTLY']) vi.stubEnv(name, undefined);
     // The next file in this process must load its modules with the default environment.
     onTestFinished(() => {

@@ -3,7 +3,7 @@
 import numpy as np
 from threepoint_training import quaternion
 from threepoint_training.complete_hands import carry_with_head, complete_hands
-from threepoint_training.kinematic_limits import LOST_HAND
+from threepoint_training.shared_constants import LOST_HAND
 
 STILL = np.array([[0.0, 0.0, 0.0, 1.0]])
 EYE_HEIGHT, ARM = np.array([1.6]), np.array([0.55])

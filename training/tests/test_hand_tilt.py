@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ik_errors import errors_cm
-from threepoint_training import fit_ik, fit_proportions, hand_tilt, mirror, quaternion, solve_ik
+from threepoint_training import fit_ik, fitted_kinematics, hand_tilt, mirror, quaternion, solve_ik
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.simulate_trackers import TrackerConfig, measured_tilts
@@ -113,6 +113,6 @@ def test_the_usual_tilt_is_that_of_people_s_right_hands_and_of_their_left_ones_i
     tilt = np.array([0.3, -0.2])
     off = [np.append(-each, 0.0) for each in (tilt * mirror.TILT, tilt)]
     before, after = (
-        fit_proportions.fit(corpus, tuple(CORPUS.people))["handTilt"] for corpus in (CORPUS, worn_off(CORPUS, *off))
+        fitted_kinematics.fit_proportions(corpus, tuple(CORPUS.people))["handTilt"] for corpus in (CORPUS, worn_off(CORPUS, *off))
     )
     np.testing.assert_allclose(np.subtract(after, before), tilt, atol=0.01)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.kinematic_limits import HEADSET_RISE
+from threepoint_training.shared_constants import HEADSET_RISE
 from threepoint_training.noticed_wear import FAULTS, NoticedWearConfig, main, usual_reach
 from threepoint_training.training_config import TrainConfig, quick
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 from rich.console import Console
-from threepoint_training import pipeline, postures, selection, train_learned
+from threepoint_training import pipeline, selection, train_learned
 from threepoint_training.features import HANDS, HEAD_AXES, HEADSET_HEIGHT
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.model import CorrectionNetwork
@@ -33,7 +33,7 @@ def test_a_raised_wrist_a_low_head_and_a_tilted_head_are_active_and_a_still_pers
     inputs[1, heights[1]] = -0.7
     inputs[2, HEADSET_HEIGHT] = 0.89
     inputs[3, HEAD_AXES.start + 4] = np.cos(np.radians(31))
-    assert postures.active(inputs).tolist() == [False, True, True, True]
+    assert selection.active(inputs).tolist() == [False, True, True, True]
 
 
 def test_a_network_that_corrects_nothing_errs_as_ik_does():
@@ -44,7 +44,7 @@ def test_a_network_that_corrects_nothing_errs_as_ik_does():
         getattr(network, name).zero_()
     by_frames = selection.errors_by_person(predict(network, held_out.inputs), held_out)
     assert set(by_frames["all"]) == set(CORPUS.people)
-    assert sum(each.frames for each in by_frames["active"].values()) == postures.active(held_out.inputs).sum() > 0
+    assert sum(each.frames for each in by_frames["active"].values()) == selection.active(held_out.inputs).sum() > 0
     for people in by_frames.values():
         assert all(each.ratio == pytest.approx(1.0, abs=1e-6) for each in people.values())
 

@@ -2,7 +2,7 @@
 
 import pytest
 import torch
-from threepoint_training.kinematic_limits import TRUNK_CAPSULE
+from threepoint_training.shared_constants import TRUNK_CAPSULE
 from threepoint_training.swivel_limiter import ElbowCircles, Trunk, limit_swivel
 
 pytestmark = pytest.mark.training

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from . import accuracy_tables as tables
-
-REPOSITORY = Path(__file__).parents[2]
+from .shared_constants import REPOSITORY
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, mirror, quaternion
+from .arrays import Array
 from .body_parts import TORSO, BalanceConfig, BodyParts
 from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
@@ -19,8 +20,6 @@ from .prepare import EYES_FROM_HEAD_JOINT, RATE_HZ
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_turns, measured_tilts
 from .skeleton import Body, body_from_calibration
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

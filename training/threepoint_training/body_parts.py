@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, mirror, posture_rarity, quaternion
+from . import hand_tilt, mirror, quaternion
+from .arrays import Array
 from .prepared_corpus import PreparedCorpus, chest_axes_of, joints_of
-
-Array = NDArray[np.float64]
 
 TORSO = ("hips", "chest", "neck", "head")
 ARM = ("UpperArm", "LowerArm", "Hand")
@@ -78,12 +77,9 @@ class BodyParts:
             ],
             axis=1,
         )
-        weights = posture_rarity.frequency(self.person) ** -balance.people
+        weights = frequency(self.person) ** -balance.people
         if balance.postures > 0:
-            weights *= (
-                posture_rarity.frequency(posture_rarity.cluster(self._postures(), balance.clusters))
-                ** -balance.postures
-            )
+            weights *= frequency(clusters_of(self._postures(), balance.clusters)) ** -balance.postures
         self._cumulative_trunks, self._cumulative_arms = (
             np.cumsum(each) / each.sum() for each in (weights, np.tile(weights, 2))
         )
@@ -110,3 +106,32 @@ class BodyParts:
 
 def _drawn(cumulative: Array, random: np.random.Generator, count: int) -> NDArray[np.int64]:
     return np.searchsorted(cumulative, random.uniform(size=count)).clip(max=len(cumulative) - 1)
+
+
+# k-means runs on this many frames, this many times; the centres hardly move afterwards.
+_SAMPLE, _ITERATIONS, _SEED = 20_000, 10, 7
+
+
+def clusters_of(postures: Array, clusters: int) -> NDArray[np.int64]:
+    """Returns the cluster [F] of each posture [F, D]: k-means (Lloyd) that starts from postures drawn at random."""
+    random = np.random.default_rng(_SEED)
+    sample = postures[random.choice(len(postures), min(_SAMPLE, len(postures)), replace=False)]
+    centres = sample[:clusters]
+    for _ in range(_ITERATIONS):
+        nearest = _nearest(sample, centres)
+        counts = np.bincount(nearest, minlength=len(centres))[:, None]
+        sums = np.stack([np.bincount(nearest, column, len(centres)) for column in sample.T], axis=1)
+        # A centre that is nearest to no posture keeps its place.
+        centres = np.where(counts > 0, sums / np.maximum(counts, 1), centres)
+    return _nearest(postures, centres)
+
+
+def _nearest(postures: Array, centres: Array) -> NDArray[np.int64]:
+    half_squares = (centres**2).sum(axis=1) / 2
+    blocks = np.array_split(postures, len(postures) // 8192 + 1)
+    return np.concatenate([np.argmin(half_squares - block @ centres.T, axis=1) for block in blocks])
+
+
+def frequency(labels: NDArray[np.int64]) -> Array:
+    """Returns how many frames [F] share each frame's label [F]."""
+    return np.bincount(labels)[labels].astype(np.float64)

@@ -4,12 +4,10 @@ The twin of src/threepoint/core/estimation/networks/chest-features.ts.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .features import ARM_LENGTH, HANDS, HEAD_AXES, IK_JOINTS
 from .solve_ik import normalise
-
-Array = NDArray[np.float64]
 
 # Columns: of the left, then of the right arm reach, x and y axis of the hand, elbow from shoulder.
 ARMS = slice(0, 24)

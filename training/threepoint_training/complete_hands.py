@@ -4,13 +4,11 @@ The twin of src/threepoint/core/estimation/complete-hands.ts for hands that stay
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
-from .kinematic_limits import LOST_HAND, TRAPEZOIDAL_RAMP
+from .arrays import Array
+from .shared_constants import LOST_HAND, TRAPEZOIDAL_RAMP
 from .skeleton import load_proportions
-
-Array = NDArray[np.float64]
 
 
 def carry_with_head(

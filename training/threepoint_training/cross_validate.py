@@ -3,8 +3,7 @@ protocol.
 """
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import nullcontext
 from typing import Any
 
 import torch
@@ -68,7 +67,8 @@ def _cross_validate(
     rows = {f"{given} ({', '.join(people)})": people for given, people in judged.items()}
     trained: dict[str, torch.nn.Module] = {}
     curve: train_paper.LearningCurve | None = None
-    with _kinematics(run, training, fold, is_shipped):
+    # The shipped fold's networks add to the page's own IK.
+    with nullcontext() if is_shipped else fitted_kinematics.used(fit_networks.kinematics(run, training, fold)):
         tests = {
             row: train_learned.held_out(corpus, people, config.learned.window_seconds) for row, people in rows.items()
         }
@@ -86,35 +86,18 @@ def _cross_validate(
     return trained, curve
 
 
-@contextmanager
-def _kinematics(run: TrainingRun, training: tuple[str, ...], fold: str, is_shipped: bool) -> Iterator[None]:
-    """A context with proportions and IK fitted on this fold's training people; for the shipped fold they are the
-    page's own.
-    """
-    if is_shipped:
-        yield
-        return
-    with fitted_kinematics.used(fit_networks.kinematics(run, training, fold)):
-        yield
-
-
 def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:
     """Errors in the paper's protocol that an earlier contract states, for a run without frame_random; else nothing."""
-    contract = None if run.config.frame_random else _contract_of_this_motion(run, name)
-    return (
-        {} if contract is None else {row: values for row, values in contract["errors"].items() if "frame-random" in row}
-    )
+    contract = None if run.config.frame_random else _contract(run, name)
+    if contract is None or contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
+        return {}
+    return {row: values for row, values in contract["errors"].items() if "frame-random" in row}
 
 
 def _contract(run: TrainingRun, name: str) -> dict[str, Any] | None:
     """The contract of the first fold's network, as an earlier run wrote it; None: there is none."""
     file = run.config.cross_validation / f"{name}.json"
     return json.loads(file.read_text()) if file.exists() else None
-
-
-def _contract_of_this_motion(run: TrainingRun, name: str) -> dict[str, Any] | None:
-    contract = _contract(run, name)
-    return contract if contract is not None and contract["trainedOn"]["corpusHash"] == run.corpus.corpus_hash else None
 
 
 def earlier_errors(run: TrainingRun, name: str) -> tuple[dict[str, dict[str, float]], dict[str, list[float]] | None]:

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES
 from .features import ARM_LENGTH, IK_JOINTS
-from .kinematic_limits import LIMB, REACH, TORSO, TORSO_EXTREME
+from .shared_constants import LIMB, REACH, TORSO, TORSO_EXTREME
 from .skeleton import body_from_calibration, rest_offsets
 from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 

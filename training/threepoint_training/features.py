@@ -5,12 +5,10 @@ The one function for training and for golden vectors; docs/estimation.md lists t
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import hand_tilt, quaternion, solve_ik
+from .arrays import Array
 from .skeleton import Body
-
-Array = NDArray[np.float64]
 
 # Columns of a frame's features, heading frame: a position has three, a rotation six, its x and its y axis.
 HEADSET_HEIGHT = 0

@@ -2,7 +2,6 @@
 against.
 """
 
-import copy
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, mirror, quaternion, solve_ik
+from .arrays import Array
 from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
-
-Array = NDArray[np.float64]
 
 # The initial parameters, which are the target of the ridge penalty: an upright trunk, elbows down, back and a little
 # outward.
@@ -30,9 +28,6 @@ PRIOR: dict[str, Any] = {
 }
 
 
-_MATRICES = ("clavicle", "untoldPole", "pole")
-
-
 @dataclass(frozen=True)
 class FitIkConfig:
     """frames_per_person balances people; ridge is in squared metres per squared parameter unit and frame."""
@@ -45,27 +40,26 @@ class FitIkConfig:
 
 
 def flatten(parameters: dict[str, Any]) -> Array:
-    """The parameters as one vector, in the file's order."""
-    parts = [parameters["yaw"], *(parameters[s][k] for s in ("upper", "lower") for k in ("forward", "sideways"))]
-    parts += [[parameters["neck"]], *(row for key in _MATRICES for row in parameters[key])]
-    return np.concatenate([np.asarray(part, np.float64) for part in parts])
+    """The parameters as one vector, in the order of PRIOR."""
+
+    def numbers(shape: Any, part: Any) -> list[float]:
+        if isinstance(shape, dict):
+            return [number for key in shape for number in numbers(shape[key], part[key])]
+        return np.ravel(part).tolist()
+
+    return np.array(numbers(PRIOR, parameters), np.float64)
 
 
 def unflatten(vector: Array) -> dict[str, Any]:
     """The inverse of `flatten`."""
-    values = iter(float(value) for value in vector)
+    values = iter(vector.tolist())
 
     def take(shape: Any) -> Any:
+        if isinstance(shape, dict):
+            return {key: take(part) for key, part in shape.items()}
         return [take(part) for part in shape] if isinstance(shape, list) else next(values)
 
-    result = copy.deepcopy(PRIOR)
-    result["yaw"] = take(PRIOR["yaw"])
-    for segment in ("upper", "lower"):
-        for key in ("forward", "sideways"):
-            result[segment][key] = take(PRIOR[segment][key])
-    for key in ("neck", *_MATRICES):
-        result[key] = take(PRIOR[key])
-    return result
+    return take(PRIOR)
 
 
 @dataclass(frozen=True)

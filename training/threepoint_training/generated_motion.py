@@ -3,13 +3,11 @@ mocap.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
+from .arrays import Array
 from .prepare import RATE_HZ
 from .prepared_corpus import JOINTS, Person, PreparedCorpus
-
-Array = NDArray[np.float64]
 
 
 def _wave(random: np.random.Generator, times: Array, dimensions: int, amplitude: float) -> Array:

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import hand_tilt, notice_hand_tilts, notice_headset_rise, quaternion, solve_ik
+from .arrays import Array
 from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
@@ -19,12 +19,11 @@ from .notice_hand_tilts import CalibratedTilts
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
+from .shared_constants import REPOSITORY
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration, rest_offsets
 
-Array = NDArray[np.float64]
-
-GOLDEN = Path(__file__).parents[2] / "tests/golden"
+GOLDEN = REPOSITORY / "tests/golden"
 
 
 @dataclass(frozen=True)
@@ -265,7 +264,7 @@ def plain(value: Any) -> Any:
 class GoldenConfig:
     """models: the folder whose networks get golden outputs."""
 
-    models: Path = Path(__file__).parents[2] / "public/models"
+    models: Path = REPOSITORY / "public/models"
 
 
 def main(config: GoldenConfig) -> None:

@@ -38,15 +38,16 @@ def _cmuconvert(folder: Path) -> str:
     return "7_02.bvh"
 
 
+def _about(axis: int, angle: float) -> Any:
+    return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
+
+
 def _leaping(folder: Path) -> str:
     """At 50 Hz, in centimetres, with a leap between two pieces."""
     times = np.arange(FRAMES) / 50
 
-    def about(axis: int, angle: float) -> Any:
-        return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
-
     turns = [
-        {"Hips": about(1, 2 + 0.6 * t), "LeftArm": about(2, -0.9 * np.sin(3 * t)), "Head": about(0, 0.2 + 0.3 * t)}
+        {"Hips": _about(1, 2 + 0.6 * t), "LeftArm": _about(2, -0.9 * np.sin(3 * t)), "Head": _about(0, 0.2 + 0.3 * t)}
         for t in times
     ]
     hips = [np.array([20 * t + (300 if i >= FRAMES // 2 else 0), 100, 5 * t]) for i, t in enumerate(times)]
@@ -56,11 +57,8 @@ def _leaping(folder: Path) -> str:
 
 
 def _moving(times: Any) -> list[dict[str, Any]]:
-    def about(axis: int, angle: float) -> Any:
-        return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
-
     return [
-        {"Hips": about(1, 0.7 + 0.6 * t), "RightArm": about(2, 0.9 * np.sin(3 * t)), "Head": about(0, 0.2 - 0.3 * t)}
+        {"Hips": _about(1, 0.7 + 0.6 * t), "RightArm": _about(2, 0.9 * np.sin(3 * t)), "Head": _about(0, 0.2 - 0.3 * t)}
         for t in times
     ]
 
@@ -102,7 +100,7 @@ def _folded(folder: Path) -> str:
 def _sideways(folder: Path) -> str:
     """+Z up, facing +X, in T-pose in its first frame alone, turned there."""
     times = np.arange(FRAMES) / 60
-    turned = {"Hips": quaternion.from_axis_angle(np.eye(3)[1], np.array(1.1))}
+    turned = {"Hips": _about(1, 1.1)}
     hips = [np.array([20 * t, 100, 5 * t]) for t in times]
     text, _ = game_bvh(along(np.eye(3)[0]), [turned, *_moving(times)[1:]], hips)
     # x to y, y to z, z to x.

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import mirror, quaternion, skeleton
-from .kinematic_limits import LIMB
+from .arrays import Array
 from .prepared_corpus import JOINTS, PreparedCorpus
-
-Array = NDArray[np.float64]
+from .shared_constants import LIMB
 
 _ALONG_HAND = np.array([0.0, 0.0, -1.0])
 _ELBOWS, _WRISTS = ([JOINTS.index(f"{side}{part}") for side in ("left", "right")] for part in ("LowerArm", "Hand"))

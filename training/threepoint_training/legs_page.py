@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from .accuracy_page import REPOSITORY
 from .accuracy_tables import renew, table
+from .shared_constants import REPOSITORY
 from .splits import evaluation_only, trainable
 
 Json = dict[str, Any]

@@ -3,9 +3,8 @@ of their mirror image.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .arrays import Array
 
 # What a mirror multiplies: the components of a position or direction (x, y, z), of a quaternion (x, y, z, w) and of a
 # hand's tilt (pitch, yaw).

@@ -10,7 +10,6 @@ from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, 
 from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
 from .residual import OUTPUTS
 
-
 # Inputs of the people trained on lie within so many standard deviations of their mean; what lies beyond is held there,
 # here as in the page's Perceptron.
 MOST_DEVIATIONS = 4.0

@@ -50,10 +50,7 @@ def motion_files(mocap: Path, people: tuple[str, ...] | None) -> list[Source]:
     if not mocap.is_dir():
         raise MocapError(f"{mocap}: no such folder")
     files = sorted(
-        folder / name
-        for folder, names in _folders(mocap)
-        for name in names
-        if Path(name).suffix.lower() in _SUFFIXES
+        folder / name for folder, names in _folders(mocap) for name in names if Path(name).suffix.lower() in _SUFFIXES
     )
     if not files:
         raise MocapError(f"{mocap}: no .amc, .bvh or .vrma files in this folder or below it")

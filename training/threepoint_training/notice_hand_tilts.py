@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, quaternion, solve_ik
-from .kinematic_limits import HAND_TILTS, LIMB
+from .arrays import Array
+from .shared_constants import HAND_TILTS, LIMB
 from .skeleton import Body
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import solve_ik
-from .kinematic_limits import HEADSET_RISE
+from .arrays import Array
+from .shared_constants import HEADSET_RISE
 from .skeleton import Body
-
-Array = NDArray[np.float64]
 
 
 def reaches(positions: Array, rotations: Array, body: Body) -> Array:

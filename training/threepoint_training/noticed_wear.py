@@ -11,22 +11,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import fitted_kinematics, notice_headset_rise, quaternion, splits, train_learned
 from .accuracy_tables import renew, table
+from .arrays import Array
 from .fit_ik import FitIkConfig
-from .kinematic_limits import HEADSET_RISE
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
+from .shared_constants import HEADSET_RISE, REPOSITORY
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration
 from .train_learned import TrainLearnedConfig
 
-Array = NDArray[np.float64]
-
-ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs/accuracy.md"
+PAGE = REPOSITORY / "docs/accuracy.md"
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,9 @@
 """The input of the paper's network; the twin of src/threepoint/core/estimation/networks/paper-features.ts."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
-
-Array = NDArray[np.float64]
+from .arrays import Array
 
 
 def euler_yxz(q: Array) -> Array:

@@ -4,6 +4,7 @@ table.
 A run is seeded: the same data and options write the same weights on the same machine.
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -27,8 +28,9 @@ from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .lockbox_log import LockboxAccess, git_commit
 from .prepared_corpus import PreparedCorpus
+from .shared_constants import REPOSITORY
 from .splits import LOCKBOX, evaluation_only, trainable
-from .training_config import REPOSITORY, Task, TrainConfig
+from .training_config import Task, TrainConfig
 from .training_report import LABELS, TrainingReport
 
 TITLE = "MPJPE: IK and ours after torso and arm fitting, the paper's network raw [cm]"
@@ -159,16 +161,10 @@ def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
 
 
 def _prepared(config: TrainConfig, mocap: Path, report: TrainingReport) -> PreparedCorpus:
-    done = 0
+    numbers = itertools.count(1)
     with report.task("prepare", None) as advance:
-
-        def file(name: str) -> None:
-            nonlocal done
-            done += 1
-            advance(done, f"prepare {name}")
-
         prepared = prepare.PrepareConfig(mocap, config.skeleton_map, cache=config.cache)
         if config.task == "lockbox":
             access = LockboxAccess("npm run train -- --lockbox", config.lockbox_log)
             prepared = replace(prepared, people=LOCKBOX, lockbox=access)
-        return prepare.main(prepared, file)
+        return prepare.main(prepared, lambda name: advance(next(numbers), f"prepare {name}"))

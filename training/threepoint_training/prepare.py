@@ -9,23 +9,23 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
+from .arrays import Array
 from .lockbox_log import LockboxAccess, permitted
-from .mocap_rules import RULES
 from .motion_files import MocapError, index_rates, motion_files
 from .prepared_corpus import JOINTS, LEG_JOINTS, Person, PreparedCorpus
 from .read_motion import Clip, read_motion
+from .shared_constants import MOCAP_RULES
 
-RATE_HZ: int = RULES["rateHz"]
+RATE_HZ: int = MOCAP_RULES["rateHz"]
 
 # Faster than any limb: the hands of boxers and of a sprinter's swing stay below 15 m/s, a fall below 8.
-TELEPORT_SPEED: float = RULES["teleportSpeed"]
-SHORTEST_SEGMENT_SECONDS: float = RULES["shortestPieceSeconds"]
+TELEPORT_SPEED: float = MOCAP_RULES["teleportSpeed"]
+SHORTEST_SEGMENT_SECONDS: float = MOCAP_RULES["shortestPieceSeconds"]
 
 # The headset's origin (between the eyes) relative to the head joint, in the head's frame: up and forward [m].
-EYES_FROM_HEAD_JOINT = np.array(RULES["eyesFromHeadJoint"])
+EYES_FROM_HEAD_JOINT = np.array(MOCAP_RULES["eyesFromHeadJoint"])
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,9 @@ def _pieces(
         yield (name if len(pieces) == 1 else f"{name}#{number + 1}"), piece
 
 
-def _with_head_turned(clip: Clip, neutral: NDArray[np.float64]) -> Clip:
-    """The clip with head rotations that are the identity where the person looks ahead; neutral: from `_neutral_head`."""
+def _with_head_turned(clip: Clip, neutral: Array) -> Clip:
+    """The clip with head rotations that are the identity where the person looks ahead; neutral: from `_neutral_head`.
+    """
     head = quaternion.multiply(clip.rotations[:, 0], np.broadcast_to(neutral, clip.rotations[:, 0].shape))
     return replace(clip, rotations=np.concatenate([head[:, None], clip.rotations[:, 1:]], axis=1))
 
@@ -105,7 +106,7 @@ def _resample(clip: Clip) -> Clip:
     before = np.minimum(times.astype(int), len(clip.positions) - 2)
     share = times - before
 
-    def between(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def between(points: Array) -> Array:
         return points[before] * (1 - share)[:, None, None] + points[before + 1] * share[:, None, None]
 
     rotations = quaternion.slerp(clip.rotations[before], clip.rotations[before + 1], share[:, None] * np.ones((1, 3)))
@@ -148,7 +149,7 @@ def _person(person: str, clips: list[tuple[str, Clip]]) -> Person:
     return Person(person, eye_height, span)
 
 
-def _neutral_head(clips: list[tuple[str, Clip]]) -> NDArray[np.float64]:
+def _neutral_head(clips: list[tuple[str, Clip]]) -> Array:
     """The head's rotation when this person looks ahead: the median pitch and roll over frames with an upright trunk."""
     pitches, rolls = [], []
     for _, clip in clips:
@@ -208,7 +209,8 @@ def _map_files(skeleton_map: Path | None) -> list[Path]:
 def _corrections(corrected: dict[str, list[str]]) -> list[str]:
     """A message for each correction, with the files that it was applied to."""
     return [
-        f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}" for note, files in corrected.items()
+        f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}"
+        for note, files in corrected.items()
     ]
 
 

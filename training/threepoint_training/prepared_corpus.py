@@ -8,6 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .arrays import Array
+
 JOINTS = (
     "hips", "spine", "chest", "neck", "head",
     "leftUpperArm", "leftLowerArm", "leftHand",
@@ -26,14 +28,14 @@ TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
 
 
-def joints_of(positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def joints_of(positions: Array) -> dict[str, Array]:
     """Each of JOINTS [F, 3] by its name, from positions [F, 11, 3]."""
     return {name: positions[:, index] for index, name in enumerate(JOINTS)}
 
 
 def chest_axes_of(
-    joints: dict[str, NDArray[np.float64]],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    joints: dict[str, Array],
+) -> tuple[Array, Array, Array]:
     """The axes [F, 3] of the chest by true joints, unit, in the joints' frame: x from the left to the right shoulder, y
     up the thorax, z backward.
     """

@@ -11,7 +11,6 @@ import onnxruntime
 from numpy.typing import NDArray
 from onnx import numpy_helper
 
-
 # Smaller matrices and kernels [numbers] stay in 32 bits: they would save nothing.
 _SMALLEST = 256
 

@@ -1,9 +1,8 @@
 """Quaternions as arrays [..., 4] in the order x, y, z, w; every function is vectorised over the leading axes."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .arrays import Array
 
 
 def multiply(a: Array, b: Array) -> Array:

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
+from .arrays import Array
 from .motion_files import MocapError, Source
 from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS
+from .shared_constants import REPOSITORY
 
-_ROOT = Path(__file__).parents[2]
 _READER = "scripts/motion/read-files.ts"
 
 
@@ -29,10 +29,10 @@ class Clip:
     a sentence each.
     """
 
-    positions: NDArray[np.float64]
-    rotations: NDArray[np.float64]
-    legs: NDArray[np.float64]
-    rest: dict[str, NDArray[np.float64]]
+    positions: Array
+    rotations: Array
+    legs: Array
+    rest: dict[str, Array]
     rate: float
     notes: tuple[str, ...] = ()
 
@@ -62,7 +62,7 @@ def read_motion(
             "out": out,
         }
         pipe = subprocess.PIPE
-        with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, text=True, cwd=_ROOT) as reader:
+        with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, text=True, cwd=REPOSITORY) as reader:
             assert reader.stdin and reader.stdout
             json.dump(request, reader.stdin)
             reader.stdin.close()

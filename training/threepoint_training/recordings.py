@@ -8,15 +8,14 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import hand_tilt, prepare
+from .arrays import Array
 from .lockbox_log import LockboxAccess
-from .mocap_rules import RULES
 from .motion_files import MocapError
-from .normal_numbers import NormalNumbers
 from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS, PreparedCorpus
-from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_wearer, measured_tilts, simulate
+from .shared_constants import MOCAP_RULES
+from .simulate_trackers import FOREARM_ERROR, NormalNumbers, TrackerConfig, draw_wearer, measured_tilts, simulate
 
 VERSION = 1
 COLUMNS = tuple(
@@ -30,7 +29,7 @@ class RecordingsConfig:
 
     prepare: prepare.PrepareConfig
     out: Path
-    seed: int = RULES["seed"]
+    seed: int = MOCAP_RULES["seed"]
     trackers: TrackerConfig = field(default_factory=TrackerConfig)
 
 
@@ -88,7 +87,7 @@ def _measures(corpus: PreparedCorpus, name: str, seed: int) -> dict[str, float]:
     return {"eyeHeight": person.eye_height, "armSpan": person.arm_span, "forearm": corpus.forearm(name) + error}
 
 
-def _as_calibrated(tilts: NDArray[np.float64]) -> dict[str, dict[str, float]]:
+def _as_calibrated(tilts: Array) -> dict[str, dict[str, float]]:
     """Converts tilts [2, 2] to the page's calibration, without implausible ones."""
     sides = zip(("left", "right"), tilts.tolist(), hand_tilt.plausible(tilts), strict=True)
     return {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw), known in sides if known}

@@ -1,14 +1,12 @@
 """The learned network's input and target; the twin of src/threepoint/core/estimation/methods/residual.ts."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
+from .arrays import Array
 from .chest_features import chest_axes, chest_features
 from .features import IK_JOINTS, windowed
 from .skeleton import Body
-
-Array = NDArray[np.float64]
 
 # Three coordinates of each of the six joints.
 OUTPUTS = 18

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import postures, splits, train_learned
+from . import splits, train_learned
+from .arrays import Array
+from .features import HANDS, HEAD_AXES, HEADSET_HEIGHT
 from .prepared_corpus import PreparedCorpus
 from .train_learned import HeldOut, TrainLearnedConfig
 from .train_paper import predict
-
-Array = NDArray[np.float64]
 
 # Columns of ESTIMATED_JOINTS that a figure averages.
 JOINTS = {"all joints": slice(None), "elbows": slice(0, 2)}
@@ -43,12 +43,24 @@ class PersonErrors:
 People = Mapping[str, PersonErrors]
 
 
+def active(inputs: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Which frames [F] are active: a wrist higher than 0.75 arm lengths below the headset, the head under 0.9 of the
+    eye height, or tilted by over 30°. Standing and walking with hanging arms is none of these.
+    """
+    hand_heights = inputs[:, [hand.start + 1 for hand in HANDS]]
+    return (
+        (hand_heights.max(axis=1) > -0.75)
+        | (inputs[:, HEADSET_HEIGHT] < 0.9)
+        | (inputs[:, HEAD_AXES.start + 4] < np.cos(np.radians(30.0)))
+    )
+
+
 def errors_by_person(corrections: NDArray[np.float32], people: HeldOut) -> dict[str, dict[str, PersonErrors]]:
     """Errors of a network with these corrections [F, 18] after torso and arm fitting, by FRAMES and by name; a person
     without active frames is missing from those.
     """
     ours, of_ik = train_learned.fitted_errors_cm(corrections, people), train_learned.ik_errors_cm(people)
-    chosen = {"all": np.ones(len(ours), bool), "active": postures.active(people.inputs)}
+    chosen = {"all": np.ones(len(ours), bool), "active": active(people.inputs)}
     return {
         frames: {
             str(name): PersonErrors(int(own.sum()), of_ik[own].mean(axis=0), ours[own].mean(axis=0))

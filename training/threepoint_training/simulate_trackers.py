@@ -1,20 +1,18 @@
 """What a headset and two hands would have reported while the motion was recorded."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import hand_tilt, quaternion
-from .mocap_rules import RULES
-from .normal_numbers import NormalSource
+from .arrays import Array
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import TRACKED_COLUMNS
+from .shared_constants import MOCAP_RULES
 
-Array = NDArray[np.float64]
-
-_TRACKERS: dict[str, Any] = RULES["trackers"]
+_TRACKERS: dict[str, Any] = MOCAP_RULES["trackers"]
 
 
 def _by_tracker(noise: dict[str, float]) -> tuple[float, float, float]:
@@ -52,6 +50,40 @@ class Wearer:
     head_turn: Array
     wrist_offsets: Array  # [2, 3]
     hand_turns: Array  # [2, 4]
+
+
+class NormalSource(Protocol):
+    """A generator of standard normal numbers: NumPy's, or the page's."""
+
+    def normal(self, *, size: int | tuple[int, ...] = ()) -> Any:
+        """An array of this shape."""
+
+
+_WORD = np.uint64(0xFFFFFFFF)
+
+
+class NormalNumbers:
+    """Seeded normal numbers that the page draws alike (createNormalRandom in src/threepoint/core/math/random.ts).
+
+    Uniform numbers of SplitMix32, whose state is one 32-bit number, two for each normal number of Box and
+    Muller.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self._state = np.uint64(seed & 0xFFFFFFFF)
+
+    def normal(self, *, size: int | tuple[int, ...] = ()) -> Array:
+        """An array of this shape; its numbers are drawn in the order in which they lie in memory."""
+        uniform = self._uniform(2 * int(np.prod(size))).reshape(*np.atleast_1d(np.array(size, int)), 2)
+        return np.sqrt(-2 * np.log(1 - uniform[..., 0])) * np.cos(2 * np.pi * uniform[..., 1])
+
+    def _uniform(self, count: int) -> Array:
+        """The next numbers [count] in [0, 1)."""
+        mixed = (self._state + np.arange(1, count + 1, dtype=np.uint64) * np.uint64(0x9E3779B9)) & _WORD
+        self._state = mixed[-1]
+        for shift, factor in ((16, 0x21F0AAAD), (15, 0x735A2D97)):
+            mixed = ((mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)) & _WORD
+        return (mixed ^ (mixed >> np.uint64(15))) / 2**32
 
 
 def draw_turns(deviation: ArrayLike, shape: tuple[int, ...], random: NormalSource) -> Array:

@@ -2,17 +2,15 @@
 
 import json
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .kinematic_limits import LIMB
+from .arrays import Array
+from .shared_constants import CORE, LIMB
 
-Array = NDArray[np.float64]
-
-PROPORTIONS_FILE = Path(__file__).parents[2] / "src/threepoint/core/body/body-proportions.json"
+PROPORTIONS_FILE = CORE / "body/body-proportions.json"
 
 
 def load_proportions() -> dict[str, Any]:

@@ -4,20 +4,17 @@ src/threepoint/core/estimation/ik/solve-ik.ts.
 
 import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import quaternion
-from .kinematic_limits import IK as LIMITS
-from .kinematic_limits import LIMB
+from .arrays import Array
+from .shared_constants import CORE, LIMB
+from .shared_constants import IK as LIMITS
 from .skeleton import Body
 
-Array = NDArray[np.float64]
-
-PARAMETERS_FILE = Path(__file__).parents[2] / "src/threepoint/core/estimation/ik/ik-parameters.json"
+PARAMETERS_FILE = CORE / "estimation/ik/ik-parameters.json"
 
 
 def load_parameters() -> dict[str, Any]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from .kinematic_limits import TRUNK_CAPSULE
+from .shared_constants import TRUNK_CAPSULE
 
 # Angles are looked at in steps of this [rad]; borders are found to a sixty-fourth of it.
 _STEP, _STEPS, _HALVINGS = math.pi / 18, 18, 6

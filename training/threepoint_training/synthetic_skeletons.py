@@ -5,10 +5,10 @@ folded along an axis.
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
-from . import quaternion
 
-Array = NDArray[np.float64]
+from . import quaternion
+from .arrays import Array
+
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 
 # ASF bones in units of 1/0.45 inch, facing +Z with the left on +X: name, parent, from start to end in rest, degrees of
@@ -110,9 +110,7 @@ def write_asf_amc(folder: Path, angles: dict[str, Array]) -> None:
 def write_cmuconvert_bvh(path: Path, angles: dict[str, Array]) -> None:
     """Writes the motion in cmuconvert's format, without the bone lengths that it loses."""
     ways = {name: way for name, _, way in BONES}
-    joints = [
-        (name, parent, np.zeros(3) if way is None else ways[way]) for name, _, parent, way in _CMUCONVERT
-    ]
+    joints = [(name, parent, np.zeros(3) if way is None else ways[way]) for name, _, parent, way in _CMUCONVERT]
     rows = []
     bone_of = {name: bone for name, bone, _, _ in _CMUCONVERT}
     for frame in range(len(next(iter(angles.values())))):

@@ -17,8 +17,8 @@ import torch
 from numpy.typing import NDArray
 from torch import nn
 
-from .accuracy_page import REPOSITORY
 from .model import MOST_DEVIATIONS
+from .shared_constants import CORE
 from .splits import trainable
 
 Array = NDArray[np.float32]
@@ -37,7 +37,7 @@ class GaitConfig:
     """
 
     frames: Path
-    out: Path = REPOSITORY / "src/threepoint/core/estimation/gait/gait-network.json"
+    out: Path = CORE / "estimation/gait/gait-network.json"
     held_out: Path | None = None
     groups: int = 4
     steps: int = 2000

@@ -13,6 +13,7 @@ import torch
 from numpy.typing import NDArray
 
 from . import hand_tilt, notice_hand_tilts
+from .arrays import Array
 from .augment import AugmentConfig, draw_batch
 from .body_parts import BodyParts
 from .chest_features import CHEST_FEATURES
@@ -25,8 +26,6 @@ from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
 from .train_paper import predict
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ class HeldOut:
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
-    eye_height: NDArray[np.float64]
+    eye_height: Array
     people: NDArray[np.str_]
     clips: NDArray[np.int64]
 
@@ -146,25 +145,25 @@ def _measured(tilts: Array, wearer: Wearer, name: str) -> CalibratedTilts:
     return CalibratedTilts(measured, hand_tilt.plausible(measured))
 
 
-def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
+def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> Array:
     """Distances [F, 6] in centimetres of a network's output, after torso and arm fitting."""
     raw = np.broadcast_to(output, people.targets.shape).reshape(-1, 6, 3).astype(np.float32)
     fitted = DifferentiableKinematics()(torch.from_numpy(raw), torch.from_numpy(people.inputs))
     return raw_errors_cm(fitted.numpy().reshape(-1, OUTPUTS), people)
 
 
-def errors_cm(network: torch.nn.Module, people: HeldOut) -> NDArray[np.float64]:
+def errors_cm(network: torch.nn.Module, people: HeldOut) -> Array:
     """Distances [F, 6] in centimetres of the network's joints from the true ones, after torso and arm fitting."""
     return fitted_errors_cm(predict(network, people.inputs), people)
 
 
-def raw_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
+def raw_errors_cm(output: NDArray[np.float32], people: HeldOut) -> Array:
     """Distances [F, 6] in centimetres of a network's output, before torso and arm fitting."""
     difference = (output - people.targets).reshape(-1, 6, 3)
     return np.linalg.norm(difference, axis=-1) * people.eye_height[:, None] * 100
 
 
-def ik_errors_cm(people: HeldOut) -> NDArray[np.float64]:
+def ik_errors_cm(people: HeldOut) -> Array:
     """Distances [F, 6] in centimetres of IK's joints after torso and arm fitting."""
     return fitted_errors_cm(np.zeros((1, OUTPUTS), np.float32), people)
 

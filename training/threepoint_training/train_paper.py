@@ -7,12 +7,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from .arrays import Array
 from .model import PaperNetwork
 from .paper_features import floor_under_head, paper_features
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

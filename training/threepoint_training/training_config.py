@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import Literal
 
 from . import fit_ik, lockbox_log, train_learned, train_paper
-
-REPOSITORY = Path(__file__).parents[2]
+from .shared_constants import REPOSITORY
 
 # What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
 Task = Literal["train", "selection", "noticed wear", "lockbox"]

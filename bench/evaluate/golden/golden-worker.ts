@@ -81,19 +81,19 @@ async function work({ recordings, models, extent }: WorkerTask): Promise<void> {
   const regressors = await loadRegressors(models);
   const trainedOn = new Set([...regressors.values()].flatMap(({ contract }) => contract.trainedOn.people));
   const jobs = new Map(planGoldens(index, trainedOn, extent).map((job) => [job.row, job]));
-  const tell = (message: WorkerMessage) => process.send?.(message);
+  const send = (message: WorkerMessage) => process.send?.(message);
   process.on('message', ({ row }: { readonly row: string | null }) => {
     const job = row === null ? null : jobs.get(row);
     if (!job) {
       process.disconnect();
       return;
     }
-    driveRow(job, recordings, index, regressors).then(tell, (error: unknown) => {
+    driveRow(job, recordings, index, regressors).then(send, (error: unknown) => {
       console.error(`${job.row}: ${reasonOf(error)}`);
       process.exit(1);
     });
   });
-  tell('ready');
+  send('ready');
 }
 
 // Only as the program of a child process: tests import what is above.

@@ -3,7 +3,6 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import * as v from 'valibot';
 import { tableRow } from '../../table-row';
@@ -13,18 +12,17 @@ import { compareFrames, type FrameTable, readFrames, writeFrames } from './golde
 import { type Extent, planGoldens } from './golden-plan';
 import type { RowResult, WorkerMessage, WorkerTask } from './golden-worker';
 
-const { values: options } = parseArgs({
-  options: {
-    recordings: { type: 'string' },
-    models: { type: 'string' },
-    golden: { type: 'string' },
-    frames: { type: 'string' },
-    write: { type: 'boolean' },
-    quick: { type: 'boolean' },
-    all: { type: 'boolean' },
-    only: { type: 'string' },
-  },
-});
+/** What `npm run goldens` asks for; folders and the file of the goldens with full paths. */
+interface GoldensRequest {
+  readonly recordings: string;
+  readonly models: string;
+  readonly golden: string;
+  readonly frames: string;
+  readonly write?: boolean;
+  readonly quick?: boolean;
+  readonly all?: boolean;
+  readonly only?: string;
+}
 
 const tableSchema = v.record(v.string(), v.record(v.string(), v.number()));
 const goldenSchema = v.object({
@@ -168,9 +166,8 @@ function printPlaces(results: readonly RowResult[]): void {
   }
 }
 
-async function main(): Promise<number> {
-  const { recordings, models, golden, frames, write = false, quick = false, all = false, only } = options;
-  if (!recordings || !models || !golden || !frames) throw new Error('goldens: `npm run goldens` gives the folders');
+async function main(request: GoldensRequest): Promise<number> {
+  const { recordings, models, golden, frames, write = false, quick = false, all = false, only } = request;
   if (write && only) throw new Error('goldens: --only compares; --write freezes every row');
   const extent: Extent = quick ? 'quick' : 'full';
   const index = readIndex(recordings);
@@ -208,7 +205,7 @@ async function main(): Promise<number> {
   return 0;
 }
 
-process.exitCode = await main().catch((error: unknown) => {
+process.exitCode = await main(JSON.parse(process.argv[2] ?? '') as GoldensRequest).catch((error: unknown) => {
   console.error(reasonOf(error));
   return 1;
 });

@@ -3,14 +3,13 @@
 
 import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { parseArgs } from 'node:util';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { gaitOutputCount } from 'threepoint/core/estimation/gait/gait';
 import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estimation/gait/gait-features';
 import { sides } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import { loadRegressors } from '../networks';
-import { readIndex } from '../recordings';
+import { peopleOf, readIndex } from '../recordings';
 import { type DrivenLegs, driveLegs } from './leg-drivers';
 
 /** Bodies that people wear: with both kinds of pelvis above them the feet are the same. */
@@ -49,15 +48,15 @@ function framesOf(clip: DrivenLegs, driver: (typeof drivers)[number], rateHz: nu
 }
 
 async function main(): Promise<void> {
-  const text = { type: 'string' } as const;
-  const { recordings, models, out } = parseArgs({ options: { recordings: text, models: text, out: text } }).values;
-  if (!recordings || !models || !out)
-    throw new Error('gait-frames: --recordings, --models and --out are needed; `npm run train:gait` gives them');
+  const { recordings, models, out } = JSON.parse(process.argv[2] ?? '') as Record<
+    'recordings' | 'models' | 'out',
+    string
+  >;
   const index = readIndex(recordings);
   const learned = (await loadRegressors(models)).get('learned') ?? null;
   mkdirSync(out, { recursive: true });
   const people: Record<string, number> = {};
-  for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
+  for (const person of peopleOf(index.clips)) {
     const clips = await driveLegs(recordings, index, person, learned);
     if (clips.length === 0) {
       console.log(`${person}: no legs with toes in these recordings`);

@@ -1,15 +1,13 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { parseArgs } from 'node:util';
 import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait/gait';
 import { recordOf } from 'threepoint/core/records';
 import { tableRow } from '../../table-row';
-import { mannequinLegs } from '../leg-proportions';
 import { loadRegressors } from '../networks';
-import { readIndex } from '../recordings';
-import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
+import { peopleOf, readIndex } from '../recordings';
+import { bodyOf, driveLegs, type LegDriver, legDrivers, mannequinLegs } from './leg-drivers';
 import { addLegs, emptyLegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
 
 function print(title: string, reports: readonly (readonly [string, LegReport])[]): void {
@@ -44,18 +42,18 @@ interface PersonLegs extends Record<LegDriver, LegReport> {
 }
 
 async function main(): Promise<void> {
-  const text = { type: 'string' } as const;
-  const { values } = parseArgs({ options: { recordings: text, models: text, json: text, gaits: text } });
-  const { recordings, models, json } = values;
-  if (!recordings || !models)
-    throw new Error('legs: --recordings and --models are needed; `npm run evaluate` gives them');
+  const { recordings, models, json, gaits } = JSON.parse(process.argv[2] ?? '') as Record<
+    'recordings' | 'models',
+    string
+  > &
+    Partial<Record<'json' | 'gaits', string>>;
   const index = readIndex(recordings);
   const learned = (await loadRegressors(models)).get('learned') ?? null;
   const seen = new Set(learned?.contract.trainedOn.people);
-  const gaitOf = gaitsOf(values.gaits);
+  const gaitOf = gaitsOf(gaits);
   const legsOf = await mannequinLegs();
   const people: Record<string, PersonLegs> = {};
-  for (const person of [...new Set(index.clips.map((clip) => clip.person))].sort()) {
+  for (const person of peopleOf(index.clips)) {
     const measures = recordOf(legDrivers, emptyLegMeasures);
     const clips = await driveLegs(recordings, index, person, learned);
     const network = gaitOf(person);

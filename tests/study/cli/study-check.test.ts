@@ -89,7 +89,7 @@ describe('what a plan comes to', () => {
 
 describe('npm run study:check', () => {
   const check = (...args: readonly string[]) =>
-    spawnSync(process.execPath, ['scripts/study-check.mjs', ...args], { cwd: root, encoding: 'utf8' });
+    spawnSync(process.execPath, ['scripts/program.mjs', 'study:check', ...args], { cwd: root, encoding: 'utf8' });
 
   test('says what a participant sees and how long it takes, and that orders are not balanced', () => {
     const { status, stdout } = check('public/studies/paper.json', '--participant', 'P02');

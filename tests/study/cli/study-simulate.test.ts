@@ -97,7 +97,10 @@ test('the source of chance is standard normal', () => {
 
 describe('npm run study:simulate', () => {
   const simulateInto = (out: string, ...args: string[]) =>
-    spawnSync(process.execPath, ['scripts/study-simulate.mjs', '--out', out, ...args], { cwd: root, encoding: 'utf8' });
+    spawnSync(process.execPath, ['scripts/program.mjs', 'study:simulate', '--out', out, ...args], {
+      cwd: root,
+      encoding: 'utf8',
+    });
 
   test('writes exports that say SIMULATED, and reads back as one study', () => {
     const out = join(directoryWith(), 'new');

@@ -30,11 +30,9 @@ function person(
   { skin, hair, top, bottom }: Colours,
   triangles = usualTriangles,
 ): Figure {
-  const made = personOf(measures);
   return {
-    ...made,
+    ...personOf(measures),
     name,
-    title: `threepoint ${name}`,
     rest: 'Skin',
     box: [
       [-0.92, -0.02, -0.24],
@@ -56,7 +54,6 @@ function person(
       { name: 'faceSkin', materials: ['Skin', 'Details'], ofHead: true },
       { name: 'hairSkin', materials: ['Hair'], ofHead: true },
     ],
-    ofHead: (label, middle) => label === 'Hair' || (label !== 'Top' && label !== 'Bottom' && made.ofHead(...middle)),
   };
 }
 

@@ -1,18 +1,12 @@
-import type { FaceShape, Figure } from './figure';
+import type { FaceShape, Figure, Label, Seam } from './figure';
 import { hipLine } from './rig';
-import type { Point } from './signed-distance';
+import { type Point, smoothstep } from './signed-distance';
 import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, refine, type Surface } from './surface';
-import type { Label, Seam } from './surface-labels';
 import { skinWeights } from './weights';
 import { type Skinned, writeVrm } from './write-vrm';
 
 /** Finer than a finger's fillet [m]. */
 const cell = 0.0042;
-
-const smoothstep = (start: number, end: number, value: number): number => {
-  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
-  return t * t * (3 - 2 * t);
-};
 
 /** Returns vertex weights that keep detail in face, hands and shoulders. */
 function importance({ positions }: Surface, { rig, careful }: Figure): Float32Array {

@@ -1,6 +1,6 @@
 import { averageFace, averageHead, foldedX, movedRegion, type Part, part, type Region } from './anatomy';
-import { ellipsoid, moved, type Point } from './signed-distance';
-import type { Seam } from './surface-labels';
+import type { Seam } from './figure';
+import { ellipsoid, moved, type Point, smoothstep } from './signed-distance';
 
 /** A face against the average one. */
 export interface FaceMeasures {
@@ -65,20 +65,17 @@ const movedOnHead = (
 
 /** Skull, jaw and chin. */
 export function skullOf({ jaw = 1 }: FaceMeasures): Region {
-  const [skull, middle, ...rest] = averageHead.parts;
-  const [chin, mandible, ...upper] = rest;
-  const narrower = (one: Part | undefined): Part[] =>
-    one ? [{ ...one, solid: moved(one.solid, { factor: [jaw, 1, 1] }) }] : [];
-  const above = [skull, middle].flatMap((one) => one ?? []);
-  return { ...averageHead, parts: [...above, ...narrower(chin), ...narrower(mandible), ...upper] };
+  const narrower = (one: Part): Part => ({ ...one, solid: moved(one.solid, { factor: [jaw, 1, 1] }) });
+  // Chin and jawbone are the third and the fourth part of the average head.
+  return { ...averageHead, parts: averageHead.parts.map((one, i) => (i === 2 || i === 3 ? narrower(one) : one)) };
 }
 
 /** Nose and lips. */
 export function featuresOf({ nose = 1 }: FaceMeasures): Region {
   const about: Point = [0, 1.585, 0.08];
-  const [bridge, wings, ...lips] = averageFace.parts;
   const smaller = (one: Part): Part => ({ ...one, solid: moved(one.solid, { about, factor: [nose, nose, nose] }) });
-  return { ...averageFace, parts: [...[bridge, wings].flatMap((one) => (one ? [smaller(one)] : [])), ...lips] };
+  // The first two parts of the average face are its nose; lips follow.
+  return { ...averageFace, parts: averageFace.parts.map((one, i) => (i < 2 ? smaller(one) : one)) };
 }
 
 /** Eyeballs, bulging a little under their lids. */
@@ -201,11 +198,6 @@ export function faceSeams(face: FaceMeasures): readonly Seam[] {
     ...mouthSeams(face, 'MouthLine', 'Lips'),
   ];
 }
-
-const smoothstep = (start: number, end: number, value: number): number => {
-  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
-  return t * t * (3 - 2 * t);
-};
 
 /** How long a triangle's edges may be there [m]: short on a face, shortest at eyes and mouth. */
 export function faceFineness(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): number {

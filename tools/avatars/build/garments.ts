@@ -1,6 +1,6 @@
+import type { Label } from './figure';
 import type { BodyRig } from './rig';
-import { type DistanceField, smoothBoth, smoothUnion } from './signed-distance';
-import type { Label } from './surface-labels';
+import { type DistanceField, smoothBoth, smoothstep, smoothUnion } from './signed-distance';
 
 /** What a person wears. All [m]. */
 export interface GarmentStyle {
@@ -34,11 +34,6 @@ interface Undressed {
   readonly arm: DistanceField;
   readonly foot: DistanceField;
 }
-
-const smoothstep = (start: number, end: number, value: number): number => {
-  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
-  return t * t * (3 - 2 * t);
-};
 
 /**
  * How high a place is above the edge of a top's neck [m]: round the neck's root, higher behind; further out cloth

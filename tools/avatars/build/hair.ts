@@ -1,13 +1,8 @@
 import { foldedX } from './anatomy';
 import { type FaceMeasures, onAverageHead } from './faces';
-import { type DistanceField, ellipsoid, smoothBoth, smoothUnion, taperedCapsule } from './signed-distance';
+import { type DistanceField, ellipsoid, smoothBoth, smoothstep, smoothUnion, taperedCapsule } from './signed-distance';
 
 export type HairStyle = 'bob' | 'short' | 'curls' | 'tousled';
-
-const smoothstep = (start: number, end: number, value: number): number => {
-  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
-  return t * t * (3 - 2 * t);
-};
 
 /** Height [m] above which the head has hair: from the forehead over the ears down to the nape. */
 const hairline = (forehead: number, ears: number, nape: number, z: number): number =>

@@ -1,9 +1,8 @@
 import { mannequinAnatomy } from './anatomy';
 import { type MouthMeasures, mouthFineness, mouthSeams, openMouth } from './faces';
-import type { Figure } from './figure';
+import type { Figure, Seam } from './figure';
 import { hipLine, makeRig } from './rig';
 import { smoothBoth } from './signed-distance';
-import type { Seam } from './surface-labels';
 
 const rig = makeRig();
 
@@ -51,7 +50,6 @@ const seams: readonly Seam[] = [
 export const mannequin: Figure = {
   ...mannequinAnatomy(rig),
   name: 'mannequin',
-  title: 'threepoint mannequin',
   rest: 'Suit',
   seams,
   box: [

@@ -30,13 +30,12 @@ import {
   openMouth,
   skullOf,
 } from './faces';
-import type { Displacement, Figure } from './figure';
+import type { Displacement, Figure, Seam } from './figure';
 import { type GarmentStyle, type Garments, garmentsOf } from './garments';
 import { type HairStyle, hairOf } from './hair';
 import { makeRig, type RigMeasures } from './rig';
 import { type DistanceField, ellipsoid, type Point, smoothUnion } from './signed-distance';
 import { projectOnto } from './surface';
-import type { Seam } from './surface-labels';
 
 /** Half width and half depth [m]. */
 type Girth = readonly [number, number];
@@ -59,16 +58,6 @@ export interface PersonMeasures {
   readonly head: FaceMeasures;
   readonly hair: HairStyle;
   readonly wears: GarmentStyle;
-}
-
-/** A body with clothes, hair and a face: what to mesh, and the seams between its materials. */
-export interface Person extends Anatomy {
-  readonly seams: readonly Seam[];
-  /** No edge of a triangle may be longer there [m]: on the face and where a top ends. */
-  readonly finer: (x: number, y: number, z: number) => number;
-  readonly shapes: Figure['shapes'];
-  /** Whether a place belongs to what the own eyes do not see: head, neck and hair. */
-  readonly ofHead: (x: number, y: number, z: number) => boolean;
 }
 
 function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: PersonMeasures): Region {
@@ -108,7 +97,10 @@ const onSurface =
     );
   };
 
-export function personOf(measures: PersonMeasures): Person {
+/** Returns a body with clothes, hair and a face: what to mesh, and the seams between its materials. */
+export function personOf(
+  measures: PersonMeasures,
+): Pick<Figure, keyof Anatomy | 'seams' | 'finer' | 'shapes' | 'ofHead'> {
   const rig = makeRig(measures.rig);
   const { head: face, neck: n, feet } = measures;
   const torso = torsoOf(measures);
@@ -165,6 +157,6 @@ export function personOf(measures: PersonMeasures): Person {
       blink: onSurface(body, (x, y, z) => closedEyes(face, x, y, z)),
       aa: (x, y, z) => openMouth(face, x, y, z),
     },
-    ofHead: (_, y, z) => y > collar(z),
+    ofHead: (label, [, y, z]) => label === 'Hair' || (label !== 'Top' && label !== 'Bottom' && y > collar(z)),
   };
 }

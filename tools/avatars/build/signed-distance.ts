@@ -129,6 +129,12 @@ export function smoothUnion(a: number, b: number, blend: number): number {
 /** What is inside both, its edge rounded by about `blend` [m]. */
 export const smoothBoth = (a: number, b: number, blend: number): number => -smoothUnion(-a, -b, blend);
 
+/** Rises from 0 at `start` to 1 at `end` [or falls, where the end is less], without a corner. */
+export const smoothstep = (start: number, end: number, value: number): number => {
+  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
+  return t * t * (3 - 2 * t);
+};
+
 /** The unit normal: the direction in which the distance grows. */
 export function gradient(field: DistanceField, x: number, y: number, z: number, step = 5e-4): [number, number, number] {
   const gx = field(x + step, y, z) - field(x - step, y, z);

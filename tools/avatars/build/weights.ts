@@ -1,5 +1,6 @@
 import { type Anatomy, foldedX } from './anatomy';
 import { type BodyRig, hipLine } from './rig';
+import { smoothstep } from './signed-distance';
 import { type Surface, smoothOver } from './surface';
 
 /** Four bones and weights per vertex; weights sum to 1. */
@@ -9,11 +10,6 @@ export interface SkinWeights {
 }
 
 const influences = 4;
-
-const smoothstep = (start: number, end: number, value: number): number => {
-  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
-  return t * t * (3 - 2 * t);
-};
 
 /** The trunk's skin: handed up the spine by height [m], each vertebra blending into the next. */
 function trunkWeights(y: number): [string, number][] {

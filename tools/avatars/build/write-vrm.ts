@@ -1,7 +1,6 @@
 import { type Accessor, Document, type Material, NodeIO } from '@gltf-transform/core';
-import type { FaceShape, Figure, MeshPlan } from './figure';
+import { type FaceShape, type Figure, type Label, labels, type MaterialName, type MeshPlan, tintOf } from './figure';
 import type { Surface } from './surface';
-import { type Label, labels, type MaterialName, tintOf } from './surface-labels';
 import type { SkinWeights } from './weights';
 
 /** A body's skin, cut and weighed. */
@@ -40,6 +39,10 @@ export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8A
     .setSkeleton(nodes.get('hips')!)
     .setInverseBindMatrices(document.createAccessor().setType('MAT4').setArray(inverseBinds).setBuffer(buffer));
   for (const { name } of bones) skeleton.addJoint(nodes.get(name)!);
+  const accessor = (type: 'VEC3' | 'VEC4' | 'SCALAR', array: Float32Array | Uint8Array | Uint16Array): Accessor =>
+    document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+  // Meshes share materials; one that no triangle has is not created.
+  const materials = new Map<MaterialName, Material>();
   const shaped = new Map<string, readonly FaceShape[]>();
   for (const plan of figure.meshes) {
     const mesh = document.createMesh(plan.name);
@@ -48,9 +51,9 @@ export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8A
       .filter(({ own }) => own.indices.length > 0);
     const shapes = skinned.shapes.filter(({ moves }) => parts.some(({ own }) => movesAny(own.vertices, moves)));
     for (const { name, own } of parts) {
-      const primitive = document.createPrimitive().setMaterial(material(document, figure, name));
-      const accessor = (type: 'VEC3' | 'VEC4' | 'SCALAR', array: Float32Array | Uint8Array | Uint16Array): Accessor =>
-        document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+      const material = materials.get(name) ?? createMaterial(document, figure, name);
+      materials.set(name, material);
+      const primitive = document.createPrimitive().setMaterial(material);
       const pick = (size: number, from: ArrayLike<number>): number[] =>
         own.vertices.flatMap((vertex) => Array.from({ length: size }, (_, i) => from[vertex * size + i]!));
       primitive
@@ -119,23 +122,15 @@ function ownVertices(skinned: Skinned, name: MaterialName, { ofHead }: MeshPlan)
   return { vertices, indices, tints: tints.every((byte) => byte === 255) ? null : tints };
 }
 
-const made = new WeakMap<Document, Map<MaterialName, Material>>();
-
-function material(document: Document, { colors }: Figure, name: MaterialName): Material {
-  const known = made.get(document) ?? new Map<MaterialName, Material>();
-  made.set(document, known);
+function createMaterial(document: Document, { colors }: Figure, name: MaterialName): Material {
   const look = colors[name];
   if (!look) throw new Error(`build-avatar: no colour for ${name}`);
   const { color, roughness, metallic = 0 } = look;
-  const material =
-    known.get(name) ??
-    document
-      .createMaterial(name)
-      .setBaseColorFactor([...color, 1])
-      .setRoughnessFactor(roughness)
-      .setMetallicFactor(metallic);
-  known.set(name, material);
-  return material;
+  return document
+    .createMaterial(name)
+    .setBaseColorFactor([...color, 1])
+    .setRoughnessFactor(roughness)
+    .setMetallicFactor(metallic);
 }
 
 /** Weights as bytes whose four sum to 255 exactly. */
@@ -165,7 +160,7 @@ interface GltfJson {
  */
 function withVrm(
   glb: Uint8Array,
-  { title, rig, meshes, shapes }: Figure,
+  { name, rig, meshes, shapes }: Figure,
   shaped: ReadonlyMap<string, readonly FaceShape[]>,
 ): Uint8Array {
   const view = new DataView(glb.buffer, glb.byteOffset, glb.byteLength);
@@ -173,8 +168,8 @@ function withVrm(
   const json = JSON.parse(new TextDecoder().decode(glb.subarray(20, 20 + jsonLength))) as GltfJson;
   const node = (name: string): number => json.nodes.findIndex((candidate) => candidate.name === name);
   const binds = (shape: FaceShape) =>
-    [...shaped].flatMap(([name, targets]) =>
-      targets.includes(shape) ? [{ node: node(name), index: targets.indexOf(shape), weight: 1 }] : [],
+    [...shaped].flatMap(([mesh, targets]) =>
+      targets.includes(shape) ? [{ node: node(mesh), index: targets.indexOf(shape), weight: 1 }] : [],
     );
   const preset = Object.keys(shapes).map((shape) => [shape, { morphTargetBinds: binds(shape as FaceShape) }]);
   json.asset.generator = 'threepoint build-avatar';
@@ -184,7 +179,7 @@ function withVrm(
     VRMC_vrm: {
       specVersion: '1.0',
       meta: {
-        name: title,
+        name: `threepoint ${name}`,
         version: '1',
         authors: ['threepoint'],
         licenseUrl: 'https://vrm.dev/licenses/1.0/',

@@ -16,7 +16,6 @@ import {
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 const left = scale(right, -1);
-const inwards = { left: right, right: left };
 
 /** A wrist whose fingers point this way and whose palm faces that way, as far as the fingers leave it. */
 function wrist(fingers: Vec3, palm: Vec3): Quat {
@@ -55,7 +54,7 @@ const ankle = (x: number, y: number, z: number): TrackedPose => point(vec3(x, y,
 
 const onKnees = both({ at: vec3(-0.13, 0.62, -0.36), fingers: forward, palm: down });
 
-const hanging: Hand = { at: vec3(-0.24, 0.83, 0.02), fingers: down, palm: inwards.left };
+const hanging: Hand = { at: vec3(-0.24, 0.83, 0.02), fingers: down, palm: right };
 
 interface Posture {
   readonly name: string;
@@ -66,19 +65,11 @@ interface Posture {
 export const postures: readonly Posture[] = [
   {
     name: 'T-pose',
-    frame: posture(
-      eyes,
-      { at: vec3(-0.74, 1.42, 0.08), fingers: left, palm: down },
-      { at: vec3(0.74, 1.42, 0.08), fingers: right, palm: down },
-    ),
+    frame: posture(eyes, ...both({ at: vec3(-0.74, 1.42, 0.08), fingers: left, palm: down })),
   },
   {
     name: 'reach up',
-    frame: posture(
-      eyes,
-      { at: vec3(-0.24, 1.98, -0.03), fingers: up, palm: forward },
-      { at: vec3(0.24, 1.98, -0.03), fingers: up, palm: forward },
-    ),
+    frame: posture(eyes, ...both({ at: vec3(-0.24, 1.98, -0.03), fingers: up, palm: forward })),
   },
   {
     name: 'bow drawn',
@@ -90,11 +81,7 @@ export const postures: readonly Posture[] = [
   },
   {
     name: 'crouch',
-    frame: posture(
-      vec3(0, 1.02, -0.16),
-      { at: vec3(-0.28, 0.68, -0.42), fingers: forward, palm: down },
-      { at: vec3(0.28, 0.68, -0.42), fingers: forward, palm: down },
-    ),
+    frame: posture(vec3(0, 1.02, -0.16), ...both({ at: vec3(-0.28, 0.68, -0.42), fingers: forward, palm: down })),
   },
   {
     name: 'wave',
@@ -181,7 +168,7 @@ export const trackedPostures: readonly Posture[] = [
   {
     name: 'knee raised',
     frame: {
-      ...posture(eyes, hanging, { ...hanging, at: mirrored(hanging.at), palm: inwards.right }),
+      ...posture(eyes, ...both(hanging)),
       trackers: {
         hips: point(vec3(0, 0.98, 0.1), identity),
         leftFoot: ankle(-0.1, 0.51, -0.34),

@@ -18,7 +18,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
-import { swivelAngle } from '../../../../bench/evaluate/swivel-angle';
+import { swivelAngle } from '../../../../bench/evaluate/measures';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { standing, wristOrientation } from './moving-person';

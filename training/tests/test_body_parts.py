@@ -1,8 +1,7 @@
 """Facts about how often postures are drawn."""
 
 import numpy as np
-from threepoint_training import posture_rarity
-from threepoint_training.body_parts import BalanceConfig, BodyParts
+from threepoint_training.body_parts import BalanceConfig, BodyParts, clusters_of
 from threepoint_training.generated_motion import generate_corpus
 
 
@@ -10,7 +9,7 @@ def test_clusters_part_postures_that_lie_apart():
     random = np.random.default_rng(1)
     owner = np.repeat(np.arange(3), (600, 60, 20))
     postures = np.array([[0.0, 0.0], [5.0, 0.0], [0.0, 5.0]])[owner] + random.normal(scale=0.1, size=(680, 2))
-    found = posture_rarity.cluster(postures, 12)
+    found = clusters_of(postures, 12)
     assert all(len(set(owner[found == label])) == 1 for label in set(found))
 
 
