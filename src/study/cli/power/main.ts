@@ -27,7 +27,7 @@ function needed(rows: readonly PowerRow[], test: 't' | 'wilcoxon', power: number
   return row ? `${row.n}` : `more than ${maxSimulated}`;
 }
 
-function tell(): void {
+function printTable(): void {
   const { design, power, seed, studies, ...planned } = checked(asked, JSON.parse(process.argv[2] ?? '{}'));
   const rows = powerTable({ design, ...planned }, power, { seed, studies });
   const paired = design === 'paired';
@@ -50,7 +50,7 @@ function tell(): void {
 }
 
 try {
-  tell();
+  printTable();
 } catch (error) {
   if (!(error instanceof ValidationError)) throw error;
   console.error(`study:power: --${error.message}`);
