@@ -7,7 +7,6 @@ import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
 import { createExporter } from './export/exporter';
 import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
 import type { StudyRequest, StudyRoute } from './routes/route';
-import { createStudyRoutes } from './routes/routes';
 import { createStudySeats, type SignSeat } from './routes/seats';
 import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/study-folder';
 import type { StudyStore } from './storage/study-store';
@@ -100,8 +99,8 @@ export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat):
       const folder = openStudyFolder(options, at, log);
       const { store, experimenterToken, tokenFile } = folder;
       const { directory, software } = options;
-      const routes = createStudyRoutes({
-        ...{ store, experimenterToken, software },
+      const dispatcher = new StudyDispatcher({
+        ...{ store, experimenterToken, software, log },
         seats: createStudySeats(
           secret,
           createSignSeat(secret, () => newest),
@@ -109,9 +108,8 @@ export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat):
         makeZip: createExporter(join(directory, 'studies.db')),
         onWrongGuess: (guess) => log(wrongGuess(guess)),
       });
-      const dispatcher = new StudyDispatcher({ routes, store, log });
       serving = { folder, dispatcher, forgetting: keepForgetting(store, log) };
-      return { routes: routes.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
+      return { routes: dispatcher.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
     } catch (error) {
       if (error instanceof ConfigurationError) return { problem: error.message };
       throw error;

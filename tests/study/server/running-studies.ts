@@ -7,7 +7,6 @@ import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import type { StudyPlan } from 'threepoint-study/model/plan/plan';
 import { createExporter } from 'threepoint-study/server/export/exporter';
 import { StudyDispatcher } from 'threepoint-study/server/routes/dispatcher';
-import { createStudyRoutes } from 'threepoint-study/server/routes/routes';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { createStudyService } from 'threepoint-study/server/service';
 import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
@@ -34,7 +33,6 @@ interface InThisThread {
   readonly store: StudyStore;
   /** The database of the store. */
   readonly file: string;
-  readonly experimenterToken?: string | null;
   readonly now?: () => number;
   readonly trustProxy?: boolean;
   /** Receives the lines of the log. */
@@ -46,20 +44,18 @@ interface InThisThread {
 export function studiesInThisThread({
   store,
   file,
-  experimenterToken = experimenter,
   now: clock = () => now,
   trustProxy = true,
   log = (line) => expect(line).toBeNull(),
   onWrongGuess = () => undefined,
 }: InThisThread) {
-  const routes = createStudyRoutes({
-    ...{ store, experimenterToken, onWrongGuess },
+  const dispatcher = new StudyDispatcher({
+    ...{ store, experimenterToken: experimenter, onWrongGuess, log },
     seats: studySeats,
     software: testSoftware.exportedBy,
     makeZip: createExporter(file),
   });
-  const dispatcher = new StudyDispatcher({ routes, store, log });
-  return createStudyService({ routes: routes.routes, dispatcher, now: clock, trustProxy, log });
+  return createStudyService({ routes: dispatcher.routes, dispatcher, now: clock, trustProxy, log });
 }
 
 // biome-ignore lint/suspicious/noExplicitAny: reason: an answer over HTTP has no type; each test states it
@@ -76,7 +72,6 @@ export interface Asked {
 export interface ServedOptions {
   /** The database; a new one where none is named. */
   readonly file?: string;
-  readonly experimenterToken?: string | null;
   readonly maxBytes?: number;
   /** The disk under the store: resolves when what was written is on it. */
   readonly flush?: () => Promise<void>;
@@ -87,7 +82,6 @@ export interface ServedOptions {
 /** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
 export async function servedStudies({
   file = join(directoryWith(), 'studies.db'),
-  experimenterToken = experimenter,
   maxBytes = 2 ** 30,
   flush,
   idleTimeoutMs = 30_000,
@@ -98,7 +92,7 @@ export async function servedStudies({
   const faults: string[] = [];
   const wrongGuesses: FailedAttempt[] = [];
   const service = studiesInThisThread({
-    ...{ store, file, experimenterToken },
+    ...{ store, file },
     onWrongGuess: (guess) => wrongGuesses.push(guess),
     log: (line) => faults.push(line),
   });

@@ -1,6 +1,6 @@
 import type { HttpResponse } from 'threepoint-http/response';
 import { exportName } from '../export/export-zip';
-import type { StudyAccess } from './guard';
+import type { RouteAccess } from './guard';
 import { type Handle, route, type StudyParts, type StudyRoute } from './route';
 
 interface ExportAsked {
@@ -26,7 +26,7 @@ export async function exportOf({ store, software, makeZip }: StudyParts, asked: 
 }
 
 /** Returns a route whose answer is an export. */
-export const exporting = (path: string, access: StudyAccess, handle: Handle): StudyRoute => ({
+export const exporting = (path: string, access: RouteAccess, handle: Handle): StudyRoute => ({
   ...route('GET', path, access, 0, handle),
   isPatient: true,
 });

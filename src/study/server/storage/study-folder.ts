@@ -1,14 +1,14 @@
 import { randomBytes } from 'node:crypto';
 import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { secretWeakness } from 'threepoint-http/secret-strength';
 import type { Software } from 'threepoint-http/software-version';
-import { FolderInUse, FolderLock } from './folder-lock';
 import { DatabaseProblem } from './schema';
-import { sqliteCodeOf } from './sqlite-errors';
-import { StoreRefusal } from './store-refusal';
+import { StoreRefusal, sqliteBusy, sqliteCodeOf } from './store-refusal';
+import { createPrivateFile } from './study-database';
 import { openStudyStore, type StudyStore } from './study-store';
 
 /** The open folder of the studies, which no other server uses. */
@@ -55,13 +55,31 @@ function prepare(directory: string, log: (line: string) => void): void {
   }
 }
 
+/**
+ * Locks the folder until the lock is closed or the process ends: it is an exclusive transaction of SQLite. Throws a
+ * ConfigurationError if another server holds it.
+ */
+function lockFolder(directory: string): DatabaseSyncInstance {
+  const file = join(directory, 'studies.lock');
+  createPrivateFile(file);
+  const lock = new DatabaseSync(file);
+  try {
+    // Without a journal the lock needs no room on the disk.
+    lock.exec('PRAGMA journal_mode = MEMORY; BEGIN EXCLUSIVE');
+    return lock;
+  } catch (error) {
+    lock.close();
+    if (((sqliteCodeOf(error) ?? 0) & 0xff) !== sqliteBusy) throw error;
+    throw new ConfigurationError(
+      `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`,
+    );
+  }
+}
+
 /** Returns how to repair a folder that cannot be opened, or null for unrelated errors. */
 function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
-  if (error instanceof FolderInUse) {
-    return `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`;
-  }
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
   if (error instanceof StoreRefusal)
     return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
@@ -109,13 +127,13 @@ export function openStudyFolder(
   at: number,
   log: (line: string) => void,
 ): StudyFolder {
-  const opened: (FolderLock | StudyStore)[] = [];
+  const opened: { close(): void }[] = [];
   const close = () => {
     for (const part of opened.toReversed()) part.close();
   };
   try {
     prepare(directory, log);
-    opened.push(new FolderLock(join(directory, 'studies.lock')));
+    opened.push(lockFolder(directory));
     const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
     const experimenterToken = token ?? keptToken(tokenFile as string);
     const store = openStudyStore(join(directory, 'studies.db'));
