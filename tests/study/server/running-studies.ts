@@ -1,3 +1,4 @@
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { FailedAttempt } from 'threepoint-http/auth-throttle';
 import { GroupCommit } from 'threepoint-http/group-commit';
@@ -8,7 +9,7 @@ import type { StudyPlan } from 'threepoint-study/model/plan/plan';
 import { createExporter } from 'threepoint-study/server/export/exporter';
 import { StudyDispatcher } from 'threepoint-study/server/routes/dispatcher';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
-import { createStudyService } from 'threepoint-study/server/service';
+import { createStudyService, openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished } from 'vitest';
 import { testSecret } from '../../rooms/server/running-relay';
@@ -37,7 +38,7 @@ interface InThisThread {
   readonly trustProxy?: boolean;
   /** Receives the lines of the log. */
   readonly log?: (line: string) => void;
-  readonly onWrongGuess?: (guess: FailedAttempt) => void;
+  readonly onFailedAttempt?: (guess: FailedAttempt) => void;
 }
 
 /** The studies' part of a server in the thread of the test, which shares its store. */
@@ -47,15 +48,41 @@ export function studiesInThisThread({
   now: clock = () => now,
   trustProxy = true,
   log = (line) => expect(line).toBeNull(),
-  onWrongGuess = () => undefined,
+  onFailedAttempt = () => undefined,
 }: InThisThread) {
   const dispatcher = new StudyDispatcher({
-    ...{ store, experimenterToken: experimenter, onWrongGuess, log },
+    ...{ store, experimenterToken: experimenter, onFailedAttempt, log },
     seats: studySeats,
     software: testSoftware.exportedBy,
     makeZip: createExporter(file),
   });
   return createStudyService({ routes: dispatcher.routes, dispatcher, now: clock, trustProxy, log });
+}
+
+/**
+ * Serves the studies of a folder from their thread on a port of loopback, until the test is over. Rejects as the start
+ * does. `token` null: the one in the folder.
+ */
+export async function servedFolder(directory: string, token: string | null = experimenter, at = 1e9) {
+  const lines: string[] = [];
+  const studies = await openStudyService({
+    thread: studyThread,
+    ...{ directory, token, secret: testSecret, software: testSoftware.exportedBy },
+    now: () => at,
+    trustProxy: false,
+    log: (line) => lines.push(line),
+  });
+  const server = await serve(createRouter([studies.service], noPage), { host: '127.0.0.1', port: 0 });
+  let open = true;
+  const stop = async () => {
+    if (!open) return;
+    open = false;
+    await server.close();
+    await studies.close();
+  };
+  onTestFinished(stop);
+  const savedToken = studies.tokenFile === null ? null : readFileSync(studies.tokenFile, 'utf8').trim();
+  return { origin: `http://127.0.0.1:${server.port}`, tokenFile: studies.tokenFile, savedToken, lines, stop };
 }
 
 // biome-ignore lint/suspicious/noExplicitAny: reason: an answer over HTTP has no type; each test states it
@@ -90,10 +117,10 @@ export async function servedStudies({
   const commits = flush && new GroupCommit(flush);
   const store = commits ? { ...opened, flushed: () => commits.flush() } : opened;
   const faults: string[] = [];
-  const wrongGuesses: FailedAttempt[] = [];
+  const failedAttempts: FailedAttempt[] = [];
   const service = studiesInThisThread({
     ...{ store, file },
-    onWrongGuess: (guess) => wrongGuesses.push(guess),
+    onFailedAttempt: (guess) => failedAttempts.push(guess),
     log: (line) => faults.push(line),
   });
   const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, idleTimeoutMs });
@@ -123,7 +150,7 @@ export async function servedStudies({
       json: (isJson ? JSON.parse(body.toString()) : null) as Anything,
     };
   }
-  return { ask, store, origin, wrongGuesses };
+  return { ask, store, origin, failedAttempts };
 }
 
 /** Serves the paper's study, changed or not. */

@@ -48,8 +48,8 @@ test('a database from before invitations gives each place one, and loses nothing
   const given = invitations.filter((invitation) => invitation !== null);
   expect(new Set(given).size).toBe(17);
   for (const invitation of given) expect(invitation).toMatch(/^(\w{4}-){3}\w{4}$/);
-  expect(store.places.invites('latency', 'P01', given[0] as string)).toBe(true);
-  expect(store.places.invites('latency', 'P04', given[0] as string)).toBe(false);
+  expect(store.places.acceptsInvitation('latency', 'P01', given[0] as string)).toBe(true);
+  expect(store.places.acceptsInvitation('latency', 'P04', given[0] as string)).toBe(false);
   expect(store.places.holds('latency', 'P02', token)).toBe(true);
   expect(store.records.all('latency')).toEqual(records);
   expect(store.deletion.withdraw('latency', withdrawalCode, now)).toMatchObject({ participant: 'P02' });

@@ -53,11 +53,12 @@ const asksMore = latencyPlan({
 
 describe('a plan that has participants', () => {
   test('is frozen: a change is refused in a sentence that says who keeps it and what can be done', async () => {
-    const { change, see } = await begunStudy();
+    const { plan, change, see } = await begunStudy();
     const { status, json } = await change(later);
     expect(status).toBe(409);
     expect(json.field).toBe('newVersion');
     expect(json.error).toContain('has begun: P01 keep its plan. Add the plan as version 2');
+    expect((await change(plan)).status).toBe(201);
     expect((await see('/records')).versions).toHaveLength(1);
   });
 
@@ -217,7 +218,7 @@ describe('a place that the experimenter clears', () => {
     const [, ofAll] = invitations();
     store.deletion.delete('latency', 'P01', 'experimenter', now);
     expect(invitations()).toEqual(Array.from({ length: 6 }, () => ofAll));
-    expect(store.places.invites('latency', 'P01', old)).toBe(false);
+    expect(store.places.acceptsInvitation('latency', 'P01', old)).toBe(false);
   });
 
   test('stays taken for a participant who has withdrawn', async () => {

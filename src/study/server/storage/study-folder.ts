@@ -21,21 +21,21 @@ export interface StudyFolder {
 }
 
 /** The format of the tokens that this server generates or has generated. */
-const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
+const generatedToken = /^([\w-]{43}|[\w-]{32})$/;
 
 const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(8).padStart(4, '0');
 
 /** Returns the token in this file, which is generated and written with access for its owner only if it is missing. */
-function keptToken(file: string): string {
+function readOrCreateToken(file: string): string {
   if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
   const token = readFileSync(file, 'utf8').trim();
-  const weakness = drawnToken.test(token) ? null : secretWeakness(token);
+  const weakness = generatedToken.test(token) ? null : secretWeakness(token);
   if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
   return token;
 }
 
 /** Removes the access of other accounts of the machine. Windows has no such modes. */
-function closeToOthers(path: string, mode: number, log: (line: string) => void): void {
+function restrictAccess(path: string, mode: number, log: (line: string) => void): void {
   if (process.platform === 'win32' || !existsSync(path) || (statSync(path).mode & 0o077) === 0) return;
   const before = `${path} was open to other accounts of this machine (mode ${modeOf(path)})`;
   try {
@@ -49,9 +49,9 @@ function closeToOthers(path: string, mode: number, log: (line: string) => void):
 /** Creates the folder and its files with access for the server's account only. */
 function prepare(directory: string, log: (line: string) => void): void {
   mkdirSync(directory, { recursive: true, mode: 0o700 });
-  closeToOthers(directory, 0o700, log);
+  restrictAccess(directory, 0o700, log);
   for (const name of ['studies.db', 'studies.db-wal', 'studies.db-shm', 'studies.lock', 'experimenter-token']) {
-    closeToOthers(join(directory, name), 0o600, log);
+    restrictAccess(join(directory, name), 0o600, log);
   }
 }
 
@@ -135,7 +135,7 @@ export function openStudyFolder(
     prepare(directory, log);
     opened.push(lockFolder(directory));
     const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
-    const experimenterToken = token ?? keptToken(tokenFile as string);
+    const experimenterToken = token ?? readOrCreateToken(tokenFile as string);
     const store = openStudyStore(join(directory, 'studies.db'));
     opened.push(store);
     store.software.note(software, at);
