@@ -39,9 +39,9 @@ export type StudyThreadApi = {
 };
 
 /** The interval at which failed overwriting of deleted data is repeated [ms]. */
-const forgetMs = 1000;
+const purgeMs = 1000;
 
-const wrongGuess = ({ what, of, address, failures }: FailedAttempt): string =>
+const failedAttemptLine = ({ what, of, address, failures }: FailedAttempt): string =>
   `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
 
 type Log = (line: string) => void;
@@ -63,7 +63,7 @@ function expire(store: StudyStore, at: number, log: Log): void {
 }
 
 /** Overwrites deleted data as soon as possible. */
-function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
+function purgeRegularly(store: StudyStore, log: Log): NodeJS.Timeout {
   let isHeld = false;
   return setInterval(() => {
     const wasHeld = isHeld;
@@ -74,7 +74,7 @@ function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
       );
     }
     if (wasHeld && !isHeld) log('study: deleted data is overwritten now');
-  }, forgetMs);
+  }, purgeMs);
 }
 
 interface OpenFolder {
@@ -106,9 +106,9 @@ export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat):
           createSignSeat(secret, () => newest),
         ),
         makeZip: createExporter(join(directory, 'studies.db')),
-        onWrongGuess: (guess) => log(wrongGuess(guess)),
+        onFailedAttempt: (guess) => log(failedAttemptLine(guess)),
       });
-      serving = { folder, dispatcher, forgetting: keepForgetting(store, log) };
+      serving = { folder, dispatcher, forgetting: purgeRegularly(store, log) };
       return { routes: dispatcher.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
     } catch (error) {
       if (error instanceof ConfigurationError) return { problem: error.message };

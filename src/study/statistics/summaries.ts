@@ -65,7 +65,7 @@ export function meanSummary(values: readonly number[]): MeanSummary {
 /** Returns the probability of a t at least this far from 0 on either side, with df degrees of freedom. */
 export const twoSidedP = (t: number, df: number): number => incompleteBeta(df / (df + t * t), df / 2, 0.5);
 
-/** Values that differ by at most this share of the largest input are equal up to rounding. */
+/** The share of the largest input up to which two values are equal but for rounding. */
 const equalWithin = 1e-9;
 
 /**

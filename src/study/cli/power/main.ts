@@ -18,7 +18,7 @@ const asked = v.object({
   seed: given(integerBetween(0, 2 ** 31 - 1), '1'),
 });
 
-/** Rows whose power is this near to the wanted one are all shown; below them every fifth. */
+/** The distance from the wanted power within which every row is shown; below, every fifth row. */
 const closeToIt = 0.05;
 
 /** Returns the first row at which a test reaches the power, in words. */

@@ -116,7 +116,7 @@ function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
 }
 
 /** Returns the text of an event. */
-function saidIn(body: StudyEvent): string {
+function eventText(body: StudyEvent): string {
   switch (body.type) {
     case 'remark':
       return body.text;
@@ -137,7 +137,7 @@ const eventRows = (records: readonly StudyRecord[]) =>
     const { body } = record;
     const place = 'place' in body ? body.place : body.type === 'void-block' ? body : null;
     const { task = null, block = null, run = null } = place ?? {};
-    return [rowFrom(eventColumns, record, { task, block, run, text: saidIn(body) })];
+    return [rowFrom(eventColumns, record, { task, block, run, text: eventText(body) })];
   });
 
 /** Throws if simulated records and records of people are mixed, because no table may contain both. */

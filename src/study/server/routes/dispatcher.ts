@@ -77,8 +77,9 @@ export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, Study
 }
 
 /**
- * Runs the requests to the routes below /api/studies. Requests that change something run one after the other and are answered when the
- * change is on the disk. While one of them waits for the lock of another program, requests that only read go on.
+ * Runs the requests to the routes below /api/studies. Requests that change something run one after the other and are
+ * answered when the change is on the disk. While one of them waits for the lock of another program, requests that only
+ * read go on.
  */
 export class StudyDispatcher {
   readonly routes: readonly StudyRoute[];
@@ -88,9 +89,9 @@ export class StudyDispatcher {
   #lastChange: Promise<unknown> = Promise.resolve();
   #logged = Number.NEGATIVE_INFINITY;
 
-  constructor({ experimenterToken, onWrongGuess, log, ...parts }: StudyDispatcherOptions) {
+  constructor({ experimenterToken, onFailedAttempt, log, ...parts }: StudyDispatcherOptions) {
     const { store } = parts;
-    const guard = createStudyGuard({ store, experimenterToken, onWrongGuess });
+    const guard = createStudyGuard({ store, experimenterToken, onFailedAttempt });
     this.routes = [...studyRoutes({ ...parts, guard }), ...participantRoutes({ ...parts, guard })];
     this.#guard = guard;
     this.#store = store;
@@ -115,14 +116,14 @@ export class StudyDispatcher {
       const until = performance.now() + lockedMs;
       if (route.bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(route.access, sender));
       const run = () => untilUnlocked(until, () => route.handle(call));
-      const answer = await (route.changes ? this.#afterOthers(run) : run());
+      const answer = await (route.changes ? this.#afterEarlierChanges(run) : run());
       if (route.changes) await this.#store.flushed();
       const text = answer.body;
       return typeof text === 'string' ? { ...answer, body: new TextEncoder().encode(text) } : answer;
     });
   }
 
-  #afterOthers<T>(run: () => Promise<T>): Promise<T> {
+  #afterEarlierChanges<T>(run: () => Promise<T>): Promise<T> {
     const result = this.#lastChange.then(run);
     // A request neither fails with the error of the one before it nor keeps its result.
     const over = () => undefined;

@@ -21,7 +21,7 @@ export interface StudyGuardOptions {
   readonly store: Pick<StudyStore, 'plans' | 'places'>;
   /** The experimenter's token, sent as "Authorization: Bearer …". */
   readonly experimenterToken: string;
-  readonly onWrongGuess: (guess: FailedAttempt) => void;
+  readonly onFailedAttempt: (guess: FailedAttempt) => void;
 }
 
 /** The sender of a request and the place in the request. */
@@ -73,9 +73,9 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
 export type StudyGuard = ReturnType<typeof createStudyGuard>;
 
 /** Returns the checks of tokens, invitations and withdrawal codes, which throw HttpErrors. */
-export function createStudyGuard({ store, experimenterToken, onWrongGuess }: StudyGuardOptions) {
+export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: StudyGuardOptions) {
   const experimenterDigest = digest(experimenterToken);
-  const throttle = createAuthThrottle(onWrongGuess);
+  const throttle = createAuthThrottle(onFailedAttempt);
   const spendingOpenPlace = createOpenPlaces();
 
   type Attempted = Omit<AuthAttempt, 'address'> & Pick<Sender, 'address'>;
@@ -121,7 +121,7 @@ export function createStudyGuard({ store, experimenterToken, onWrongGuess }: Stu
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;
       const right = await attempt({ what: 'invitation', address, of: study, secret }, () =>
-        store.places.invites(study, participant, invitation),
+        store.places.acceptsInvitation(study, participant, invitation),
       );
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
