@@ -8,8 +8,11 @@ import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
 
 /** A store in a file of its own, or in this one; closed when the test ends. */
-export function opened(file = join(directoryWith(), 'studies.db')): { store: StudyStore; file: string } {
-  const store = openStudyStore(file);
+export function opened(
+  file = join(directoryWith(), 'studies.db'),
+  options: Parameters<typeof openStudyStore>[1] = {},
+): { store: StudyStore; file: string } {
+  const store = openStudyStore(file, options);
   let open = true;
   const close = store.close;
   store.close = () => {

@@ -51,16 +51,13 @@ export interface StudyParts {
   readonly makeZip: Exporter;
 }
 
-/** Handles a request. */
-export type Handle = StudyRoute['handle'];
-
 /** Returns a route with a path below the prefix and a limit of its JSON body [bytes]. */
 export const route = (
   method: Route['method'],
   path: string,
   access: RouteAccess,
   bodyLimit: number,
-  handle: Handle,
+  handle: StudyRoute['handle'],
 ): StudyRoute => ({
   ...{ method, path: `${prefix}${path}`, access, bodyLimit, handle },
   changes: method !== 'GET',
