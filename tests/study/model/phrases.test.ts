@@ -17,7 +17,7 @@ import { examplePlan, planComplaints } from './studies';
 
 const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));
 
-/** The example in French too: what the plan says itself is alike in all its languages. */
+/** The example plan with French; its own texts are equal in all languages. */
 function frenchPlan(phrases: object) {
   const plan = examplePlan();
   return {

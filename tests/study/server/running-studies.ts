@@ -23,7 +23,7 @@ const software = {
   version: '0.1.0',
   weights: [{ file: 'models/learned.onnx', sha256: 'ab'.repeat(32) }],
 };
-/** What an export says of the program that served it. */
+/** The software in an export. */
 export const testSoftware = { exportedBy: software, served: [{ since: now, ...software }] };
 /** The script of the thread that the server starts for its studies. */
 export const studyThread = new URL('../../../server/study-thread-worker.mjs', import.meta.url);
@@ -41,7 +41,7 @@ interface InThisThread {
   readonly onFailedAttempt?: (guess: FailedAttempt) => void;
 }
 
-/** The studies' part of a server in the thread of the test, which shares its store. */
+/** Returns the service of the studies in the thread of the test, which shares its store. */
 export function studiesInThisThread({
   store,
   file,
@@ -97,16 +97,16 @@ export interface Asked {
 }
 
 export interface ServedOptions {
-  /** The database; a new one where none is named. */
+  /** The database file; absent: a new one. */
   readonly file?: string;
   readonly maxBytes?: number;
-  /** The disk under the store: resolves when what was written is on it. */
+  /** Flushes the store to the disk. */
   readonly flush?: () => Promise<void>;
-  /** How long nothing may move on a connection [ms]. */
+  /** The time after which an idle connection is closed [ms]. */
   readonly idleTimeoutMs?: number;
 }
 
-/** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
+/** Serves the studies on a port of loopback as if behind a proxy; returns the store and the failed attempts too. */
 export async function servedStudies({
   file = join(directoryWith(), 'studies.db'),
   maxBytes = 2 ** 30,
@@ -157,7 +157,7 @@ export async function servedStudies({
 export async function servedPaperStudy(changes: Partial<StudyPlan> = {}, options: ServedOptions = {}) {
   const server = await servedStudies(options);
   server.store.plans.add(paperPlan(changes), { simulated: false, at: now });
-  /** What a participant's link says. */
+  /** Returns the invitation in a participant's link. */
   const invited = (participant: string) => ({
     invitation: server.store.overview('paper', now).find((state) => state.participant === participant)?.invitation,
   });

@@ -80,7 +80,7 @@ describe('storage that is full', () => {
 describe('deletion by the code', () => {
   const conspicuous = 'a-very-conspicuous-word';
 
-  /** Every file of the folder, whole. */
+  /** Returns the bytes of every file of the folder. */
   const bytesOf = (directory: string) =>
     readdirSync(directory, { recursive: true, encoding: 'utf8' })
       .map((name) => join(directory, name))

@@ -16,7 +16,7 @@ const now = 1_800_000_000;
 const plan = latencyPlan();
 const later = latencyPlan({ title: 'A body that follows much later' });
 
-/** The study of three latencies in a database of its own, which P02 has finished and from which P03 has withdrawn. */
+/** Returns a database with the study of three latencies, which P02 has finished and from which P03 has withdrawn. */
 function begunStudy() {
   const file = join(directoryWith(), 'studies.db');
   const store = openStudyStore(file);
@@ -30,7 +30,7 @@ function begunStudy() {
   return { file, token, withdrawalCode: withdrawalCode as string, records: p02.records };
 }
 
-/** The database as an older version left it, opened by this one. */
+/** Opens a database that an older version wrote. */
 function broughtUpToDate(file: string, older: string) {
   const database = new DatabaseSync(file);
   database.exec(older);

@@ -41,7 +41,7 @@ test('what is past its retention date is deleted when the server starts, and the
   expect(lines).toEqual(['study "paper": P01 is past the retention date, 0 records deleted']);
 });
 
-/** A study that P01 and P02 have begun, in a directory of its own; the same database opened once more, to lock it. */
+/** Returns a directory with a study that P01 and P02 have begun. */
 function begunStudy() {
   const directory = directoryWith();
   const file = join(directory, 'studies.db');
@@ -60,7 +60,7 @@ test('a database that refuses to delete what is past its retention date ends no 
   });
   const { directory, file } = begunStudy();
   const database = new DatabaseSync(file);
-  // What a full disk refuses of P01 alone.
+  // The trigger refuses changes of P01 as a full disk would.
   database.exec(`CREATE TRIGGER full BEFORE UPDATE ON participants WHEN old.participant = 'P01'
     BEGIN SELECT raise(ABORT, 'database or disk is full'); END`);
   const late = await servedFolder(directory, experimenter, 1e9 + 366 * day);

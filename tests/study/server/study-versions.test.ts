@@ -8,14 +8,14 @@ import { experimenter, now, servedStudies } from './running-studies';
 
 const later = latencyPlan({ title: 'A body that follows much later' });
 
-/** Everything that a participant does by this plan. */
+/** Returns the complete session of a participant by this plan. */
 function recordsOf(plan: StudyPlan, participant: string) {
   const one = session(scheduleFor(plan, participant));
   one.doUntil(({ kind }) => kind === 'end');
   return one;
 }
 
-/** A real server with the study of three latencies, which P01 has finished. */
+/** Returns a server with the study of three latencies, which P01 has finished. */
 async function begunStudy() {
   const server = await servedStudies();
   const plan = latencyPlan();
@@ -42,7 +42,7 @@ async function begunStudy() {
   return { ...server, plan, of, take, change, see };
 }
 
-/** A question more after each round. */
+/** The plan with another question after each round. */
 const asksMore = latencyPlan({
   questionnaires:
     latencyPlan().questionnaires?.map((asked) => ({
@@ -72,7 +72,7 @@ describe('a plan that has participants', () => {
     expect(followed).toEqual(asksMore);
     const states = (await see('/participants')).participants as { participant: string; version: number }[];
     expect(states.map(({ version }) => version)).toEqual([1, ...states.slice(1).map(() => 2)]);
-    // What P01 sends later is checked by their own plan, what P02 sends by theirs.
+    // Later records of each participant are checked by that participant's plan.
     const [, answers] = recordsOf(asksMore, 'P01').records.filter(({ kind }) => kind === 'answers');
     const more = { ...answers, id: 'archery/1/questionnaire@9.1:answers' };
     const p01 = await ask('POST', `${of('P01')}/records`, { token: experimenter, json: { records: [more] } });
@@ -198,7 +198,7 @@ describe('a place that the experimenter clears', () => {
     const one = [...togetherWith(plan, 'P01')];
     const other = ['P01', 'P02', 'P03', 'P04', 'P05', 'P06'].find((name) => !one.includes(name)) as string;
     for (const participant of ['P01', other]) store.places.claim('paper', participant, now);
-    // By another seed everybody plays with others, and all stay: nothing is mixed yet.
+    // Another seed makes other groups, but all places keep their version, so nothing is mixed.
     const seed = [1, 2, 3, 4, 5, 6, 7, 8].find((value) =>
       [...togetherWith({ ...plan, seed: value }, 'P01')].some((name) => !one.includes(name)),
     );

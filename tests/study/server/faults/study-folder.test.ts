@@ -10,7 +10,7 @@ import { paperPlan } from '../../model/studies';
 import { withoutInvitations } from '../older-databases';
 import { experimenter, servedFolder } from '../running-studies';
 
-/** The studies of this folder, with a request that adds one. */
+/** Serves the studies of this folder; `add` adds a study. */
 async function started(directory: string) {
   const served = await servedFolder(directory);
   const add = async (id: string) => {
