@@ -218,7 +218,7 @@ def measure(rows, value, cohort_of, begun):
 
 
 def places_of(rows, value):
-    """Returns the place and the name of every numeric question or scale, in order; the name is the id if it is unique."""
+    """Returns place and name of every numeric question or scale, in order; the name is the id if it is unique."""
     places = list(dict.fromkeys((r["task"], r["questionnaire"], r["id"]) for r in rows if r[value] != ""))
     times = Counter(place[2] for place in places)
     return [(place, place[2] if times[place[2]] == 1 else "/".join(place)) for place in places]
@@ -292,7 +292,7 @@ def complete_values(found, conditions):
 
 
 def between(measures, first, second, conditions):
-    """Compares the measures in two cohorts, first − second, as one family, by each participant's mean of these conditions."""
+    """Compares the measures in two cohorts, first − second, as one family, by the means of these conditions."""
     rows = []
     for found in measures:
         values = complete_values(found, conditions)
