@@ -125,14 +125,14 @@ describe('the import rules', () => {
       'src/study/statistics/a.ts': empty,
       'src/study/model/plan/plan.ts': empty,
       'src/study/model/results/results.ts': "import '../plan/plan';\nimport '../../statistics/a';",
-      'src/study/server/routes/routes.ts': "import '../../model/plan/plan';\nimport '../../../http/router';",
+      'src/study/server/routes/dispatcher.ts': "import '../../model/plan/plan';\nimport '../../../http/router';",
       'src/page/scene/renderer.ts': empty,
       'src/page/studio/studio.ts': "import '../scene/renderer';",
       'src/page/activity/activity.ts': empty,
       'src/page/shell/activity-registry.ts': "import '../studio/studio';\nimport '../activity/activity';",
       'src/page/shell/stage.ts': "import './activity-registry';\nimport '../../threepoint/avatar/mirror';",
       'server/main.ts':
-        "import 'node:http';\nimport '../src/games/ball/rules';\nimport '../src/study/server/routes/routes';",
+        "import 'node:http';\nimport '../src/games/ball/rules';\nimport '../src/study/server/routes/dispatcher';",
     };
     expect(await violationsIn(allowed)).toEqual([]);
   });

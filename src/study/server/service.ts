@@ -8,10 +8,9 @@ import { shortageOf } from 'threepoint-http/resource-shortage';
 import type { HttpResponse } from 'threepoint-http/response';
 import type { Call, Route, Service } from 'threepoint-http/router';
 import { startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
-import type { StudyDispatcher, StudyOutcome } from './routes/dispatcher';
-import type { StudyAccess } from './routes/guard';
+import { retryAfterSeconds, type StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
+import type { RouteAccess } from './routes/guard';
 import type { StudyRequest, StudyRoute } from './routes/route';
-import { retryAfterSeconds } from './routes/routes';
 import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './thread';
 
 export interface StudyServiceOptions extends StudyThreadOptions {
@@ -156,12 +155,12 @@ export interface ServiceOptions extends Pick<StudyServiceOptions, 'now' | 'trust
 }
 
 /** Returns the service of the studies: all routes below /api/studies. */
-export function createStudyService({ routes, dispatcher, now, trustProxy, log }: ServiceOptions): Service<StudyAccess> {
+export function createStudyService({ routes, dispatcher, now, trustProxy, log }: ServiceOptions): Service<RouteAccess> {
   const requestOf = ({ request, names, query }: Omit<Call, 'body'>): StudyRequest => ({
     ...{ at: now(), token: bearerOf(request), address: findClientAddress(request, trustProxy) },
     ...{ names, query: query.toString() },
   });
-  const table = routes.map((route, index): Route<StudyAccess> => {
+  const table = routes.map((route, index): Route<RouteAccess> => {
     const { method, path, access, bodyLimit } = route;
     return {
       ...{ method, path, access, bodyLimit },

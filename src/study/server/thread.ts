@@ -7,7 +7,6 @@ import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
 import { createExporter } from './export/exporter';
 import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
 import type { StudyRequest, StudyRoute } from './routes/route';
-import { createStudyRoutes } from './routes/routes';
 import { createStudySeats, type SignSeat } from './routes/seats';
 import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/study-folder';
 import type { StudyStore } from './storage/study-store';
@@ -40,9 +39,9 @@ export type StudyThreadApi = {
 };
 
 /** The interval at which failed overwriting of deleted data is repeated [ms]. */
-const forgetMs = 1000;
+const purgeMs = 1000;
 
-const wrongGuess = ({ what, of, address, failures }: FailedAttempt): string =>
+const failedAttemptLine = ({ what, of, address, failures }: FailedAttempt): string =>
   `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
 
 type Log = (line: string) => void;
@@ -64,7 +63,7 @@ function expire(store: StudyStore, at: number, log: Log): void {
 }
 
 /** Overwrites deleted data as soon as possible. */
-function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
+function purgeRegularly(store: StudyStore, log: Log): NodeJS.Timeout {
   let isHeld = false;
   return setInterval(() => {
     const wasHeld = isHeld;
@@ -75,7 +74,7 @@ function keepForgetting(store: StudyStore, log: Log): NodeJS.Timeout {
       );
     }
     if (wasHeld && !isHeld) log('study: deleted data is overwritten now');
-  }, forgetMs);
+  }, purgeMs);
 }
 
 interface OpenFolder {
@@ -100,18 +99,17 @@ export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat):
       const folder = openStudyFolder(options, at, log);
       const { store, experimenterToken, tokenFile } = folder;
       const { directory, software } = options;
-      const routes = createStudyRoutes({
-        ...{ store, experimenterToken, software },
+      const dispatcher = new StudyDispatcher({
+        ...{ store, experimenterToken, software, log },
         seats: createStudySeats(
           secret,
           createSignSeat(secret, () => newest),
         ),
         makeZip: createExporter(join(directory, 'studies.db')),
-        onWrongGuess: (guess) => log(wrongGuess(guess)),
+        onFailedAttempt: (guess) => log(failedAttemptLine(guess)),
       });
-      const dispatcher = new StudyDispatcher({ routes, store, log });
-      serving = { folder, dispatcher, forgetting: keepForgetting(store, log) };
-      return { routes: routes.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
+      serving = { folder, dispatcher, forgetting: purgeRegularly(store, log) };
+      return { routes: dispatcher.routes.map(({ handle: _, ...rest }) => rest), tokenFile };
     } catch (error) {
       if (error instanceof ConfigurationError) return { problem: error.message };
       throw error;

@@ -45,8 +45,8 @@ export const answerModelWith = (effects: Readonly<Record<string, number>>): Answ
 export const drawPerson = (model: AnswerModel, random: RandomSource): number => model.personDeviation * random.normal();
 
 /** Returns a latent value as an answer: its position between the ends of the scale, reversed if the question is. */
-function answerAt({ answer: form, reversed }: Question, leaning: number, random: RandomSource): Answer {
-  const part = Math.min(1, Math.max(0, (leaning - 1) / 4));
+function answerAt({ answer: form, reversed }: Question, latent: number, random: RandomSource): Answer {
+  const part = Math.min(1, Math.max(0, (latent - 1) / 4));
   return questionKind(form).simulate(form, reversed ? 1 - part : part, () => random.uniform());
 }
 
@@ -73,8 +73,8 @@ export function drawAnswers(
   return Object.fromEntries(
     questionnaire.questions.map((question) => {
       const { id } = question;
-      const leaning = (model.base[id] ?? model.elsewhere) + person + effectOn(id) + (block > 1 ? model.orderEffect : 0);
-      return [id, answerAt(question, leaning + model.answerDeviation * random.normal(), random)];
+      const latent = (model.base[id] ?? model.elsewhere) + person + effectOn(id) + (block > 1 ? model.orderEffect : 0);
+      return [id, answerAt(question, latent + model.answerDeviation * random.normal(), random)];
     }),
   );
 }

@@ -16,7 +16,7 @@ export interface PerformanceModel {
   readonly effects: Readonly<Record<string, number>>;
   /** The effect of the second and later blocks on the chances. */
   readonly practice: number;
-  /** Seconds between two shots: mean and standard deviation. */
+  /** The time between two shots [s]: mean and standard deviation. */
   readonly pace: { readonly mean: number; readonly deviation: number };
   /** The median work per frame by estimator [ms]; the spread is the standard deviation of its logarithm. */
   readonly frameMs: Readonly<Record<string, number>>;

@@ -64,7 +64,7 @@ export interface SimulatedParticipant {
 
 const marked = (title: string): string => `SIMULATED: ${title}`.slice(0, 120);
 
-const markedInAll = (title: Words): Words =>
+const markedInEachLanguage = (title: Words): Words =>
   typeof title === 'string'
     ? marked(title)
     : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));
@@ -73,20 +73,20 @@ const markedInAll = (title: Words): Words =>
 export const simulatedPlan = (plan: StudyPlan): StudyPlan => ({
   ...plan,
   id: `${plan.id.slice(0, 37)}-simulated`,
-  title: markedInAll(plan.title),
+  title: markedInEachLanguage(plan.title),
 });
 
-const oneOf = <T>(random: RandomSource, options: readonly T[]): T =>
+const drawOneOf = <T>(random: RandomSource, options: readonly T[]): T =>
   options[Math.floor(random.uniform() * options.length)] as T;
 
 const drawDemographics = (random: RandomSource): Demographics => ({
-  gender: oneOf(random, ['woman', 'man', 'non-binary', 'not-said']),
+  gender: drawOneOf(random, ['woman', 'man', 'non-binary', 'not-said']),
   age: Math.min(60, Math.max(18, Math.round(26 + 4 * random.normal()))),
   major: 'Simulated',
-  vrExperience: oneOf(random, ['none', 'once-or-twice', 'several-times', 'monthly', 'weekly']),
+  vrExperience: drawOneOf(random, ['none', 'once-or-twice', 'several-times', 'monthly', 'weekly']),
   vrSystems: '',
   handedness: random.uniform() < 0.85 ? 'right' : 'left',
-  vision: oneOf(random, ['normal', 'corrected']),
+  vision: drawOneOf(random, ['normal', 'corrected']),
 });
 
 type QuestionnaireStep = Extract<StudyStep, { kind: 'questionnaire' }>;
@@ -200,34 +200,34 @@ class SimulatedSession {
       const step = currentStep(this.#schedule, this.#progress);
       if (step.kind === 'end') return { participant, progress: this.#progress, records: this.#records };
       this.#now += 5 + Math.round(10 * this.#random.uniform());
-      this.#take(step);
+      this.#complete(step);
     }
     throw new Error(`${participant} does not reach the end`);
   }
 
-  #tell(event: ProgressEvent): void {
+  #apply(event: ProgressEvent): void {
     const next = applyEvent(this.#schedule, this.#progress, event, this.#now);
     if (next.refusal) throw new Error(`${this.#schedule.participant}, ${this.#progress.step}: ${next.refusal}`);
     this.#progress = next.progress;
     this.#records.push(...next.records);
   }
 
-  #take(step: StudyStep): void {
+  #complete(step: StudyStep): void {
     switch (step.kind) {
       case 'consent':
-        this.#tell({ type: 'consent', version: this.#schedule.consentVersion, motion: false });
+        this.#apply({ type: 'consent', version: this.#schedule.consentVersion, motion: false });
         break;
       case 'demographics':
-        this.#tell({ type: 'demographics', demographics: drawDemographics(this.#random) });
+        this.#apply({ type: 'demographics', demographics: drawDemographics(this.#random) });
         break;
       case 'calibration': {
         const { eyeHeight, armSpan } = this.#rounds.playerOf(this.#schedule.participant);
-        this.#tell({ type: 'calibrated', calibration: { eyeHeight, armSpan } });
+        this.#apply({ type: 'calibrated', calibration: { eyeHeight, armSpan } });
         break;
       }
       case 'rest':
         this.#now += step.seconds;
-        this.#tell({ type: 'tick' });
+        this.#apply({ type: 'tick' });
         break;
       case 'tutorial':
       case 'trial':
@@ -241,21 +241,21 @@ class SimulatedSession {
 
   #play(step: PlayedStep): void {
     const { mishaps } = this.#models.performance;
-    this.#tell({ type: 'start' });
+    this.#apply({ type: 'start' });
     if (this.#random.uniform() < mishaps.reload) {
       this.#now += 10;
       this.#progress = resumed(this.#schedule, JSON.stringify(this.#progress));
-      this.#tell({ type: 'reload' });
+      this.#apply({ type: 'reload' });
       return;
     }
     const run = this.#progress.runs[`${step.task}/${step.block}`] ?? 1;
     const outcome = this.#rounds.outcomeOf(this.#schedule, step, run, this.#progress.attempt);
     this.#now += outcome.seconds;
-    this.#tell({ type: 'trial-finished', outcome });
+    this.#apply({ type: 'trial-finished', outcome });
     // The block of a group is voided for all or none; single participants have separate mishaps.
     const alone = this.#schedule.groups[step.task]?.members.length === 1;
     if (step.kind === 'trial' && alone && this.#random.uniform() < mishaps.voided) {
-      this.#tell({ type: 'void-block', reason: 'simulated mishap', repeat: true });
+      this.#apply({ type: 'void-block', reason: 'simulated mishap', repeat: true });
     }
   }
 
@@ -265,8 +265,8 @@ class SimulatedSession {
     const drawn = drawAnswers(this.#models.answers, questionnaire, about, this.#random);
     for (const [question, value] of Object.entries(drawn)) {
       this.#now += 4 + Math.round(8 * this.#random.uniform());
-      this.#tell({ type: 'answer', question, value });
+      this.#apply({ type: 'answer', question, value });
     }
-    this.#tell({ type: 'submit' });
+    this.#apply({ type: 'submit' });
   }
 }

@@ -16,9 +16,9 @@ export interface Effect {
   readonly interval: Interval | null;
 }
 
-/** What an analysis of variance of one measure tests. */
+/** The effects in an analysis of variance of one measure. */
 export interface VarianceAnalysis {
-  /** Participants. */
+  /** The number of participants. */
   readonly n: number;
   /** The effect of the conditions that each participant met; null: there was one. */
   readonly within: Effect | null;
@@ -27,7 +27,6 @@ export interface VarianceAnalysis {
   readonly interaction: Effect | null;
 }
 
-const confidence = 0.9;
 /** Variance this small relative to the values is rounding. */
 const constantBelow = 1e-20;
 
@@ -45,7 +44,7 @@ function effectOf({ effect, error, df, epsilon, scale }: Squares): Effect {
   const none = { f: null, p: null, correctedP: null, partialEtaSquared: null, interval: null };
   if (df[1] < 1 || error <= constantBelow * scale) return { ...none, df, epsilon: null };
   const f = effect / df[0] / (error / df[1]);
-  const noncentrality = noncentralityOfF(f, df[0], df[1], confidence);
+  const noncentrality = noncentralityOfF(f, df[0], df[1]);
   const share = (lambda: number) => lambda / (lambda + df[0] + df[1] + 1);
   return {
     f,
@@ -70,7 +69,7 @@ function contrasts(count: number): readonly (readonly number[])[] {
 const dotOf = (a: readonly number[], b: readonly number[]) =>
   a.reduce((sum, value, index) => sum + value * (b[index] as number), 0);
 
-/** Returns the sums of squares of one contrast, cohort by cohort: of its mean, between cohorts and within them. */
+/** Returns the squares of one contrast: of its mean, between cohorts, and the residuals within them. */
 function squaresOf(cohorts: readonly (readonly number[])[]) {
   const n = cohorts.reduce((sum, { length }) => sum + length, 0);
   const means = cohorts.map(meanOf);
@@ -98,10 +97,9 @@ function greenhouseGeisser(residuals: readonly (readonly number[])[]): number {
 }
 
 /**
- * Analysis of variance of participants who met all conditions (within) and belong to cohorts (between): repeated
- * measures where there is one cohort, one-way where there is one condition, else mixed. `cohorts[c][p][k]`: of
- * participant p of cohort c under condition k. As SPSS and R's car of type III: cohorts of unequal size count alike.
- * Throws where a cohort is empty or values are missing.
+ * Analyses the variance of `cohorts[c][p][k]`, the values of participant p of cohort c under condition k: repeated
+ * measures with one cohort, one-way with one condition, otherwise mixed. As in SPSS and R's car of type III, cohorts
+ * have equal weights. Throws if a cohort is empty or values are missing.
  */
 export function varianceAnalysis(cohorts: readonly (readonly (readonly number[])[])[]): VarianceAnalysis {
   const conditions = cohorts[0]?.[0]?.length ?? 0;

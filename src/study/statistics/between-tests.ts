@@ -1,6 +1,6 @@
 import { noncentralityOfT } from './noncentral';
 import { approximateP, cubesOf, exactBelow, type RankTest, rankBiserialInterval, ranksOf } from './ranks';
-import { criticalT, deviationOf, meanOf, roundingOf, type TTest, twoSidedP } from './summaries';
+import { confidence, criticalT, deviationOf, meanOf, roundingOf, type TTest, twoSidedP } from './summaries';
 
 function refuseEmpty(first: readonly number[], second: readonly number[]): void {
   if (first.length === 0 || second.length === 0) throw new Error('two groups: one of them is empty');
@@ -20,7 +20,7 @@ export function standardError(
  * Computes Welch's t-test of different participants as R's `t.test(first, second)`; d is d_s, the difference in pooled
  * standard deviations. Throws if a list is empty.
  */
-export function welchTest(first: readonly number[], second: readonly number[], confidence = 0.95): TTest {
+export function welchTest(first: readonly number[], second: readonly number[]): TTest {
   refuseEmpty(first, second);
   const n = [first.length, second.length] as const;
   const means = [meanOf(first), meanOf(second)] as const;
@@ -37,7 +37,7 @@ export function welchTest(first: readonly number[], second: readonly number[], c
   // The factor from Student's t to its noncentrality, which is the effect.
   const unit = Math.sqrt(1 / n[0] + 1 / n[1]);
   const d = meanDifference / pooled;
-  const noncentrality = noncentralityOfT(d / unit, pooledDf, confidence);
+  const noncentrality = noncentralityOfT(d / unit, pooledDf);
   return {
     meanDifference,
     interval: { low: meanDifference - half, high: meanDifference + half },

@@ -1,7 +1,9 @@
 import { bisect } from 'threepoint/core/math/bisection';
 import { incompleteBeta, normalCdf } from './distributions';
-import type { Interval } from './summaries';
+import { confidence, type Interval } from './summaries';
 
+/** The confidence of the interval of a share of variance, which is one-sided. */
+const shareConfidence = 0.9;
 /** Terms of a series this small relative to its greatest add nothing to a double. */
 const negligible = 1e-17;
 const halvings = 80;
@@ -11,7 +13,7 @@ export const fTail = (f: number, df1: number, df2: number): number =>
   f <= 0 ? 1 : incompleteBeta(df2 / (df2 + df1 * f), df2 / 2, df1 / 2);
 
 /** Caches a function of whole numbers, because the search for a noncentrality repeats its arguments. */
-function kept(value: (index: number) => number): (index: number) => number {
+function cached(value: (index: number) => number): (index: number) => number {
   const values: number[] = [];
   return (index) => {
     values[index] ??= value(index);
@@ -29,8 +31,8 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
     return (noncentrality) => 1 - mirrored(-noncentrality);
   }
   const x = (t * t) / (t * t + df);
-  const even = kept((j) => incompleteBeta(x, j + 0.5, df / 2));
-  const odd = kept((j) => incompleteBeta(x, j + 1, df / 2));
+  const even = cached((j) => incompleteBeta(x, j + 0.5, df / 2));
+  const odd = cached((j) => incompleteBeta(x, j + 1, df / 2));
   return (noncentrality) => {
     const half = (noncentrality * noncentrality) / 2;
     let p = Math.exp(-half);
@@ -51,7 +53,7 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
  */
 export function noncentralF(f: number, df1: number, df2: number): (noncentrality: number) => number {
   const x = (df1 * f) / (df1 * f + df2);
-  const central = kept((j) => incompleteBeta(x, df1 / 2 + j, df2 / 2));
+  const central = cached((j) => incompleteBeta(x, df1 / 2 + j, df2 / 2));
   return (noncentrality) => {
     const half = noncentrality / 2;
     let weight = Math.exp(-half);
@@ -68,7 +70,7 @@ export function noncentralF(f: number, df1: number, df2: number): (noncentrality
 const maxNoncentralityT = 37;
 const maxNoncentralityF = 1400;
 
-/** Finds the point between two ends at which a falling probability is `share`, or returns null if it is not reached. */
+/** Returns the point between two ends at which a falling probability is `share`, or null if it is not reached. */
 function reached(probability: (at: number) => number, share: number, low: number, high: number): number | null {
   return probability(high) > share ? null : bisect(low, high, (at) => probability(at) < share, halvings);
 }
@@ -77,8 +79,8 @@ function reached(probability: (at: number) => number, share: number, low: number
 const between = (low: number | null, high: number | null): Interval | null =>
   low === null || high === null ? null : { low, high };
 
-/** Returns the confidence interval of the noncentrality of a t, or null if t or an end is too far out to compute it. */
-export function noncentralityOfT(t: number, df: number, confidence = 0.95): Interval | null {
+/** Returns the 95 % interval of the noncentrality of a t, or null if t or an end is too far out to compute it. */
+export function noncentralityOfT(t: number, df: number): Interval | null {
   if (Math.abs(t) > maxNoncentralityT / 2) return null;
   const below = noncentralT(t, df);
   const at = (share: number) =>
@@ -87,12 +89,12 @@ export function noncentralityOfT(t: number, df: number, confidence = 0.95): Inte
 }
 
 /**
- * Returns the confidence interval of the noncentrality λ of an F, at least 0, or null if F or an end is too large to
- * compute it.
+ * Returns the 90 % interval of the noncentrality λ of an F, at least 0, or null if F or an end is too large to compute
+ * it.
  */
-export function noncentralityOfF(f: number, df1: number, df2: number, confidence: number): Interval | null {
+export function noncentralityOfF(f: number, df1: number, df2: number): Interval | null {
   if (f * df1 > maxNoncentralityF / 2) return null;
   const below = noncentralF(f, df1, df2);
   const at = (share: number) => (below(0) < share ? 0 : reached(below, share, 0, maxNoncentralityF));
-  return between(at((1 + confidence) / 2), at((1 - confidence) / 2));
+  return between(at((1 + shareConfidence) / 2), at((1 - shareConfidence) / 2));
 }

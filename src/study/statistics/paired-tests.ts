@@ -14,17 +14,17 @@ function refuseUnpaired(first: readonly number[], second: readonly number[]): vo
  * Computes R's `t.test(first, second, paired = TRUE)`; d is d_z, the mean difference in standard deviations of the
  * differences. Throws if the lists differ in length or are empty.
  */
-export function pairedTTest(first: readonly number[], second: readonly number[], confidence = 0.95): TTest {
+export function pairedTTest(first: readonly number[], second: readonly number[]): TTest {
   refuseUnpaired(first, second);
   const differences = first.map((value, index) => value - (second[index] as number));
-  const { n, mean, standardDeviation, interval } = meanSummary(differences, confidence);
+  const { n, mean, standardDeviation, interval } = meanSummary(differences);
   const df = n - 1;
   const error = (standardDeviation ?? 0) / Math.sqrt(n);
   if (standardDeviation === null || error <= roundingOf([...first, ...second])) {
     return { meanDifference: mean, interval: null, df, t: null, p: null, d: null, dInterval: null };
   }
   const t = mean / error;
-  const noncentrality = noncentralityOfT(t, df, confidence);
+  const noncentrality = noncentralityOfT(t, df);
   const root = Math.sqrt(n);
   const dInterval = noncentrality && { low: noncentrality.low / root, high: noncentrality.high / root };
   return { meanDifference: mean, interval, df, t, p: twoSidedP(t, df), d: mean / standardDeviation, dInterval };

@@ -36,7 +36,7 @@ interface Finding {
 }
 
 /** Caches the p of each value of a statistic. */
-function remembered(pOf: (statistic: number) => number): (statistic: number) => number {
+function cached(pOf: (statistic: number) => number): (statistic: number) => number {
   const known = new Map<number, number>();
   return (statistic) => {
     const p = known.get(statistic) ?? pOf(statistic);
@@ -50,7 +50,7 @@ const untied = 0;
 
 function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
   const critical = criticalT(1 - alpha, n - 1);
-  const pOf = remembered((v) => signedRankP(v, n));
+  const pOf = cached((v) => signedRankP(v, n));
   return () => {
     const differences = Array.from({ length: n }, () => effect + normal());
     const t = (meanOf(differences) / deviationOf(differences)) * Math.sqrt(n);
@@ -61,7 +61,7 @@ function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => nu
 }
 
 function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
-  const pOf = remembered(rankSumPs(n, n));
+  const pOf = cached(rankSumPs(n, n));
   return () => {
     const first = Array.from({ length: n }, () => effect + normal());
     const second = Array.from({ length: n }, normal);
@@ -78,11 +78,8 @@ function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => n
  * values. The same seed gives the same power.
  */
 export function simulatedPower(planned: PlannedTest, n: number, { seed, studies }: Simulation): Power {
-  const study = (planned.design === 'paired' ? pairedStudy : betweenStudy)(
-    planned,
-    n,
-    createNormalRandom(seed + 7919 * n),
-  );
+  const normal = createNormalRandom(seed + 7919 * n);
+  const study = planned.design === 'paired' ? pairedStudy(planned, n, normal) : betweenStudy(planned, n, normal);
   const found = { t: 0, wilcoxon: 0 };
   for (let i = 0; i < studies; i++) {
     const finding = study();

@@ -1,6 +1,6 @@
 import { bisect } from 'threepoint/core/math/bisection';
 import { normalCdf } from './distributions';
-import { type Interval, roundingOf } from './summaries';
+import { confidence, type Interval, roundingOf } from './summaries';
 
 /** A two-sided test of first − second by ranks. */
 export interface RankTest {
@@ -26,8 +26,8 @@ export function approximateP(distance: number, deviation: number): number {
 }
 
 /**
- * Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. Values next to each other are tied
- * where they are no further apart than `rounding`; 0: where they are equal to the last digit.
+ * Returns ranks from 1, with the mean rank for ties, and the sizes of the groups of ties. Adjacent values are tied if
+ * they differ by at most `rounding`; 0: if they are equal.
  */
 export function ranksOf(
   values: readonly number[],
@@ -55,10 +55,10 @@ export function ranksOf(
 export const cubesOf = (ties: readonly number[]): number => ties.reduce((sum, size) => sum + size ** 3 - size, 0);
 
 /**
- * The interval of a rank-biserial correlation by Fisher's z, with the standard error that it has where nothing differs
- * (as R's effectsize::rank_biserial). null: all ranks are on one side, where z has no end.
+ * Returns the interval of a rank-biserial correlation by Fisher's z, as R's effectsize::rank_biserial. `error` is the
+ * standard error without a difference. null: all ranks are on one side, hence z is infinite.
  */
-export function rankBiserialInterval(effect: number, error: number, confidence = 0.95): Interval | null {
+export function rankBiserialInterval(effect: number, error: number): Interval | null {
   if (Math.abs(effect) === 1) return null;
   const critical = bisect(0, 40, (z) => normalCdf(z) > (1 + confidence) / 2, 80);
   const z = Math.atanh(effect);

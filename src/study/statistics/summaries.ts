@@ -1,6 +1,9 @@
 import { bisect } from 'threepoint/core/math/bisection';
 import { incompleteBeta } from './distributions';
 
+/** The confidence of the intervals of means, differences, d and rank-biserial correlations. */
+export const confidence = 0.95;
+
 /** The ends of a confidence interval. */
 export interface Interval {
   readonly low: number;
@@ -41,15 +44,15 @@ export function deviationOf(values: readonly number[]): number {
   return Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (values.length - 1));
 }
 
-/** Returns the t between ±which a share `confidence` of Student's distribution lies. */
-export function criticalT(confidence: number, df: number): number {
+/** Returns the t between −t and t of which this share of Student's distribution lies. */
+export function criticalT(share: number, df: number): number {
   // t² / (df + t²) has a beta distribution.
-  const share = bisect(0, 1, (x) => incompleteBeta(x, 0.5, df / 2) > confidence, 100);
-  return Math.sqrt((df * share) / (1 - share));
+  const x = bisect(0, 1, (at) => incompleteBeta(at, 0.5, df / 2) > share, 100);
+  return Math.sqrt((df * x) / (1 - x));
 }
 
 /** Returns the mean with its confidence interval; throws for no values. */
-export function meanSummary(values: readonly number[], confidence = 0.95): MeanSummary {
+export function meanSummary(values: readonly number[]): MeanSummary {
   const n = values.length;
   if (n === 0) throw new Error('the mean of no values is not defined');
   const mean = meanOf(values);
@@ -62,12 +65,12 @@ export function meanSummary(values: readonly number[], confidence = 0.95): MeanS
 /** Returns the probability of a t at least this far from 0 on either side, with df degrees of freedom. */
 export const twoSidedP = (t: number, df: number): number => incompleteBeta(df / (df + t * t), df / 2, 0.5);
 
-/** Values that differ by at most this share of the largest input are equal up to rounding. */
+/** The share of the largest input up to which two values are equal but for rounding. */
 const equalWithin = 1e-9;
 
 /**
- * How far apart the same figure may come out, in the unit of the values that it is computed from: means of thirds,
- * their differences and means of means differ in the last digits where they are equal.
+ * Returns the rounding error of a figure that is computed from these values, in their unit. Means of thirds, their
+ * differences and means of means differ in the last digits although they are equal.
  */
 export const roundingOf = (values: readonly number[]): number =>
   equalWithin * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);

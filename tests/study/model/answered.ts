@@ -1,7 +1,6 @@
 import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
 import { answerMeasures, scoreMeasures } from 'threepoint-study/model/results/measures';
-import type { AnswerRow } from 'threepoint-study/model/tables/answer-tables';
-import type { TrialRow } from 'threepoint-study/model/tables/study-tables';
+import type { AnswerRow, TrialRow } from 'threepoint-study/model/tables/study-tables';
 
 /** One question answered under conditions c0, c1 … by P01, P02 …. */
 export const rowsOf = (participants: readonly (readonly number[])[]): readonly AnswerRow[] =>
@@ -10,8 +9,6 @@ export const rowsOf = (participants: readonly (readonly number[])[]): readonly A
       participant: `P${String(index + 1).padStart(2, '0')}`,
       simulated: false,
       task: 'archery',
-      block: at + 1,
-      run: 1,
       condition: `c${at}`,
       questionnaire: 'body',
       question: 'mine',

@@ -1,7 +1,6 @@
 import { ordersByGroup } from 'threepoint-study/model/plan/allocation';
 import { questionnairesOf, type StudyTask } from 'threepoint-study/model/plan/plan';
-import type { AnswerRow } from 'threepoint-study/model/tables/answer-tables';
-import type { TrialRow } from 'threepoint-study/model/tables/study-tables';
+import type { AnswerRow, TrialRow } from 'threepoint-study/model/tables/study-tables';
 import {
   type AnswerModel,
   answerModelWith,
@@ -31,8 +30,6 @@ function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
           participant: `P${String(index + 1).padStart(2, '0')}`,
           simulated: true,
           task: questionnaire.id,
-          block: place + 1,
-          run: 1,
           condition,
           questionnaire: questionnaire.id,
           question,
@@ -83,8 +80,6 @@ describe('what is compared', () => {
     participant,
     simulated: false,
     task: 'archery',
-    block: 1,
-    run: 1,
     condition,
     questionnaire: 'archery',
     question: 'Q1',

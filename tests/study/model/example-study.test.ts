@@ -20,7 +20,7 @@ const given = {
   remarks: 'The bow shook, a little.',
 } as const;
 
-/** A participant who reads in this language and answers the first questionnaire like this. */
+/** Returns a participant with this language and these answers to the first questionnaire. */
 function answered(answers: Readonly<Record<string, number | string>>, language = 'de') {
   const one = session(scheduleFor(plan, 'P01'));
   expect(one.tell({ type: 'consent', version: plan.consent.version, motion: false, language })).toBeNull();

@@ -2,12 +2,12 @@ import type { Phrase } from 'threepoint-study/model/phrases/catalogue';
 import { english } from 'threepoint-study/model/phrases/english';
 import { german } from 'threepoint-study/model/phrases/german';
 import {
-  gapsIn,
   missingKeys,
   PhrasedError,
   Phrases,
   phraseKeys,
   phrasesOf,
+  placeholdersIn,
   preferredLanguage,
 } from 'threepoint-study/model/phrases/phrases';
 import { checkedPlan } from 'threepoint-study/model/plan/plan';
@@ -17,7 +17,7 @@ import { examplePlan, planComplaints } from './studies';
 
 const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));
 
-/** The example in French too: what the plan says itself is alike in all its languages. */
+/** The example plan with French; its own texts are equal in all languages. */
 function frenchPlan(phrases: object) {
   const plan = examplePlan();
   return {
@@ -42,8 +42,9 @@ describe('what the page says in German', () => {
   });
 
   test.each(phraseKeys)('%s has the gaps that the English has', (key) => {
-    const wanted = gapsIn(formsOf(english[key]).at(-1) as string);
-    for (const form of [...formsOf(english[key]), ...formsOf(german[key])]) expect(gapsIn(form)).toEqual(wanted);
+    const wanted = placeholdersIn(formsOf(english[key]).at(-1) as string);
+    for (const form of [...formsOf(english[key]), ...formsOf(german[key])])
+      expect(placeholdersIn(form)).toEqual(wanted);
   });
 
   test('has the forms that the plural rules of the language ask for', () => {

@@ -67,12 +67,6 @@ describe('a session', () => {
     for (const event of outOfPlace) expect(one.tell(event)).not.toBeNull();
     expect(one.progress).toEqual(before);
   });
-
-  test('marks what a program made', () => {
-    const one = session(schedule, true);
-    one.doUntil(({ kind }) => kind === 'end');
-    expect(one.records.every(({ simulated }) => simulated)).toBe(true);
-  });
 });
 
 describe('a rest', () => {

@@ -96,14 +96,14 @@ export function session(schedule: Schedule, simulated = false) {
     wait(seconds: number) {
       now += seconds;
     },
-    /** The refusal; null: taken. */
+    /** Applies an event; returns the refusal, or null. */
     tell(event: ProgressEvent): string | null {
       const next = applyEvent(schedule, progress, event, now);
       progress = next.progress;
       records.push(...next.records);
       return next.refusal;
     },
-    /** Does what the present step asks for, each questionnaire with the same answer throughout. */
+    /** Completes the present step; every question gets the same answer. */
     doStep(answer = 4, score = 40): void {
       const step = currentStep(schedule, progress);
       const tell = (event: ProgressEvent) => {
@@ -141,7 +141,7 @@ export function session(schedule: Schedule, simulated = false) {
   };
 }
 
-/** What is wrong with the text of a plan's file, each with file, field and reason. */
+/** Returns the faults in the text of a plan's file, each with file, field and reason. */
 export function planComplaints(json: string, file: string): readonly string[] {
   const read = readPlan(json, file);
   return 'faults' in read ? read.faults.map(({ message }) => message) : [];

@@ -27,7 +27,7 @@ export async function studyServer(changes: Partial<StudyPlan> = {}) {
   const store = openStudyStore(file);
   const plan = paperPlan(changes);
   store.plans.add(plan, { simulated: false, at: 1e9 });
-  const routes = studiesInThisThread({ store, file, experimenterToken, trustProxy: false, now: () => 1e9 });
+  const routes = studiesInThisThread({ store, file, trustProxy: false, now: () => 1e9 });
   const listen = (port: number) => serve(createRouter([routes], noPage), { host: '127.0.0.1', port });
   let server: WebServer | null = await listen(0);
   const { port } = server;

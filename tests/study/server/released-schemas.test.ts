@@ -51,7 +51,7 @@ describe.each(schemas)('a database of schema %s', (schema) => {
     const { now, token, records, progress, command, receipt, invitation, titles } = content;
     expect(store.records.all('latency')).toEqual(records);
     expect(store.places.holds('latency', 'P02', token)).toBe(true);
-    expect(store.places.invites('latency', 'P01', invitation)).toBe(true);
+    expect(store.places.acceptsInvitation('latency', 'P01', invitation)).toBe(true);
     expect(store.places.progress('latency', 'P02')).toEqual(progress);
     expect(store.commands.after('latency', 'P02', 0)).toMatchObject([{ command }]);
     expect(store.deletion.receipts('latency')).toMatchObject([receipt]);

@@ -1,3 +1,4 @@
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { FailedAttempt } from 'threepoint-http/auth-throttle';
 import { GroupCommit } from 'threepoint-http/group-commit';
@@ -7,9 +8,8 @@ import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import type { StudyPlan } from 'threepoint-study/model/plan/plan';
 import { createExporter } from 'threepoint-study/server/export/exporter';
 import { StudyDispatcher } from 'threepoint-study/server/routes/dispatcher';
-import { createStudyRoutes } from 'threepoint-study/server/routes/routes';
 import { createStudySeats } from 'threepoint-study/server/routes/seats';
-import { createStudyService } from 'threepoint-study/server/service';
+import { createStudyService, openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished } from 'vitest';
 import { testSecret } from '../../rooms/server/running-relay';
@@ -23,7 +23,7 @@ const software = {
   version: '0.1.0',
   weights: [{ file: 'models/learned.onnx', sha256: 'ab'.repeat(32) }],
 };
-/** What an export says of the program that served it. */
+/** The software in an export. */
 export const testSoftware = { exportedBy: software, served: [{ since: now, ...software }] };
 /** The script of the thread that the server starts for its studies. */
 export const studyThread = new URL('../../../server/study-thread-worker.mjs', import.meta.url);
@@ -34,32 +34,55 @@ interface InThisThread {
   readonly store: StudyStore;
   /** The database of the store. */
   readonly file: string;
-  readonly experimenterToken?: string | null;
   readonly now?: () => number;
   readonly trustProxy?: boolean;
   /** Receives the lines of the log. */
   readonly log?: (line: string) => void;
-  readonly onWrongGuess?: (guess: FailedAttempt) => void;
+  readonly onFailedAttempt?: (guess: FailedAttempt) => void;
 }
 
-/** The studies' part of a server in the thread of the test, which shares its store. */
+/** Returns the service of the studies in the thread of the test, which shares its store. */
 export function studiesInThisThread({
   store,
   file,
-  experimenterToken = experimenter,
   now: clock = () => now,
   trustProxy = true,
   log = (line) => expect(line).toBeNull(),
-  onWrongGuess = () => undefined,
+  onFailedAttempt = () => undefined,
 }: InThisThread) {
-  const routes = createStudyRoutes({
-    ...{ store, experimenterToken, onWrongGuess },
+  const dispatcher = new StudyDispatcher({
+    ...{ store, experimenterToken: experimenter, onFailedAttempt, log },
     seats: studySeats,
     software: testSoftware.exportedBy,
     makeZip: createExporter(file),
   });
-  const dispatcher = new StudyDispatcher({ routes, store, log });
-  return createStudyService({ routes: routes.routes, dispatcher, now: clock, trustProxy, log });
+  return createStudyService({ routes: dispatcher.routes, dispatcher, now: clock, trustProxy, log });
+}
+
+/**
+ * Serves the studies of a folder from their thread on a port of loopback, until the test is over. Rejects as the start
+ * does. `token` null: the one in the folder.
+ */
+export async function servedFolder(directory: string, token: string | null = experimenter, at = 1e9) {
+  const lines: string[] = [];
+  const studies = await openStudyService({
+    thread: studyThread,
+    ...{ directory, token, secret: testSecret, software: testSoftware.exportedBy },
+    now: () => at,
+    trustProxy: false,
+    log: (line) => lines.push(line),
+  });
+  const server = await serve(createRouter([studies.service], noPage), { host: '127.0.0.1', port: 0 });
+  let open = true;
+  const stop = async () => {
+    if (!open) return;
+    open = false;
+    await server.close();
+    await studies.close();
+  };
+  onTestFinished(stop);
+  const savedToken = studies.tokenFile === null ? null : readFileSync(studies.tokenFile, 'utf8').trim();
+  return { origin: `http://127.0.0.1:${server.port}`, tokenFile: studies.tokenFile, savedToken, lines, stop };
 }
 
 // biome-ignore lint/suspicious/noExplicitAny: reason: an answer over HTTP has no type; each test states it
@@ -74,20 +97,18 @@ export interface Asked {
 }
 
 export interface ServedOptions {
-  /** The database; a new one where none is named. */
+  /** The database file; absent: a new one. */
   readonly file?: string;
-  readonly experimenterToken?: string | null;
   readonly maxBytes?: number;
-  /** The disk under the store: resolves when what was written is on it. */
+  /** Flushes the store to the disk. */
   readonly flush?: () => Promise<void>;
-  /** How long nothing may move on a connection [ms]. */
+  /** The time after which an idle connection is closed [ms]. */
   readonly idleTimeoutMs?: number;
 }
 
-/** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
+/** Serves the studies on a port of loopback as if behind a proxy; returns the store and the failed attempts too. */
 export async function servedStudies({
   file = join(directoryWith(), 'studies.db'),
-  experimenterToken = experimenter,
   maxBytes = 2 ** 30,
   flush,
   idleTimeoutMs = 30_000,
@@ -96,10 +117,10 @@ export async function servedStudies({
   const commits = flush && new GroupCommit(flush);
   const store = commits ? { ...opened, flushed: () => commits.flush() } : opened;
   const faults: string[] = [];
-  const wrongGuesses: FailedAttempt[] = [];
+  const failedAttempts: FailedAttempt[] = [];
   const service = studiesInThisThread({
-    ...{ store, file, experimenterToken },
-    onWrongGuess: (guess) => wrongGuesses.push(guess),
+    ...{ store, file },
+    onFailedAttempt: (guess) => failedAttempts.push(guess),
     log: (line) => faults.push(line),
   });
   const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, idleTimeoutMs });
@@ -129,14 +150,14 @@ export async function servedStudies({
       json: (isJson ? JSON.parse(body.toString()) : null) as Anything,
     };
   }
-  return { ask, store, origin, wrongGuesses };
+  return { ask, store, origin, failedAttempts };
 }
 
 /** Serves the paper's study, changed or not. */
 export async function servedPaperStudy(changes: Partial<StudyPlan> = {}, options: ServedOptions = {}) {
   const server = await servedStudies(options);
   server.store.plans.add(paperPlan(changes), { simulated: false, at: now });
-  /** What a participant's link says. */
+  /** Returns the invitation in a participant's link. */
   const invited = (participant: string) => ({
     invitation: server.store.overview('paper', now).find((state) => state.participant === participant)?.invitation,
   });

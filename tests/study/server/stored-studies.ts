@@ -7,9 +7,12 @@ import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
 
-/** A store in a file of its own, or in this one; closed when the test ends. */
-export function opened(file = join(directoryWith(), 'studies.db')): { store: StudyStore; file: string } {
-  const store = openStudyStore(file);
+/** Opens a store in a new file or in this one; it is closed when the test ends. */
+export function opened(
+  file = join(directoryWith(), 'studies.db'),
+  options: Parameters<typeof openStudyStore>[1] = {},
+): { store: StudyStore; file: string } {
+  const store = openStudyStore(file, options);
   let open = true;
   const close = store.close;
   store.close = () => {
@@ -20,14 +23,14 @@ export function opened(file = join(directoryWith(), 'studies.db')): { store: Stu
   return { store, file };
 }
 
-/** A store that has the paper's study. */
+/** Returns a store with the paper's study. */
 export function withPaperStudy(options = { simulated: false }) {
   const { store, file } = opened();
   store.plans.add(paperPlan(), { ...options, at: now });
   return { store, file };
 }
 
-/** Everything that one participant does, consent to motion recording or not. */
+/** Returns the records of a complete session; `motion` is the consent to recordings. */
 export function completed(participant = 'P01', { simulated = false, motion = false } = {}): StudyRecord[] {
   const schedule = scheduleFor(paperPlan(), participant);
   const one = session(schedule, simulated);

@@ -11,7 +11,7 @@ const people = participantsOf(paperPlan());
 type Server = Awaited<ReturnType<typeof servedPaperStudy>>;
 const taken = ({ store }: Server) => store.overview('paper', 0).filter(({ claimed }) => claimed).length;
 
-/** Sixteen characters that are no invitation and no code, another one for each number. */
+/** Returns a wrong invitation or code, which differs for each number. */
 const guessed = (number: number) => `ZZZZ-ZZZZ-ZZZZ-${String(number).padStart(4, '0')}`;
 
 describe('a place in a study', () => {
@@ -42,7 +42,7 @@ describe('a place in a study', () => {
       { origin: origin.replace('http:', 'https:'), 'content-type': json },
       { origin: 'null', 'content-type': json },
       { 'sec-fetch-site': 'cross-site', 'content-type': json },
-      // What a form can send without asking.
+      // Forms can send these types without a preflight request.
       { origin: 'http://evil.example', 'content-type': 'text/plain' },
       { origin: 'http://evil.example', 'content-type': 'application/x-www-form-urlencoded' },
       { 'content-type': 'text/plain' },
@@ -66,7 +66,7 @@ describe('a place in a study', () => {
     }
     expect(taken(server)).toBe(0);
     reportFigures('study-places', { 'places taken by 300 claims in a loop': `${taken(server)} of ${people.length}` });
-    // The invited are not kept out by it.
+    // Invited participants still get their places.
     const later = await server.ask('POST', claimPath('P07'), { json: server.invited('P07'), from: '198.51.100.7' });
     expect(later.status).toBe(201);
   });
@@ -131,7 +131,7 @@ test('a claim of a place that is taken already leaves the address its places of 
 describe('3000 guesses from one address', () => {
   const from = '203.0.113.9';
   const guesses = Array.from({ length: 3000 }, (_, number) => number);
-  /** Six at once, then one after 1, 2, 4, … 64 s: more than any loop gets within the time limit of a test, 120 s. */
+  /** The most attempts within the time limit of a test, 120 s: six at once, then one after 1, 2, 4, … 64 s. */
   const maxAttempts = 13;
 
   async function guessAll(server: Server, what: string, asked: (number: number) => [string, string, Asked]) {
@@ -149,8 +149,8 @@ describe('3000 guesses from one address', () => {
     const lookedAt = guesses.length - (statuses.get(429) ?? 0);
     expect(lookedAt).toBeGreaterThanOrEqual(6);
     expect(lookedAt).toBeLessThanOrEqual(maxAttempts);
-    expect(server.wrongGuesses).toHaveLength(lookedAt);
-    expect(JSON.stringify(server.wrongGuesses)).not.toMatch(/ZZZZ|guess-/);
+    expect(server.failedAttempts).toHaveLength(lookedAt);
+    expect(JSON.stringify(server.failedAttempts)).not.toMatch(/ZZZZ|guess-/);
     reportFigures('guessing', { [what]: `${lookedAt} of ${guesses.length} looked at` });
     return statuses;
   }
@@ -200,8 +200,8 @@ describe('3000 guesses from one address', () => {
     });
     const answers = answered.match(/HTTP\/1\.1 \d{3}/g) ?? [];
     expect(answers.filter((line) => line.endsWith('429')).length).toBeGreaterThanOrEqual(answers.length - 10);
-    expect(server.wrongGuesses.length).toBeLessThanOrEqual(10);
+    expect(server.failedAttempts.length).toBeLessThanOrEqual(10);
     expect(taken(server)).toBe(0);
-    reportFigures('guessing', { 'invitations in one packet': `${server.wrongGuesses.length} of 3000 looked at` });
+    reportFigures('guessing', { 'invitations in one packet': `${server.failedAttempts.length} of 3000 looked at` });
   });
 });

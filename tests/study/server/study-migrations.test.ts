@@ -16,7 +16,7 @@ const now = 1_800_000_000;
 const plan = latencyPlan();
 const later = latencyPlan({ title: 'A body that follows much later' });
 
-/** The study of three latencies in a database of its own, which P02 has finished and from which P03 has withdrawn. */
+/** Returns a database with the study of three latencies, which P02 has finished and from which P03 has withdrawn. */
 function begunStudy() {
   const file = join(directoryWith(), 'studies.db');
   const store = openStudyStore(file);
@@ -30,7 +30,7 @@ function begunStudy() {
   return { file, token, withdrawalCode: withdrawalCode as string, records: p02.records };
 }
 
-/** The database as an older version left it, opened by this one. */
+/** Opens a database that an older version wrote. */
 function broughtUpToDate(file: string, older: string) {
   const database = new DatabaseSync(file);
   database.exec(older);
@@ -48,8 +48,8 @@ test('a database from before invitations gives each place one, and loses nothing
   const given = invitations.filter((invitation) => invitation !== null);
   expect(new Set(given).size).toBe(17);
   for (const invitation of given) expect(invitation).toMatch(/^(\w{4}-){3}\w{4}$/);
-  expect(store.places.invites('latency', 'P01', given[0] as string)).toBe(true);
-  expect(store.places.invites('latency', 'P04', given[0] as string)).toBe(false);
+  expect(store.places.acceptsInvitation('latency', 'P01', given[0] as string)).toBe(true);
+  expect(store.places.acceptsInvitation('latency', 'P04', given[0] as string)).toBe(false);
   expect(store.places.holds('latency', 'P02', token)).toBe(true);
   expect(store.records.all('latency')).toEqual(records);
   expect(store.deletion.withdraw('latency', withdrawalCode, now)).toMatchObject({ participant: 'P02' });

@@ -22,7 +22,7 @@ const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
 const seats = createStudySeats(testSecret, (pass) => tokens.sign(pass));
 const step = 'ball/1/trial-1';
 const trial = { step, run: 1 };
-/** The three of P01's group, in the order of their seats. */
+/** The group of P01, in the order of their seats. */
 const group = scheduleFor(plan, 'P01').groups.ball?.members as readonly string[];
 
 let server: RunningRelay;

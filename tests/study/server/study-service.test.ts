@@ -1,48 +1,24 @@
-import { readFileSync, statSync } from 'node:fs';
+import { statSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { createRouter, noPage } from 'threepoint-http/router';
-import { serve } from 'threepoint-http/web-server';
-import { openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { hasFileModes } from '../../platform';
-import { testSecret, until } from '../../rooms/server/running-relay';
+import { until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
-import { studyThread, testSoftware } from './running-studies';
+import { experimenter, servedFolder, testSoftware } from './running-studies';
 
 const day = 86_400;
 
-async function served(directory: string, now: () => number, log: (line: string) => void = () => undefined) {
-  const service = await openStudyService({
-    thread: studyThread,
-    directory,
-    token: null,
-    now,
-    secret: testSecret,
-    software: testSoftware.exportedBy,
-    trustProxy: false,
-    log,
-  });
-  const server = await serve(createRouter([service.service], noPage), { host: '127.0.0.1', port: 0 });
-  const close = async () => {
-    await server.close();
-    await service.close();
-  };
-  return { origin: `http://127.0.0.1:${server.port}`, service, close };
-}
-
 test('the first start draws a token that only its owner can read, and the next start keeps it', async () => {
   const directory = join(directoryWith(), 'new');
-  const first = await served(directory, () => 1e9);
-  const file = first.service.tokenFile as string;
-  const token = readFileSync(file, 'utf8').trim();
+  const first = await servedFolder(directory, null);
+  const token = first.savedToken as string;
   expect(token.length).toBeGreaterThanOrEqual(32);
-  if (hasFileModes) expect(statSync(file).mode & 0o777).toBe(0o600);
-  await first.close();
-  const second = await served(directory, () => 1e9);
-  onTestFinished(second.close);
+  if (hasFileModes) expect(statSync(first.tokenFile as string).mode & 0o777).toBe(0o600);
+  await first.stop();
+  const second = await servedFolder(directory, null);
   const asked = (authorization: string) => fetch(`${second.origin}/api/studies`, { headers: { authorization } });
   expect((await asked(`Bearer ${token}`)).status).toBe(200);
   expect((await asked('Bearer another-token-altogether')).status).toBe(401);
@@ -51,28 +27,21 @@ test('the first start draws a token that only its owner can read, and the next s
 
 test('what is past its retention date is deleted when the server starts, and the log says so', async () => {
   const directory = directoryWith();
-  const first = await served(directory, () => 1e9);
-  const token = readFileSync(first.service.tokenFile as string, 'utf8').trim();
+  const first = await servedFolder(directory);
   const post = (path: string, body: unknown) =>
     fetch(`${first.origin}/api/studies${path}`, {
       method: 'POST',
-      headers: { authorization: `Bearer ${token}`, 'content-type': 'application/json' },
+      headers: { authorization: `Bearer ${experimenter}`, 'content-type': 'application/json' },
       body: JSON.stringify(body),
     });
   expect((await post('', { plan: paperPlan(), simulated: false })).status).toBe(201);
   expect((await post('/paper/participants/P01/claim', {})).status).toBe(201);
-  await first.close();
-  const lines: string[] = [];
-  const later = await served(
-    directory,
-    () => 1e9 + 366 * day,
-    (line) => lines.push(line),
-  );
-  onTestFinished(later.close);
+  await first.stop();
+  const { lines } = await servedFolder(directory, experimenter, 1e9 + 366 * day);
   expect(lines).toEqual(['study "paper": P01 is past the retention date, 0 records deleted']);
 });
 
-/** A study that P01 and P02 have begun, in a directory of its own; the same database opened once more, to lock it. */
+/** Returns a directory with a study that P01 and P02 have begun. */
 function begunStudy() {
   const directory = directoryWith();
   const file = join(directory, 'studies.db');
@@ -91,16 +60,11 @@ test('a database that refuses to delete what is past its retention date ends no 
   });
   const { directory, file } = begunStudy();
   const database = new DatabaseSync(file);
-  // What a full disk refuses of P01 alone.
+  // The trigger refuses changes of P01 as a full disk would.
   database.exec(`CREATE TRIGGER full BEFORE UPDATE ON participants WHEN old.participant = 'P01'
     BEGIN SELECT raise(ABORT, 'database or disk is full'); END`);
-  const lines: string[] = [];
-  const late = await served(
-    directory,
-    () => 1e9 + 366 * day,
-    (line) => lines.push(line),
-  );
-  onTestFinished(late.close);
+  const late = await servedFolder(directory, experimenter, 1e9 + 366 * day);
+  const { lines } = late;
   const refused =
     'study "paper": P01 is past the retention date and could not be deleted, which is tried again within the hour: database or disk is full';
   expect(lines).toEqual([refused, 'study "paper": P02 is past the retention date, 0 records deleted']);

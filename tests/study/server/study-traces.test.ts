@@ -14,11 +14,11 @@ import type { Anything } from './running-studies';
 
 const plan = paperPlan();
 const people = ['P01', 'P02', 'P03'];
-/** Stands in every text of a participant that the server is sent. */
+/** Returns the mark in every text that a participant sends. */
 const markOf = (participant: string) => `conspicuous-${participant.toLowerCase()}`;
 const addressOf = (participant: string) => `203.0.113.${40 + Number(participant.slice(1))}`;
 
-/** A whole session of a participant, with the mark in every text. */
+/** Returns a complete session of a participant, with the mark in every text. */
 function sessionOf(participant: string) {
   const schedule = scheduleFor(plan, participant);
   const one = session(schedule);
@@ -56,7 +56,7 @@ function recordingOf(participant: string): string {
   return writeRecording({ device: markOf(participant), rateHz: 72, calibration: null, frames });
 }
 
-/** A server whose log, temporary files and data are below one directory. */
+/** Starts a server whose log, temporary files and data are below one directory. */
 async function serve() {
   const directory = directoryWith();
   mkdirSync(join(directory, 'temporary'));
@@ -71,7 +71,7 @@ async function serve() {
       headers: {
         'x-forwarded-for': from,
         'user-agent': `a browser at ${from}`,
-        // The search for traces blocks this process: meanwhile the server would close an idle connection.
+        // The search for traces blocks this process for longer than the server keeps an idle connection.
         connection: 'close',
         ...(token !== null && { authorization: `Bearer ${token}` }),
         ...(body !== undefined && { 'content-type': 'application/json' }),
@@ -89,7 +89,7 @@ async function serve() {
 
 type Served = Awaited<ReturnType<typeof serve>>;
 
-/** Takes part from beginning to end; resolves with the token and the code. */
+/** Completes a session over HTTP; resolves with the token, the code and the records. */
 async function takePart({ ask, asExperimenter }: Served, participant: string) {
   const from = addressOf(participant);
   const own = `/${plan.id}/participants/${participant}`;
@@ -112,8 +112,8 @@ const filesIn = (directory: string) =>
     .map((name) => ({ name, bytes: readFileSync(join(directory, name)) }));
 
 /**
- * What identifies a participant on a disk: texts, secrets, the address, and the middle of the recording as it is
- * packed.
+ * Returns what identifies a participant on a disk: texts, secrets, the address, and the middle of the compressed
+ * recording.
  */
 const tracesOf = (participant: string, { token, code }: { readonly token: string; readonly code: string }) => [
   ...[markOf(participant), token, code, code.replaceAll('-', ''), addressOf(participant)],

@@ -8,14 +8,14 @@ import { experimenter, now, servedStudies } from './running-studies';
 
 const later = latencyPlan({ title: 'A body that follows much later' });
 
-/** Everything that a participant does by this plan. */
+/** Returns the complete session of a participant by this plan. */
 function recordsOf(plan: StudyPlan, participant: string) {
   const one = session(scheduleFor(plan, participant));
   one.doUntil(({ kind }) => kind === 'end');
   return one;
 }
 
-/** A real server with the study of three latencies, which P01 has finished. */
+/** Returns a server with the study of three latencies, which P01 has finished. */
 async function begunStudy() {
   const server = await servedStudies();
   const plan = latencyPlan();
@@ -42,7 +42,7 @@ async function begunStudy() {
   return { ...server, plan, of, take, change, see };
 }
 
-/** A question more after each round. */
+/** The plan with another question after each round. */
 const asksMore = latencyPlan({
   questionnaires:
     latencyPlan().questionnaires?.map((asked) => ({
@@ -53,11 +53,12 @@ const asksMore = latencyPlan({
 
 describe('a plan that has participants', () => {
   test('is frozen: a change is refused in a sentence that says who keeps it and what can be done', async () => {
-    const { change, see } = await begunStudy();
+    const { plan, change, see } = await begunStudy();
     const { status, json } = await change(later);
     expect(status).toBe(409);
     expect(json.field).toBe('newVersion');
     expect(json.error).toContain('has begun: P01 keep its plan. Add the plan as version 2');
+    expect((await change(plan)).status).toBe(201);
     expect((await see('/records')).versions).toHaveLength(1);
   });
 
@@ -71,7 +72,7 @@ describe('a plan that has participants', () => {
     expect(followed).toEqual(asksMore);
     const states = (await see('/participants')).participants as { participant: string; version: number }[];
     expect(states.map(({ version }) => version)).toEqual([1, ...states.slice(1).map(() => 2)]);
-    // What P01 sends later is checked by their own plan, what P02 sends by theirs.
+    // Later records of each participant are checked by that participant's plan.
     const [, answers] = recordsOf(asksMore, 'P01').records.filter(({ kind }) => kind === 'answers');
     const more = { ...answers, id: 'archery/1/questionnaire@9.1:answers' };
     const p01 = await ask('POST', `${of('P01')}/records`, { token: experimenter, json: { records: [more] } });
@@ -197,7 +198,7 @@ describe('a place that the experimenter clears', () => {
     const one = [...togetherWith(plan, 'P01')];
     const other = ['P01', 'P02', 'P03', 'P04', 'P05', 'P06'].find((name) => !one.includes(name)) as string;
     for (const participant of ['P01', other]) store.places.claim('paper', participant, now);
-    // By another seed everybody plays with others, and all stay: nothing is mixed yet.
+    // Another seed makes other groups, but all places keep their version, so nothing is mixed.
     const seed = [1, 2, 3, 4, 5, 6, 7, 8].find((value) =>
       [...togetherWith({ ...plan, seed: value }, 'P01')].some((name) => !one.includes(name)),
     );
@@ -217,7 +218,7 @@ describe('a place that the experimenter clears', () => {
     const [, ofAll] = invitations();
     store.deletion.delete('latency', 'P01', 'experimenter', now);
     expect(invitations()).toEqual(Array.from({ length: 6 }, () => ofAll));
-    expect(store.places.invites('latency', 'P01', old)).toBe(false);
+    expect(store.places.acceptsInvitation('latency', 'P01', old)).toBe(false);
   });
 
   test('stays taken for a participant who has withdrawn', async () => {

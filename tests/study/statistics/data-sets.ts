@@ -157,8 +157,8 @@ export const chicks = [
 ];
 
 /**
- * Not of R: points of eight people in three rounds of archery under two conditions, made up so that differences of
- * means are tied.
+ * The points of eight people in three rounds of archery under two conditions. They are not from R but made up, so that
+ * differences of means are tied.
  */
 export const threeRounds = {
   first: [

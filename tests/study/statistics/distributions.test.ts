@@ -92,6 +92,6 @@ describe("Student's t", () => {
 test("the distribution of Wilcoxon's V counts the sums of ranks", () => {
   // The eight sums of three ranks: 0, 1, 2, 3, 3, 4, 5, 6.
   expect([-1, 0, 1, 2, 3, 4, 5, 6].map((v) => 8 * signedRankCdf(v, 3))).toEqual([0, 1, 2, 3, 5, 6, 7, 8]);
-  // A table's critical value of 10 pairs at 5 %, two-sided.
+  // The printed critical value of 10 pairs is at 5 %, two-sided.
   expect(signedRankCdf(8, 10)).toBe(25 / 1024);
 });

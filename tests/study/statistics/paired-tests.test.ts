@@ -46,7 +46,7 @@ describe('the paired t-test', () => {
 });
 
 describe("Student's distribution", () => {
-  // The critical values printed in every table of it.
+  // These critical values are in every printed table.
   test.each([
     [12.706, 1, 0.05],
     [2.776, 4, 0.05],

@@ -18,7 +18,7 @@ const asked = v.object({
   seed: given(integerBetween(0, 2 ** 31 - 1), '1'),
 });
 
-/** Rows whose power is this near to the wanted one are all shown; below them every fifth. */
+/** The distance from the wanted power within which every row is shown; below, every fifth row. */
 const closeToIt = 0.05;
 
 /** Returns the first row at which a test reaches the power, in words. */
@@ -27,7 +27,7 @@ function needed(rows: readonly PowerRow[], test: 't' | 'wilcoxon', power: number
   return row ? `${row.n}` : `more than ${maxSimulated}`;
 }
 
-function tell(): void {
+function printTable(): void {
   const { design, power, seed, studies, ...planned } = checked(asked, JSON.parse(process.argv[2] ?? '{}'));
   const rows = powerTable({ design, ...planned }, power, { seed, studies });
   const paired = design === 'paired';
@@ -50,7 +50,7 @@ function tell(): void {
 }
 
 try {
-  tell();
+  printTable();
 } catch (error) {
   if (!(error instanceof ValidationError)) throw error;
   console.error(`study:power: --${error.message}`);

@@ -1,6 +1,7 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
+import { parseArgs } from 'node:util';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { readSoftwareVersion } from 'threepoint-http/software-version';
@@ -13,11 +14,33 @@ import { exportFiles, exportName, exportZip } from '../../server/export/export-z
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { openStudyStore } from '../../server/storage/study-store';
 import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../simulation/simulate-study';
-import { simulateOptions } from './options';
 
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 /** The start of the first simulated participant, a fixed day so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
+
+/** Throws a ValidationError with the name of the option. */
+function wholeNumber(name: string, given: string | undefined): number | null {
+  if (given === undefined) return null;
+  if (!/^\d{1,9}$/.test(given)) throw new ValidationError(`--${name}`, `expected a whole number, not "${given}"`);
+  return Number(given);
+}
+
+/** Parses "late-200=-0.8"; a number alone belongs to the second condition, or else to the second cohort. */
+function effectsIn(plan: StudyPlan, name: string, given: readonly string[] = []): Readonly<Record<string, number>> {
+  const { conditions, cohorts = [] } = plan;
+  const usual = (conditions[1] ?? cohorts[1])?.id ?? '';
+  return Object.fromEntries(
+    given.map((one) => {
+      const at = one.lastIndexOf('=');
+      const value = one.slice(at + 1);
+      if (value.trim() === '' || !Number.isFinite(Number(value))) {
+        throw new ValidationError(`--${name}`, `expected a number, or a condition and one (id=0.5), not "${one}"`);
+      }
+      return [at < 0 ? usual : one.slice(0, at), Number(value)];
+    }),
+  );
+}
 
 /** Formats p as "p = 0.0123", never as 0. */
 const pText = (p: number | null | undefined) =>
@@ -67,7 +90,15 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
 }
 
 function run(): void {
-  const { out, plan: planFile, participants, seed: givenSeed, effectsOn } = simulateOptions();
+  const text = { type: 'string' } as const;
+  const several = { type: 'string', multiple: true } as const;
+  const { values } = parseArgs({
+    options: { participants: text, out: text, seed: text, plan: text, effect: several, 'score-effect': several },
+  });
+  const { out, plan: planFile } = values;
+  if (!out || !planFile) throw new ValidationError('', 'both --out and --plan are needed');
+  const participants = wholeNumber('participants', values.participants);
+  const givenSeed = wholeNumber('seed', values.seed);
   if (existsSync(out) && readdirSync(out).length > 0) {
     throw new ValidationError('--out', `${out} is not empty. Choose an empty folder for simulated files.`);
   }
@@ -75,7 +106,10 @@ function run(): void {
   const given = parsePlan(readFileSync(planFile, 'utf8'), planFile);
   const seed = givenSeed ?? given.seed;
   const plan = checkedPlan(simulatedPlan({ ...given, seed, ...(participants !== null && { participants }) }));
-  const effects = effectsOn(plan);
+  const effects = {
+    answers: effectsIn(plan, 'effect', values.effect),
+    scores: effectsIn(plan, 'score-effect', values['score-effect']),
+  };
   const models = modelsWith(plan, effects);
   const simulated = simulateStudy(plan, models, seed, firstSession);
 

@@ -8,7 +8,7 @@ import { verifyExport } from './verify-export';
 
 const [path = ''] = process.argv.slice(2);
 const file = basename(path);
-/** More complaints than this have one cause. */
+/** The most complaints that are printed, because more of them have one cause. */
 const maxShown = 50;
 
 try {

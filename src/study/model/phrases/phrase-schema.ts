@@ -3,7 +3,7 @@ import * as v from 'valibot';
 import type { GivenPhrases, Phrase, PhraseKey } from './catalogue';
 import { english } from './english';
 import { languageTag } from './localized-text';
-import { gapsIn, phraseKeys } from './phrases';
+import { phraseKeys, placeholdersIn } from './phrases';
 
 const longest = 600;
 const form = v.exactOptional(text(longest));
@@ -48,9 +48,9 @@ function refuseRows(rows: string, field: string): void {
 }
 
 /** A plural form may leave the number out, as in "one record"; other texts need all their placeholders. */
-function refuseGaps(key: PhraseKey, phraseText: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
-  const wanted = gapsIn(inEnglish(english[key]));
-  const found = gapsIn(phraseText);
+function refusePlaceholders(key: PhraseKey, phraseText: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
+  const wanted = placeholdersIn(inEnglish(english[key]));
+  const found = placeholdersIn(phraseText);
   const missing = [...wanted].filter((name) => !found.has(name) && !mayLeaveOut.has(name));
   if (missing.length > 0) throw new ValidationError(field, `lacks ${braced(missing)}`);
   const unknown = [...found].filter((name) => !wanted.has(name));
@@ -73,12 +73,12 @@ export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, l
     }
     for (const [key, phrase] of Object.entries(given) as [PhraseKey, Phrase][]) {
       if (typeof phrase === 'string') {
-        refuseGaps(key, phrase, fieldOf(language, key, null), whole);
+        refusePlaceholders(key, phrase, fieldOf(language, key, null), whole);
         if (key === 'keys.rows') refuseRows(phrase, fieldOf(language, key, null));
         continue;
       }
       for (const [name, phraseText] of Object.entries(phrase) as [string, string][]) {
-        refuseGaps(key, phraseText, fieldOf(language, key, name), name === 'other' ? whole : number);
+        refusePlaceholders(key, phraseText, fieldOf(language, key, name), name === 'other' ? whole : number);
       }
     }
   }

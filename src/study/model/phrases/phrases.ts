@@ -20,7 +20,7 @@ export const shippedPhrases: Readonly<Record<string, Catalogue>> = { en: english
 export const shippedLanguages = Object.keys(shippedPhrases) as unknown as readonly [string, ...string[]];
 
 /** The names of the placeholders in a text: "{count} of {total}" has count and total. */
-export const gapsIn = (text: string): ReadonlySet<string> =>
+export const placeholdersIn = (text: string): ReadonlySet<string> =>
   new Set([...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name as string));
 
 /** Returns de for de-AT. */

@@ -15,7 +15,7 @@ export interface OutlinedScreen {
   readonly seconds: number | null;
 }
 
-const ofForm = ({ answer: form, optional }: Question): string => {
+const formInWords = ({ answer: form, optional }: Question): string => {
   const range = questionKind(form).range(form);
   return `${form.kind}${range ? ` ${range[0]} to ${range[1]}` : ''}${optional ? ', optional' : ''}`;
 };
@@ -59,7 +59,7 @@ function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] 
       const { questions } = step.questionnaire;
       const each = questions.map((question, index) =>
         at(
-          `${index + 1} of ${questions.length}, ${question.id} (${ofForm(question)}): ${inLanguage(question.text, language)}`,
+          `${index + 1} of ${questions.length}, ${question.id} (${formInWords(question)}): ${inLanguage(question.text, language)}`,
           'either',
         ),
       );

@@ -47,7 +47,7 @@ const evenParticipants = ({ tasks, cohorts, ...plan }: StudyPlan, { groupSize }:
 const timesText = (count: number) => (count === 0 ? 'never' : count === 1 ? 'once' : `${count} times`);
 
 /** Returns remarks about unbalanced cohorts and orders. */
-function unevenness(plan: StudyPlan): readonly string[] {
+function balanceRemarks(plan: StudyPlan): readonly string[] {
   const remarks: string[] = [];
   const sizes = cohortCounts(plan);
   if (!even(sizes)) {
@@ -69,7 +69,7 @@ function unevenness(plan: StudyPlan): readonly string[] {
 }
 
 /** Returns remarks about conditions or cohorts with identical bodies. */
-function alikeRemarks(
+function sameBodyRemarks(
   list: string,
   entries: readonly (PartialEmbodiment & { readonly id: string })[],
 ): readonly string[] {
@@ -85,7 +85,7 @@ function alikeRemarks(
 }
 
 /** Returns remarks about languages in which the page shows some phrases in English. */
-const unspokenRemarks = (plan: StudyPlan): readonly string[] =>
+const untranslatedRemarks = (plan: StudyPlan): readonly string[] =>
   languagesOf(plan).flatMap((language) => {
     const missing = missingKeys(language, plan.phrases?.[language]);
     if (missing.length === 0) return [];
@@ -110,10 +110,10 @@ export function remarksOn(plan: StudyPlan): readonly string[] {
   const mirrored = [...conditions, ...cohorts].some(({ mirror }) => mirror);
   const unmirrored = tasks.filter(({ game }) => mirrored && game === 'ball');
   return [
-    ...unevenness(plan),
-    ...alikeRemarks('Conditions', conditions),
-    ...alikeRemarks('Cohorts', cohorts),
-    ...unspokenRemarks(plan),
+    ...balanceRemarks(plan),
+    ...sameBodyRemarks('Conditions', conditions),
+    ...sameBodyRemarks('Cohorts', cohorts),
+    ...untranslatedRemarks(plan),
     ...untestedRemarks(plan),
     ...unmirrored.map(({ id }) => `${taskTitle(plan, id)}: the ball game has no mirror.`),
   ];

@@ -20,8 +20,8 @@ export type StudyCondition = StudyPlan['conditions'][number];
 export type StudyCohort = NonNullable<StudyPlan['cohorts']>[number];
 
 const maxOrdersListed = 4;
-/** Properties that all conditions set if one does: the default of the page depends on the headset. */
-const saidByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
+/** The properties that all conditions set if one does, because the default of the page depends on the headset. */
+const setByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
 
 /**
  * The number of participants in each game. A score of archery would count for all of a group, and a ball game of a
@@ -109,7 +109,7 @@ function refuseQuestionnaires(plan: StudyPlan): void {
 function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
   const lists = { conditions, cohorts };
   for (const [list, entries] of Object.entries(lists)) {
-    for (const field of saidByAllOrNone) {
+    for (const field of setByAllOrNone) {
       const missing = entries.findIndex((entry) => entry[field] === undefined);
       const present = entries.findIndex((entry) => entry[field] !== undefined);
       if (missing >= 0 && present >= 0) {

@@ -83,7 +83,7 @@ function textsOf(
   { title, answer, questions }: QuestionnaireFile,
   field: string,
 ): readonly (readonly [string, Words])[] {
-  const ofForm = (form: AnswerForm | undefined, at: string) =>
+  const formInWords = (form: AnswerForm | undefined, at: string) =>
     form === undefined
       ? []
       : questionKind(form)
@@ -91,10 +91,10 @@ function textsOf(
           .map(([path, text]) => [`${at}.${path}`, text] as const);
   return [
     [`${field}.title`, title],
-    ...ofForm(answer, `${field}.answer`),
+    ...formInWords(answer, `${field}.answer`),
     ...questions.flatMap((one, i) => [
       [`${field}.questions[${i}].text`, one.text] as const,
-      ...ofForm(one.answer, `${field}.questions[${i}].answer`),
+      ...formInWords(one.answer, `${field}.questions[${i}].answer`),
     ]),
   ];
 }

@@ -39,7 +39,7 @@ export const demographicsSchema = v.object({
 /** The answers to the questions that the paper asked before play, and the preferred hand. */
 export type Demographics = v.InferOutput<typeof demographicsSchema>;
 
-/** Throws a ValidationError that names the field. */
+/** Returns valid demographics; throws a ValidationError that names the field. */
 export const checkedDemographics = (value: unknown): Demographics => checked(demographicsSchema, value);
 
 /** Returns a choice with the phrase of every value. */

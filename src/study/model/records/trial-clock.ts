@@ -58,7 +58,7 @@ export class TrialSeconds {
     return pageTime - this.#pausedSeconds - start;
   }
 
-  /** null: the trial has not begun, or had too many pauses. */
+  /** The clock of the trial; null: the trial has not begun, or had too many pauses. */
   get clock(): TrialClock | null {
     if (!this.#clock || this.#pauses.length > maxTrialPauses) return null;
     return { ...this.#clock, pauses: this.#pauses };

@@ -102,7 +102,7 @@ export type TrialOutcome = v.InferOutput<typeof outcomeSchema>;
 export type StageSummary = v.InferOutput<typeof stageSchema>;
 export type TrialEvent = TrialOutcome['events'][number];
 
-/** Throws a ValidationError that names the field. */
+/** Returns a valid outcome; throws a ValidationError that names the field. */
 export const checkedOutcome = (value: unknown): TrialOutcome => checked(outcomeSchema, value);
 
 const binMs = 0.05;

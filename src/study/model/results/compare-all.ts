@@ -11,7 +11,8 @@ export interface OverallComparison extends Measured {
   /** null: a cohort has no complete values. */
   readonly variance: VarianceAnalysis | null;
   /**
-   * Friedman's test of the conditions; with one condition, that of Kruskal and Wallis of the cohorts; null as above.
+   * Friedman's test of the conditions, or Kruskal and Wallis's of the cohorts with one condition; null: a cohort has no
+   * complete values.
    */
   readonly ranks: RankAnalysis | null;
   /**
@@ -33,7 +34,7 @@ export function completeValues({ means, cohorts }: Measure, conditions: readonly
   return { complete, leftOut: values.flatMap(({ who, own }) => (isComplete(own) ? [] : [who])) };
 }
 
-function analysed(measure: Measure, conditions: readonly string[]) {
+function analyse(measure: Measure, conditions: readonly string[]) {
   const { complete, leftOut } = completeValues(measure, conditions);
   const names = [...new Set(measure.cohorts.values())].toSorted();
   const cohorts = names.map((name) =>
@@ -59,7 +60,7 @@ function analysed(measure: Measure, conditions: readonly string[]) {
 export function compareAll(measures: readonly Measure[], conditions: readonly string[]): readonly OverallComparison[] {
   const single = measures.map((measure) => {
     const { of, asked, unit } = measure;
-    return { of, asked, unit, ...analysed(measure, conditions) };
+    return { of, asked, unit, ...analyse(measure, conditions) };
   });
   return asFamily(
     single,

@@ -34,7 +34,7 @@ export interface StudyMeasures {
   readonly planned: readonly Measure[];
 }
 
-/** Throws if simulated records and records of people are mixed. */
+/** Returns the measures of a study; throws if simulated records and records of people are mixed. */
 export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): StudyMeasures {
   const cohortOf = cohortIn(plan);
   const answers = answerMeasures(answersIn(records, plan), cohortOf);

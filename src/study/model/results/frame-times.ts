@@ -1,5 +1,5 @@
 import type { StudyRecord, TrialRecord } from '../records/study-record';
-import { refuseMixture, voidedBlocks } from '../tables/study-tables';
+import { refuseMixture, trialsIn } from '../tables/study-tables';
 import type { CohortOf } from './measures';
 
 /**
@@ -31,17 +31,14 @@ export interface FrameTimeRow {
  */
 export function frameTimes(records: readonly StudyRecord[], cohortOf: CohortOf = () => ''): readonly FrameTimeRow[] {
   refuseMixture(records);
-  const excluded = voidedBlocks(records);
   type Group = Pick<FrameTimeRow, 'task' | 'condition' | 'cohort' | 'stage'> & { readonly trials: TrialRecord[] };
   const groups = new Map<string, Group>();
-  for (const record of records) {
-    if (record.kind !== 'trial') continue;
-    const { condition, place, outcome } = record.body;
-    if (condition === null || excluded(record.participant, place) !== '') continue;
-    const cohort = cohortOf(record.participant);
-    for (const stage of Object.keys(outcome.frames.stages)) {
-      const key = `${place.task} ${condition} ${cohort} ${stage}`;
-      const group = groups.get(key) ?? { task: place.task, condition, cohort, stage, trials: [] };
+  for (const { record, participant, task, condition, excluded } of trialsIn(records)) {
+    if (condition === null || excluded) continue;
+    const cohort = cohortOf(participant);
+    for (const stage of Object.keys(record.body.outcome.frames.stages)) {
+      const key = `${task} ${condition} ${cohort} ${stage}`;
+      const group = groups.get(key) ?? { task, condition, cohort, stage, trials: [] };
       group.trials.push(record);
       groups.set(key, group);
     }

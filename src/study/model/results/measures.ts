@@ -1,7 +1,6 @@
 import { meanOf } from '../../statistics/summaries';
 import type { StudyPlan } from '../plan/plan';
-import type { AnswerRow } from '../tables/answer-tables';
-import { refuseMixture, type TrialRow } from '../tables/study-tables';
+import { type AnswerRow, refuseMixture, type TrialRow } from '../tables/study-tables';
 
 /** A participant or an answer that is left out of the results, and the reason. */
 export interface Exclusion {

@@ -23,7 +23,7 @@ const simulatedColumn = boolean(
   'TRUE: made by a program. It says nothing about people.',
 );
 const ids = 'small letters, digits, hyphens';
-/** Values in [0, 1]: p, ε, shares of variance. */
+/** The range of p, ε and shares of variance. */
 const share = '0 to 1';
 
 /** The first columns of every table of compared measures. */
@@ -73,18 +73,18 @@ export interface ComparedSides {
   readonly comparisons: readonly Comparison[];
 }
 
-/** What tables of compared conditions and of compared cohorts say differently. */
+/** The columns and terms by which tables of compared conditions differ from those of compared cohorts. */
 interface TwoSides {
   /** The columns after those of the measure, and their cells. */
   readonly head: readonly Column[];
   readonly headCells: (sides: ComparedSides, one: Comparison) => Readonly<Record<string, Cell>>;
-  /** What each mean is of, and the population of its figures. */
+  /** The population of each mean, and that of its interval. */
   readonly means: { readonly first: string; readonly second: string; readonly each: string };
-  /** The test, the difference, when t is empty, and the degrees of freedom. */
+  /** The test, its difference, and the case in which t is empty. */
   readonly t: { readonly test: string; readonly difference: string; readonly empty: string };
   readonly df: { readonly values: string; readonly description: string };
   readonly d: { readonly name: string; readonly source: string; readonly description: string };
-  /** Wilcoxon's test: its name in columns, in words, its statistic and when it is approximated. */
+  /** Wilcoxon's test: its name in columns and in words, its statistic, and the cases in which it is approximated. */
   readonly ranks: {
     readonly name: string;
     readonly test: string;
@@ -92,7 +92,7 @@ interface TwoSides {
     readonly description: string;
     readonly approximated: string;
   };
-  /** What the rows of a family have in common. */
+  /** The columns in which the rows of a family are equal. */
   readonly alike: string;
 }
 

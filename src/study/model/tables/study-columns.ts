@@ -3,8 +3,9 @@ import { type Demographics, demographicFields } from '../records/demographics';
 import { eventTypes } from '../records/study-record';
 import { boolean, number, text } from './tidy-csv';
 
-/** Whole numbers from 1, and from 0. */
+/** The values of whole numbers from 1. */
 const ordinals = '1, 2, 3 …';
+/** The values of whole numbers from 0. */
 const counts = '0, 1, 2 …';
 const positive = '0 and more';
 const ids = 'small letters, digits, hyphens';

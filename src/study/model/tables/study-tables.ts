@@ -1,8 +1,10 @@
 import { cohortsByParticipant } from '../plan/allocation';
 import { languagesOf, type StudyPlan } from '../plan/plan';
-import type { Place, StudyEvent, StudyRecord } from '../records/study-record';
-import { type AnswerRow, answerRows, type BlockExclusion, questionTable, scaleRows, scaleTable } from './answer-tables';
-import { conditionTable, plannedTable } from './condition-table';
+import type { Answer } from '../questionnaires/question-kind';
+import { scaleScore } from '../questionnaires/questionnaire-scores';
+import { type Answers, type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
+import type { Place, StudyEvent, StudyRecord, TrialRecord } from '../records/study-record';
+import { conditionTable, plannedTable, questionTable, scaleTable } from './plan-tables';
 import {
   answerColumns,
   eventColumns,
@@ -15,11 +17,8 @@ import {
 } from './study-columns';
 import { rowFrom, type Table } from './tidy-csv';
 
-/**
- * Returns a function that gives the reason why the records of a block are not counted, "voided: reason", or an empty
- * text.
- */
-export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {
+/** Returns a function to the reason why the records of a block are not counted, "voided: …"; empty: they are. */
+export function voidedBlocks(records: readonly StudyRecord[]): (participant: string, place: Place) => string {
   const key = (participant: string, { task, block, run }: Pick<Place, 'task' | 'block' | 'run'>) =>
     `${participant} ${task}/${block}@${run}`;
   const voided = new Map<string, string>();
@@ -31,43 +30,76 @@ export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {
   return (participant, place) => voided.get(key(participant, place)) ?? '';
 }
 
-/** Returns the answers to every question, with voided ones marked. */
-export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
-  answerRows(records, plan, voidedBlocks(records));
+/** An answer to a question, or the value of a scale. */
+export interface AnswerRow {
+  readonly participant: string;
+  readonly simulated: boolean;
+  readonly task: string;
+  readonly condition: string;
+  readonly questionnaire: string;
+  /** The id of the question or of the scale. */
+  readonly question: string;
+  /** null: without an answer, or without one that the scale needs. */
+  readonly answer: Answer | null;
+  /** Why it is not counted; empty: it is. */
+  readonly excluded: string;
+}
 
-/** Returns the scales that are computed from the answers, with voided ones marked. */
-export const scalesIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
-  scaleRows(records, plan, voidedBlocks(records));
-
-const trialRows = (records: readonly StudyRecord[], exclusion: BlockExclusion) =>
-  records.flatMap((record) => {
-    if (record.kind !== 'trial') return [];
-    const { place, condition } = record.body;
-    const excluded = exclusion(record.participant, place) || (condition === null ? 'tutorial' : '');
-    return [{ record, outcome: record.body.outcome, excluded }];
+function rowsOf(
+  records: readonly StudyRecord[],
+  plan: StudyPlan,
+  valuesOf: (asked: Questionnaire, answers: Answers) => readonly (readonly [string, Answer | null])[],
+) {
+  const exclusionOf = voidedBlocks(records);
+  return records.flatMap((record) => {
+    if (record.kind !== 'answers') return [];
+    const { participant, simulated } = record;
+    const { place, answers, condition, questionnaire } = record.body;
+    const asked = questionnaireNamed(plan, questionnaire);
+    if (!asked)
+      throw new Error(`${participant} answered "${questionnaire}", which the plan "${plan.id}" does not hold`);
+    const excluded = exclusionOf(participant, place);
+    return valuesOf(asked, answers).map(([question, answer]) => ({
+      ...{ record, participant, simulated, task: place.task, condition, questionnaire, question, answer, excluded },
+    }));
   });
+}
+
+/** Returns a row with its record for every question of every submitted questionnaire, with voided ones marked. */
+export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan) =>
+  rowsOf(records, plan, ({ questions }, answers) => questions.map(({ id }) => [id, answers[id] ?? null]));
+
+/** Returns a row with its record for every scale of every submitted questionnaire, with voided ones marked. */
+export const scalesIn = (records: readonly StudyRecord[], plan: StudyPlan) =>
+  rowsOf(records, plan, (asked, answers) => asked.scales.map((scale) => [scale.id, scaleScore(asked, scale, answers)]));
 
 /** A trial with its scores; voided ones and tutorials are marked. */
 export interface TrialRow {
   readonly participant: string;
   readonly simulated: boolean;
   readonly task: string;
+  /** null: a tutorial. */
   readonly condition: string | null;
   readonly repetition: number;
   readonly group: number;
   readonly score: number;
   readonly maximum: number;
-  /** Empty: it is counted. */
+  /** Why it is not counted; empty: it is. */
   readonly excluded: string;
 }
 
-export const trialsIn = (records: readonly StudyRecord[]): readonly TrialRow[] =>
-  trialRows(records, voidedBlocks(records)).map(({ record, outcome, excluded }) => {
-    const { place, condition, repetition, group } = record.body;
+/** Returns a row with its record for every trial and tutorial. */
+export function trialsIn(records: readonly StudyRecord[]): readonly (TrialRow & { readonly record: TrialRecord })[] {
+  const exclusionOf = voidedBlocks(records);
+  return records.flatMap((record) => {
+    if (record.kind !== 'trial') return [];
     const { participant, simulated } = record;
+    const { place, condition, repetition, group, outcome } = record.body;
     const { score, maximum } = outcome;
-    return { participant, simulated, task: place.task, condition, repetition, group, score, maximum, excluded };
+    const excluded = exclusionOf(participant, place) || (condition === null ? 'tutorial' : '');
+    return { record, participant, simulated, task: place.task, condition, repetition, group, score, maximum, excluded };
   });
+}
 
 function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
   const cohorts = cohortsByParticipant(plan);
@@ -84,7 +116,7 @@ function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
 }
 
 /** Returns the text of an event. */
-function saidIn(body: StudyEvent): string {
+function eventText(body: StudyEvent): string {
   switch (body.type) {
     case 'remark':
       return body.text;
@@ -105,7 +137,7 @@ const eventRows = (records: readonly StudyRecord[]) =>
     const { body } = record;
     const place = 'place' in body ? body.place : body.type === 'void-block' ? body : null;
     const { task = null, block = null, run = null } = place ?? {};
-    return [rowFrom(eventColumns, record, { task, block, run, text: saidIn(body) })];
+    return [rowFrom(eventColumns, record, { task, block, run, text: eventText(body) })];
   });
 
 /** Throws if simulated records and records of people are mixed, because no table may contain both. */
@@ -118,8 +150,7 @@ export function refuseMixture(records: readonly { readonly simulated: boolean }[
 /** Returns the tables of an export. Throws if simulated records and records of people are mixed. */
 export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
   refuseMixture(records);
-  const exclusion = voidedBlocks(records);
-  const trials = trialRows(records, exclusion);
+  const trials = trialsIn(records);
   return [
     { name: 'participants', columns: participantColumns, rows: participantRows(records, plan) },
     conditionTable(plan),
@@ -127,7 +158,7 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
     {
       name: 'answers',
       columns: answerColumns,
-      rows: answerRows(records, plan, exclusion).map(({ record, question, answer, excluded }) => {
+      rows: answersIn(records, plan).map(({ record, question, answer, excluded }) => {
         const { language = languagesOf(plan)[0] } = record.body;
         const given = typeof answer === 'string' ? { answer: null, answer_text: answer } : { answer, answer_text: '' };
         return rowFrom(answerColumns, record, { question, ...given, language, excluded });
@@ -137,7 +168,7 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
     {
       name: 'scales',
       columns: scaleColumns,
-      rows: scaleRows(records, plan, exclusion).map(({ record, question, answer, excluded }) =>
+      rows: scalesIn(records, plan).map(({ record, question, answer, excluded }) =>
         rowFrom(scaleColumns, record, { scale: question, value: answer, excluded }),
       ),
     },
@@ -145,16 +176,16 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
     {
       name: 'trials',
       columns: trialColumns,
-      rows: trials.map(({ record, outcome, excluded }) => {
-        const percent = (100 * outcome.score) / outcome.maximum;
-        return rowFrom(trialColumns, record, { percent, assists: outcome.assists.join('; '), excluded });
+      rows: trials.map(({ record, score, maximum, excluded }) => {
+        const assists = record.body.outcome.assists.join('; ');
+        return rowFrom(trialColumns, record, { percent: (100 * score) / maximum, assists, excluded });
       }),
     },
     {
       name: 'frame-times',
       columns: frameTimeColumns,
-      rows: trials.flatMap(({ record, outcome, excluded }) =>
-        Object.entries(outcome.frames.stages).map(([stage, summary]) =>
+      rows: trials.flatMap(({ record, excluded }) =>
+        Object.entries(record.body.outcome.frames.stages).map(([stage, summary]) =>
           rowFrom(frameTimeColumns, record, { stage, excluded }, summary),
         ),
       ),
@@ -162,15 +193,15 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
     {
       name: 'hits',
       columns: hitColumns,
-      rows: trials.flatMap(({ record, outcome, excluded }) =>
-        outcome.events.map((event) => rowFrom(hitColumns, record, { excluded }, event)),
+      rows: trials.flatMap(({ record, excluded }) =>
+        record.body.outcome.events.map((event) => rowFrom(hitColumns, record, { excluded }, event)),
       ),
     },
     {
       name: 'pauses',
       columns: pauseColumns,
-      rows: trials.flatMap(({ record, outcome, excluded }) =>
-        (outcome.clock?.pauses ?? []).map((pause) => rowFrom(pauseColumns, record, { excluded }, pause)),
+      rows: trials.flatMap(({ record, excluded }) =>
+        (record.body.outcome.clock?.pauses ?? []).map((pause) => rowFrom(pauseColumns, record, { excluded }, pause)),
       ),
     },
     { name: 'events', columns: eventColumns, rows: eventRows(records) },

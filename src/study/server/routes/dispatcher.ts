@@ -1,8 +1,13 @@
+import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
+import { HttpError } from 'threepoint-http/http-error';
 import type { HttpResponse } from 'threepoint-http/response';
+import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
 import { StoreRefusal } from '../storage/store-refusal';
 import type { StudyStore } from '../storage/study-store';
-import type { StudyRequest, StudyRoute } from './route';
-import { refusalOf, type StudyRoutes } from './routes';
+import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
+import { participantRoutes } from './participant-routes';
+import type { StudyParts, StudyRequest, StudyRoute } from './route';
+import { studyRoutes } from './study-routes';
 
 /** The result of a request, in a form that can be sent between threads. */
 export type StudyOutcome =
@@ -42,51 +47,83 @@ async function untilUnlocked<T>(until: number, run: () => T | Promise<T>): Promi
   }
 }
 
-export interface StudyDispatcherOptions {
-  readonly routes: StudyRoutes;
-  readonly store: Pick<StudyStore, 'flushed'>;
+/** Returns the sender and the checked names of a request. */
+const senderOf = ({ token, address, names }: StudyRequest): Sender => ({
+  ...{ token, address },
+  study: names.study === undefined ? '' : checked(identifier, names.study),
+  participant: names.participant === undefined ? '' : checked(participantId, names.participant),
+});
+
+const statusOfRefusal = {
+  ...{ unknown: 404, conflict: 409, begun: 409, forbidden: 403, locked: 503, busy: 503, full: 507, lost: 507 },
+} as const satisfies Readonly<Record<StoreRefusal['reason'], number>>;
+
+/** The time after which a page repeats its request if the database is locked or busy [s]. */
+export const retryAfterSeconds = 5;
+
+/** Returns the HTTP error for an error, or null for a fault of the server. */
+export function refusalOf(error: unknown): HttpError | null {
+  if (!(error instanceof StoreRefusal)) return knownRefusalOf(error);
+  const { reason, message } = error;
+  return new HttpError(statusOfRefusal[reason], message, {
+    field: reason === 'begun' ? 'newVersion' : null,
+    headers: statusOfRefusal[reason] === 503 ? { 'retry-after': String(retryAfterSeconds) } : {},
+  });
+}
+
+export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, StudyGuardOptions {
+  readonly store: StudyStore;
   readonly log: (line: string) => void;
 }
 
 /**
- * Runs the requests to the studies. Requests that change something run one after the other and are answered when the
- * change is on the disk. While one of them waits for the lock of another program, requests that only read go on.
+ * Runs the requests to the routes below /api/studies. Requests that change something run one after the other and are
+ * answered when the change is on the disk. While one of them waits for the lock of another program, requests that only
+ * read go on.
  */
 export class StudyDispatcher {
-  readonly #options: StudyDispatcherOptions;
+  readonly routes: readonly StudyRoute[];
+  readonly #guard: StudyGuard;
+  readonly #store: StudyStore;
+  readonly #log: (line: string) => void;
   #lastChange: Promise<unknown> = Promise.resolve();
   #logged = Number.NEGATIVE_INFINITY;
 
-  constructor(options: StudyDispatcherOptions) {
-    this.#options = options;
+  constructor({ experimenterToken, onFailedAttempt, log, ...parts }: StudyDispatcherOptions) {
+    const { store } = parts;
+    const guard = createStudyGuard({ store, experimenterToken, onFailedAttempt });
+    this.routes = [...studyRoutes({ ...parts, guard }), ...participantRoutes({ ...parts, guard })];
+    this.#guard = guard;
+    this.#store = store;
+    this.#log = log;
   }
 
   /** Resolves with whether the request is permitted, before its body is read; `index` is that of the route. */
   admit(index: number, request: StudyRequest): Promise<StudyOutcome> {
-    const { routes } = this.#options;
     return this.#outcome(async () => {
-      const route = routes.routes[index] as StudyRoute;
-      await untilUnlocked(performance.now() + lockedMs, () => routes.admit(route, request));
+      const { access } = this.routes[index] as StudyRoute;
+      await untilUnlocked(performance.now() + lockedMs, () => this.#guard.admit(access, senderOf(request)));
       return { status: 204 };
     });
   }
 
   /** Handles a request. If its route takes a body, it was admitted before. */
   handle(index: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome> {
-    const { routes, store } = this.#options;
     return this.#outcome(async () => {
-      const route = routes.routes[index] as StudyRoute;
+      const route = this.routes[index] as StudyRoute;
+      const sender = senderOf(request);
+      const call = { ...sender, at: request.at, query: new URLSearchParams(request.query), body };
       const until = performance.now() + lockedMs;
-      if (route.bodyLimit === 0) await untilUnlocked(until, () => routes.admit(route, request));
-      const run = () => untilUnlocked(until, () => routes.handle(route, request, body));
-      const answer = await (route.changes ? this.#afterOthers(run) : run());
-      if (route.changes) await store.flushed();
+      if (route.bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(route.access, sender));
+      const run = () => untilUnlocked(until, () => route.handle(call));
+      const answer = await (route.changes ? this.#afterEarlierChanges(run) : run());
+      if (route.changes) await this.#store.flushed();
       const text = answer.body;
       return typeof text === 'string' ? { ...answer, body: new TextEncoder().encode(text) } : answer;
     });
   }
 
-  #afterOthers<T>(run: () => Promise<T>): Promise<T> {
+  #afterEarlierChanges<T>(run: () => Promise<T>): Promise<T> {
     const result = this.#lastChange.then(run);
     // A request neither fails with the error of the one before it nor keeps its result.
     const over = () => undefined;
@@ -109,6 +146,6 @@ export class StudyDispatcher {
   #logLost({ message, detail }: StoreRefusal): void {
     if (performance.now() - this.#logged < logEveryMs) return;
     this.#logged = performance.now();
-    this.#options.log(`study: ${message}${detail === null ? '' : ` (${detail})`}`);
+    this.#log(`study: ${message}${detail === null ? '' : ` (${detail})`}`);
   }
 }

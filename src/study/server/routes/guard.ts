@@ -15,17 +15,17 @@ import type { StudyStore } from '../storage/study-store';
  * The access to a route. participant: the token of this participant or of an experimenter; invited: the invitation to
  * this place or an experimenter's token; withdrawing: a participant's withdrawal code.
  */
-export type StudyAccess = 'anyone' | 'participant' | 'experimenter' | 'invited' | 'withdrawing';
+export type RouteAccess = 'anyone' | 'participant' | 'experimenter' | 'invited' | 'withdrawing';
 
 export interface StudyGuardOptions {
   readonly store: Pick<StudyStore, 'plans' | 'places'>;
-  /** The experimenter's token, sent as "Authorization: Bearer …"; null: there are no experimenters. */
-  readonly experimenterToken: string | null;
-  readonly onWrongGuess: (guess: FailedAttempt) => void;
+  /** The experimenter's token, sent as "Authorization: Bearer …". */
+  readonly experimenterToken: string;
+  readonly onFailedAttempt: (guess: FailedAttempt) => void;
 }
 
 /** The sender of a request and the place in the request. */
-export interface Concerned {
+export interface Sender {
   /** The token in the header "Authorization: Bearer …"; null: none. */
   readonly token: string | null;
   /** The client's address, by which requests are limited; null: unknown, so that limited requests are refused. */
@@ -73,12 +73,12 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
 export type StudyGuard = ReturnType<typeof createStudyGuard>;
 
 /** Returns the checks of tokens, invitations and withdrawal codes, which throw HttpErrors. */
-export function createStudyGuard({ store, experimenterToken, onWrongGuess }: StudyGuardOptions) {
-  const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
-  const throttle = createAuthThrottle(onWrongGuess);
+export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: StudyGuardOptions) {
+  const experimenterDigest = digest(experimenterToken);
+  const throttle = createAuthThrottle(onFailedAttempt);
   const spendingOpenPlace = createOpenPlaces();
 
-  type Attempted = Omit<AuthAttempt, 'address'> & Pick<Concerned, 'address'>;
+  type Attempted = Omit<AuthAttempt, 'address'> & Pick<Sender, 'address'>;
 
   async function attempt({ address, ...guess }: Attempted, isRight: () => boolean): Promise<boolean> {
     try {
@@ -89,31 +89,30 @@ export function createStudyGuard({ store, experimenterToken, onWrongGuess }: Stu
     }
   }
 
-  async function isExperimenter({ token, address }: Pick<Concerned, 'token' | 'address'>): Promise<boolean> {
+  async function isExperimenter({ token, address }: Pick<Sender, 'token' | 'address'>): Promise<boolean> {
     if (token === null) return false;
-    return attempt(
-      { what: 'token', address, of: null, secret: token },
-      () => experimenterDigest !== null && timingSafeEqual(digest(token), experimenterDigest),
+    return attempt({ what: 'token', address, of: null, secret: token }, () =>
+      timingSafeEqual(digest(token), experimenterDigest),
     );
   }
 
-  const isParticipant = ({ token, study, participant }: Concerned) =>
+  const isParticipant = ({ token, study, participant }: Sender) =>
     token !== null && store.places.holds(study, participant, token);
 
   return {
     /** Returns whether the request has the token of this participant. */
     isParticipant,
     /** Checks the head of a request; invitations and codes are in its body. */
-    async admit(access: StudyAccess, concerned: Concerned): Promise<void> {
+    async admit(access: RouteAccess, sender: Sender): Promise<void> {
       if (access !== 'participant' && access !== 'experimenter') return;
       // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
-      if (access === 'participant' && isParticipant(concerned)) return;
-      if (await isExperimenter(concerned)) return;
+      if (access === 'participant' && isParticipant(sender)) return;
+      if (await isExperimenter(sender)) return;
       throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
     },
     /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
-    async claiming<T>(concerned: Concerned, invitation: string | undefined, claim: () => T): Promise<T> {
-      const { token, address, study, participant } = concerned;
+    async claiming<T>(sender: Sender, invitation: string | undefined, claim: () => T): Promise<T> {
+      const { token, address, study, participant } = sender;
       const { plan } = store.plans.get(study);
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
@@ -122,13 +121,13 @@ export function createStudyGuard({ store, experimenterToken, onWrongGuess }: Stu
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;
       const right = await attempt({ what: 'invitation', address, of: study, secret }, () =>
-        store.places.invites(study, participant, invitation),
+        store.places.acceptsInvitation(study, participant, invitation),
       );
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
     /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
-    async withdrawing<T>({ address, study }: Concerned, code: string, withdraw: () => T | null): Promise<T> {
+    async withdrawing<T>({ address, study }: Sender, code: string, withdraw: () => T | null): Promise<T> {
       store.plans.get(study);
       let result: T | null = null;
       const secret = normalisedCode(code);

@@ -9,8 +9,8 @@ import { commandSchema, playedTogetherSchema } from '../../model/progress/study-
 import { profileFrom } from '../../model/records/participant-profile';
 import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/study-store';
-import { exporting, exportOf } from './export-routes';
-import { bodyLimits, type Handle, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
+import { bodyLimits, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
+import { exportOf } from './study-routes';
 
 export const maxRecordsAtOnce = 200;
 
@@ -66,12 +66,6 @@ function takePlace(store: StudyStore, { study, participant, at }: StudyCall, rea
   }
   return store.places.claim(study, participant, at);
 }
-
-/** Returns a route that signs: it takes a body and changes nothing. */
-const signing = (path: string, handle: Handle): StudyRoute => ({
-  ...route('POST', path, 'participant', bodyLimits.json, handle),
-  changes: false,
-});
 
 /** Returns the routes of one participant. */
 export function participantRoutes(parts: StudyParts): StudyRoute[] {
@@ -131,15 +125,21 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
       store.motion.store(study, participant, trial, recording, at);
       return noContent;
     }),
-    signing(`${own}/seat`, async (call) => {
-      const trial = checked(playedTogetherSchema, jsonOf(call));
-      const plan = store.plans.planFor(call.study, call.participant);
-      // A request that is admitted without the participant's token is from an experimenter, who watches.
-      return jsonResponse(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
-    }),
-    exporting(`${own}/export`, 'participant', ({ study, participant, at }) =>
-      exportOf(parts, { at, study, participant }),
-    ),
+    {
+      ...route('POST', `${own}/seat`, 'participant', bodyLimits.json, async (call) => {
+        const trial = checked(playedTogetherSchema, jsonOf(call));
+        const plan = store.plans.planFor(call.study, call.participant);
+        // A request that is admitted without the participant's token is from an experimenter, who watches.
+        return jsonResponse(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
+      }),
+      changes: false,
+    },
+    {
+      ...route('GET', `${own}/export`, 'participant', 0, ({ study, participant, at }) =>
+        exportOf(parts, { at, study, participant }),
+      ),
+      isPatient: true,
+    },
     route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
       jsonResponse(store.deletion.delete(study, participant, 'experimenter', at)),
     ),

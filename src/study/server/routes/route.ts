@@ -5,7 +5,7 @@ import type { Software } from 'threepoint-http/software-version';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
 import type { StudyStore } from '../storage/study-store';
-import type { Concerned, StudyAccess, StudyGuard } from './guard';
+import type { RouteAccess, Sender, StudyGuard } from './guard';
 import type { StudySeats } from './seats';
 
 /** The largest bodies [bytes]. */
@@ -26,13 +26,13 @@ export interface StudyRequest {
 }
 
 /** A request with checked names of study and participant; empty if the route has none. */
-export interface StudyCall extends Concerned {
+export interface StudyCall extends Sender {
   readonly at: number;
   readonly query: URLSearchParams;
   readonly body: Uint8Array<ArrayBuffer>;
 }
 
-export interface StudyRoute extends Omit<Route<StudyAccess>, 'handle'> {
+export interface StudyRoute extends Omit<Route<RouteAccess>, 'handle'> {
   /** Whether the answer waits until the change is on the disk. */
   readonly changes: boolean;
   /** Whether the answer has no time limit. */
@@ -51,16 +51,13 @@ export interface StudyParts {
   readonly makeZip: Exporter;
 }
 
-/** Handles a request. */
-export type Handle = StudyRoute['handle'];
-
 /** Returns a route with a path below the prefix and a limit of its JSON body [bytes]. */
 export const route = (
   method: Route['method'],
   path: string,
-  access: StudyAccess,
+  access: RouteAccess,
   bodyLimit: number,
-  handle: Handle,
+  handle: StudyRoute['handle'],
 ): StudyRoute => ({
   ...{ method, path: `${prefix}${path}`, access, bodyLimit, handle },
   changes: method !== 'GET',

@@ -4,8 +4,8 @@ import { jsonOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
+import { exportName } from '../export/export-zip';
 import type { StudyStore } from '../storage/study-store';
-import { exporting, exportOf } from './export-routes';
 import { bodyLimits, route, type StudyParts, type StudyRoute } from './route';
 
 const newStudySchema = v.strictObject({
@@ -35,6 +35,28 @@ function recordsOf(store: Pick<StudyStore, 'records'>, info: StudyInfo): HttpRes
   const records = store.records.listed(info.plan.id, new Set(participants));
   const body = Buffer.concat([Buffer.from(head), ...records, Buffer.from('}\n')]);
   return { ...jsonResponse(null), body };
+}
+
+interface ExportAsked {
+  readonly at: number;
+  readonly study: string;
+  readonly participant?: string;
+  readonly version?: number | undefined;
+}
+
+/** Resolves with the answer that contains an export. */
+export async function exportOf({ store, software, makeZip }: StudyParts, asked: ExportAsked): Promise<HttpResponse> {
+  const { study, participant, version } = asked;
+  const info = store.plans.get(study, version);
+  if (participant !== undefined) store.places.get(study, participant);
+  const plan = participant === undefined ? info.plan : store.plans.planFor(study, participant);
+  const planVersion = participant === undefined && info.versions.length > 1 ? info.version : undefined;
+  const name = exportName({ plan, simulated: info.simulated, ...(planVersion && { planVersion }) }, participant);
+  return {
+    status: 200,
+    headers: { 'content-type': 'application/zip', 'content-disposition': `attachment; filename="${name}.zip"` },
+    body: await makeZip({ ...asked, version: info.version, software }),
+  };
 }
 
 /** Returns the routes of the server and of one study. */
@@ -71,9 +93,12 @@ export function studyRoutes(parts: StudyParts): StudyRoute[] {
       store.plans.get(study);
       return jsonResponse({ receipts: store.deletion.receipts(study) });
     }),
-    exporting('/:study/export', 'experimenter', ({ study, at, query }) =>
-      exportOf(parts, { at, study, version: versionIn(query) }),
-    ),
+    {
+      ...route('GET', '/:study/export', 'experimenter', 0, ({ study, at, query }) =>
+        exportOf(parts, { at, study, version: versionIn(query) }),
+      ),
+      isPatient: true,
+    },
     route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
       jsonResponse({ participants: store.overview(study, at) }),
     ),

@@ -1,5 +1,4 @@
 import type { Receipt } from '../../model/progress/study-api';
-import type { PlanPlaces } from './plan-places';
 import { newCode } from './schema';
 import { StoreRefusal } from './store-refusal';
 import type { StudyCommands } from './study-commands';
@@ -9,24 +8,12 @@ import type { StudyPlaces } from './study-places';
 import type { StudyPlans } from './study-plans';
 import type { StudyRecords } from './study-records';
 
-interface ReceiptRow extends Omit<Receipt, 'motionFiles'> {
-  readonly motion_files: number;
-}
-
-const receiptOf = ({ number, study, participant, reason, records, motion_files, at }: ReceiptRow): Receipt => ({
-  number,
-  study,
-  participant,
-  reason,
-  records,
-  motionFiles: motion_files,
-  at,
-});
+/** The columns of a receipt. */
+const receiptColumns = 'number, study, participant, reason, records, motion_files AS motionFiles, at';
 
 export interface StudyDeletionParts {
   readonly database: StudyDatabase;
   readonly plans: StudyPlans;
-  readonly planPlaces: PlanPlaces;
   readonly places: StudyPlaces;
   readonly records: StudyRecords;
   readonly motion: StudyMotion;
@@ -45,7 +32,7 @@ export class StudyDeletion {
   }
 
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
-    const { database, plans, planPlaces, places, records, motion, commands } = this.#parts;
+    const { database, plans, places, records, motion, commands } = this.#parts;
     const receipt = database.transaction(() => {
       // Refuses an unknown participant.
       places.get(study, participant);
@@ -54,15 +41,15 @@ export class StudyDeletion {
       const motionFiles = motion.delete(study, participant);
       commands.delete(study, participant);
       places.clear(study, participant, invitation, reason === 'withdrawn');
-      if (reason === 'experimenter') planPlaces.free(plans.get(study), participant);
-      return database.getOne<ReceiptRow>(
+      if (reason === 'experimenter') plans.free(study, participant);
+      return database.getOne<Receipt>(
         `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
-         RETURNING *`,
+         RETURNING ${receiptColumns}`,
         ...[study, participant, reason, recordCount, motionFiles, at],
       );
     });
     database.purgeDeleted();
-    return receiptOf(receipt);
+    return receipt;
   }
 
   /** Deletes a simulated study with its receipts. A study of people is deleted participant by participant. */
@@ -105,8 +92,7 @@ export class StudyDeletion {
   }
 
   receipts(study: string): readonly Receipt[] {
-    const rows = this.#parts.database.all<ReceiptRow>('SELECT * FROM receipts WHERE study = ? ORDER BY number', study);
-    return rows.map(receiptOf);
+    return this.#parts.database.all(`SELECT ${receiptColumns} FROM receipts WHERE study = ? ORDER BY number`, study);
   }
 
   /**
@@ -114,9 +100,9 @@ export class StudyDeletion {
    * the common one.
    */
   #invitationAfter(study: string, reason: Receipt['reason']): string | null {
-    const { plans, planPlaces } = this.#parts;
+    const { plans } = this.#parts;
     if (reason !== 'experimenter') return null;
-    const common = plans.get(study).plan.entry === 'open' ? planPlaces.commonInvitation(study) : null;
+    const common = plans.get(study).plan.entry === 'open' ? plans.commonInvitation(study) : null;
     return common ?? newCode();
   }
 }

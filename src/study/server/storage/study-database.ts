@@ -1,13 +1,11 @@
-import { closeSync, fdatasync, openSync, type Stats, statSync } from 'node:fs';
+import { closeSync, existsSync, fdatasync, openSync, type Stats, statSync } from 'node:fs';
 import { stat } from 'node:fs/promises';
 import { promisify } from 'node:util';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { GroupCommit } from 'threepoint-http/group-commit';
-import { createPrivateFile } from './private-file';
 import { migrate } from './schema';
-import { refusalOfSqlite } from './sqlite-errors';
-import { StoreRefusal } from './store-refusal';
+import { refusalOfSqlite, StoreRefusal } from './store-refusal';
 
 type Statement = ReturnType<DatabaseSyncInstance['prepare']>;
 type Parameter = Parameters<Statement['run']>[number];
@@ -23,6 +21,14 @@ export interface DatabaseOptions {
 const openingMs = 5000;
 
 const flushFile = promisify(fdatasync);
+
+/**
+ * Creates an empty file that only the server's account can read, unless it exists. SQLite gives the files next to it
+ * the same mode.
+ */
+export function createPrivateFile(file: string): void {
+  if (!existsSync(file)) closeSync(openSync(file, 'a', 0o600));
+}
 
 /** A file of the database and its identity when it was opened. */
 interface OpenedFile {

@@ -1,14 +1,14 @@
 import { randomBytes } from 'node:crypto';
 import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { secretWeakness } from 'threepoint-http/secret-strength';
 import type { Software } from 'threepoint-http/software-version';
-import { FolderInUse, FolderLock } from './folder-lock';
 import { DatabaseProblem } from './schema';
-import { sqliteCodeOf } from './sqlite-errors';
-import { StoreRefusal } from './store-refusal';
+import { StoreRefusal, sqliteBusy, sqliteCodeOf } from './store-refusal';
+import { createPrivateFile } from './study-database';
 import { openStudyStore, type StudyStore } from './study-store';
 
 /** The open folder of the studies, which no other server uses. */
@@ -21,21 +21,21 @@ export interface StudyFolder {
 }
 
 /** The format of the tokens that this server generates or has generated. */
-const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
+const generatedToken = /^([\w-]{43}|[\w-]{32})$/;
 
 const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(8).padStart(4, '0');
 
 /** Returns the token in this file, which is generated and written with access for its owner only if it is missing. */
-function keptToken(file: string): string {
+function readOrCreateToken(file: string): string {
   if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
   const token = readFileSync(file, 'utf8').trim();
-  const weakness = drawnToken.test(token) ? null : secretWeakness(token);
+  const weakness = generatedToken.test(token) ? null : secretWeakness(token);
   if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
   return token;
 }
 
 /** Removes the access of other accounts of the machine. Windows has no such modes. */
-function closeToOthers(path: string, mode: number, log: (line: string) => void): void {
+function restrictAccess(path: string, mode: number, log: (line: string) => void): void {
   if (process.platform === 'win32' || !existsSync(path) || (statSync(path).mode & 0o077) === 0) return;
   const before = `${path} was open to other accounts of this machine (mode ${modeOf(path)})`;
   try {
@@ -49,9 +49,30 @@ function closeToOthers(path: string, mode: number, log: (line: string) => void):
 /** Creates the folder and its files with access for the server's account only. */
 function prepare(directory: string, log: (line: string) => void): void {
   mkdirSync(directory, { recursive: true, mode: 0o700 });
-  closeToOthers(directory, 0o700, log);
+  restrictAccess(directory, 0o700, log);
   for (const name of ['studies.db', 'studies.db-wal', 'studies.db-shm', 'studies.lock', 'experimenter-token']) {
-    closeToOthers(join(directory, name), 0o600, log);
+    restrictAccess(join(directory, name), 0o600, log);
+  }
+}
+
+/**
+ * Locks the folder until the lock is closed or the process ends: it is an exclusive transaction of SQLite. Throws a
+ * ConfigurationError if another server holds it.
+ */
+function lockFolder(directory: string): DatabaseSyncInstance {
+  const file = join(directory, 'studies.lock');
+  createPrivateFile(file);
+  const lock = new DatabaseSync(file);
+  try {
+    // Without a journal the lock needs no room on the disk.
+    lock.exec('PRAGMA journal_mode = MEMORY; BEGIN EXCLUSIVE');
+    return lock;
+  } catch (error) {
+    lock.close();
+    if (((sqliteCodeOf(error) ?? 0) & 0xff) !== sqliteBusy) throw error;
+    throw new ConfigurationError(
+      `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`,
+    );
   }
 }
 
@@ -59,9 +80,6 @@ function prepare(directory: string, log: (line: string) => void): void {
 function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
-  if (error instanceof FolderInUse) {
-    return `Another server uses the folder ${directory}. Stop it, or name another folder with --studies.`;
-  }
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
   if (error instanceof StoreRefusal)
     return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
@@ -109,15 +127,15 @@ export function openStudyFolder(
   at: number,
   log: (line: string) => void,
 ): StudyFolder {
-  const opened: (FolderLock | StudyStore)[] = [];
+  const opened: { close(): void }[] = [];
   const close = () => {
     for (const part of opened.toReversed()) part.close();
   };
   try {
     prepare(directory, log);
-    opened.push(new FolderLock(join(directory, 'studies.lock')));
+    opened.push(lockFolder(directory));
     const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
-    const experimenterToken = token ?? keptToken(tokenFile as string);
+    const experimenterToken = token ?? readOrCreateToken(tokenFile as string);
     const store = openStudyStore(join(directory, 'studies.db'));
     opened.push(store);
     store.software.note(software, at);

@@ -54,7 +54,7 @@ export class StudyPlaces {
     return this.#database.all('SELECT * FROM participants WHERE study = ? ORDER BY participant', study);
   }
 
-  invites(study: string, participant: string, code: string): boolean {
+  acceptsInvitation(study: string, participant: string, code: string): boolean {
     const { invitation } = this.get(study, participant);
     // Hashes have equal lengths, which the comparison requires.
     return invitation !== null && timingSafeEqual(hashOf(normalisedCode(code)), hashOf(invitation));

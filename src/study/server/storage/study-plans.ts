@@ -2,7 +2,7 @@ import { ValidationError } from 'threepoint/core/validation/validation';
 import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import type { PlanPlaces } from './plan-places';
+import { newCode } from './schema';
 import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
 
@@ -17,6 +17,12 @@ interface VersionRow {
   readonly version: number;
   readonly plan: string;
   readonly since: number;
+}
+
+/** A place whose participant has begun, and the version of the plan that the participant follows. */
+interface BegunPlace {
+  readonly participant: string;
+  readonly plan_version: number;
 }
 
 export interface AddOptions {
@@ -36,11 +42,9 @@ const listed = (names: readonly string[]) =>
 /** The studies: the versions of their plans and the places in these. */
 export class StudyPlans {
   readonly #database: StudyDatabase;
-  readonly #places: PlanPlaces;
 
-  constructor(database: StudyDatabase, places: PlanPlaces) {
+  constructor(database: StudyDatabase) {
     this.#database = database;
-    this.#places = places;
   }
 
   /** Returns a study with this version of its plan or with the newest; throws a StoreRefusal if it is unknown. */
@@ -90,7 +94,7 @@ export class StudyPlans {
       }
       const known = this.#infoOf(stored);
       if (JSON.stringify(known.plan) === JSON.stringify(plan)) return known;
-      const begun = this.#places.begun(plan.id);
+      const begun = this.#begun(plan.id);
       if (begun.length === 0) {
         this.remove(plan.id);
         this.#insert(plan, simulated, at);
@@ -111,6 +115,46 @@ export class StudyPlans {
       this.#database.run(`DELETE FROM ${table} WHERE study = ?`, id);
     }
     this.#database.run('DELETE FROM studies WHERE id = ?', id);
+  }
+
+  /** Returns the invitation that all places of an open study share in its newest plan, or null if there is none. */
+  commonInvitation(id: string): string | null {
+    const place = this.#database.get<{ invitation: string }>(
+      `SELECT invitation FROM participants WHERE study = ? AND invitation IS NOT NULL AND (plan_version IS NULL OR plan_version =
+         (SELECT max(version) FROM plan_versions WHERE plan_versions.study = participants.study)) LIMIT 1`,
+      id,
+    );
+    return place?.invitation ?? null;
+  }
+
+  /**
+   * Moves a cleared place to the newest plan, in a transaction, with the places that follow an older version only
+   * because of it. A place that the newest plan does not have is deleted. All stay if somebody who plays with them has
+   * begun.
+   */
+  free(id: string, participant: string): void {
+    const { plan, version, versions } = this.get(id);
+    const own = versions.find(({ participants }) => participants.includes(participant));
+    if (!own || own.version === version) return;
+    const freed = togetherWith(own.plan, participant);
+    const keeps = new Set(
+      versions.flatMap((older) =>
+        older.version === version ? [] : older.participants.filter((one) => !freed.has(one)),
+      ),
+    );
+    const inPlan = participantsOf(plan).filter((one) => freed.has(one));
+    const mixed = inPlan.some((one) => [...togetherWith(plan, one)].some((other) => keeps.has(other)));
+    if (mixed || this.#begun(id).some((begun) => freed.has(begun.participant))) return;
+    for (const one of freed) {
+      const place = [id, one] as const;
+      if (inPlan.includes(one)) {
+        this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ? AND participant = ?', ...place);
+        continue;
+      }
+      for (const table of ['commands', 'participants']) {
+        this.#database.run(`DELETE FROM ${table} WHERE study = ? AND participant = ?`, ...place);
+      }
+    }
   }
 
   #row(id: string): StudyRow | undefined {
@@ -162,7 +206,7 @@ export class StudyPlans {
       );
     }
     const kept = new Map<string, number>();
-    for (const { participant, plan_version } of this.#places.begun(id)) {
+    for (const { participant, plan_version } of this.#begun(id)) {
       const own = versions.find((one) => one.version === plan_version)?.plan ?? before;
       for (const member of togetherWith(own, participant)) kept.set(member, plan_version);
     }
@@ -177,7 +221,7 @@ export class StudyPlans {
           'group sizes as they are, or give the plan another id',
       );
     }
-    const common = plan.entry === 'open' ? this.#places.commonInvitation(id) : null;
+    const common = plan.entry === 'open' ? this.commonInvitation(id) : null;
     this.#database.run(
       'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
       ...[id, version + 1, JSON.stringify(plan), at],
@@ -185,8 +229,8 @@ export class StudyPlans {
     // The retention period that was promised to participants holds for all.
     const until = Math.min(retentionUntil, at + plan.retentionDays * secondsPerDay);
     this.#database.run('UPDATE studies SET retention_until = ? WHERE id = ?', until, id);
-    this.#places.follow(id, kept);
-    this.#places.renewFree(plan, { linksHold: plan.entry === before.entry, common });
+    this.#follow(id, kept);
+    this.#renewFree(plan, { linksHold: plan.entry === before.entry, common });
   }
 
   #insert(plan: StudyPlan, simulated: boolean, at: number): void {
@@ -199,6 +243,61 @@ export class StudyPlans {
       'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, 1, ?, ?)',
       ...[plan.id, JSON.stringify(plan), at],
     );
-    this.#places.add(plan, () => null);
+    this.#addPlaces(plan, () => null);
+  }
+
+  /** Returns the places that are taken or have left records, in order of their codes. */
+  #begun(id: string): readonly BegunPlace[] {
+    return this.#database.all(
+      `SELECT participant, coalesce(plan_version, 1) AS plan_version FROM participants AS place
+       WHERE study = ? AND (token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1 OR EXISTS
+         (SELECT 1 FROM records WHERE records.study = place.study AND records.participant = place.participant))
+       ORDER BY participant`,
+      id,
+    );
+  }
+
+  /**
+   * Adds the places of a plan that do not exist yet, in a transaction; `linkOf` returns an earlier invitation of a
+   * place, or null.
+   */
+  #addPlaces(plan: StudyPlan, linkOf: (participant: string) => string | null): void {
+    const common = plan.entry === 'open' ? newCode() : null;
+    for (const participant of participantsOf(plan)) {
+      this.#database.run(
+        `INSERT INTO participants (study, participant, invitation) VALUES (?, ?, ?)
+         ON CONFLICT (study, participant) DO NOTHING`,
+        ...[plan.id, participant, linkOf(participant) ?? common ?? newCode()],
+      );
+    }
+  }
+
+  /** Marks which version of a plan each place follows, in a transaction; a place without one follows the newest. */
+  #follow(id: string, versions: ReadonlyMap<string, number>): void {
+    this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ?', id);
+    for (const [participant, version] of versions) {
+      this.#database.run(
+        'UPDATE participants SET plan_version = ? WHERE study = ? AND participant = ?',
+        ...[version, id, participant],
+      );
+    }
+  }
+
+  /**
+   * Replaces the free places by those of the new plan, in a transaction. If links stay valid, places keep theirs, and
+   * new places get the common one; null: there is no common link.
+   */
+  #renewFree(
+    plan: StudyPlan,
+    { linksHold, common }: { readonly linksHold: boolean; readonly common: string | null },
+  ): void {
+    const { id } = plan;
+    const free = this.#database.all<{ participant: string; invitation: string | null }>(
+      'SELECT participant, invitation FROM participants WHERE study = ? AND plan_version IS NULL',
+      id,
+    );
+    const links = new Map(free.map(({ participant, invitation }) => [participant, invitation]));
+    this.#database.run('DELETE FROM participants WHERE study = ? AND plan_version IS NULL', id);
+    this.#addPlaces(plan, (participant) => (linksHold ? (links.get(participant) ?? common) : null));
   }
 }

@@ -2,7 +2,6 @@ import { scheduleFor } from '../../model/plan/schedule';
 import { currentStep, remainingSeconds, resumed, sinceReport } from '../../model/progress/progress';
 import type { ParticipantState, PlanVersion } from '../../model/progress/study-api';
 import { StudyDeletion } from './deletion';
-import { PlanPlaces } from './plan-places';
 import { StudySoftware } from './software';
 import { StudyCommands } from './study-commands';
 import { type DatabaseOptions, StudyDatabase } from './study-database';
@@ -52,8 +51,7 @@ export function openStudyStore(
   { maxBytes = maxStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},
 ) {
   const database = new StudyDatabase(file, { maxBytes, readOnly });
-  const planPlaces = new PlanPlaces(database);
-  const plans = new StudyPlans(database, planPlaces);
+  const plans = new StudyPlans(database);
   const places = new StudyPlaces(database, plans);
   const records = new StudyRecords(database, plans, places);
   const motion = new StudyMotion(database, places);
@@ -61,7 +59,7 @@ export function openStudyStore(
   return {
     ...{ plans, places, records, motion, commands },
     software: new StudySoftware(database),
-    deletion: new StudyDeletion({ database, plans, planPlaces, places, records, motion, commands }),
+    deletion: new StudyDeletion({ database, plans, places, records, motion, commands }),
     /** Returns the state of every place at this time [s]. */
     overview(study: string, now: number): readonly ParticipantState[] {
       const { version: newest, versions } = plans.get(study);

@@ -15,7 +15,7 @@ const cohorts = [
 const [archery] = paperPlan().tasks as [StudyPlan['tasks'][number]];
 const archeryAlone = { tasks: [{ ...archery, questionnaire: ['archery', 'nasa-tlx-raw'] }] };
 
-/** A study of every design that the page analyses. */
+/** A plan for every design that the page analyses. */
 export const designs: Readonly<Record<string, StudyPlan>> = {
   'two conditions, two tasks, groups of three': paperPlan(),
   'two conditions, questions of every kind, two languages': examplePlan(),
@@ -62,7 +62,7 @@ export const designs: Readonly<Record<string, StudyPlan>> = {
   }),
 };
 
-/** A study of simulated participants, mishaps included, as the server would export it; `seed` decides what they do. */
+/** Returns the export of a simulated study with mishaps; the same seed gives the same study. */
 export function exportedStudy(plan: StudyPlan, seed = 7): ExportContent {
   const simulated = checkedPlan(simulatedPlan(plan));
   const last = simulated.conditions.at(-1)?.id ?? '';

@@ -220,7 +220,7 @@ describe('the motion of a study as BIDS', () => {
     const open = issues.filter(({ code }) => !/^(TOO_FEW|NO)_AUTHORS$|_KEY_RECOMMENDED$/.test(code));
     expect(open).toEqual([]);
 
-    // The validator itself is awake.
+    // The validator finds a fault that is put in.
     writeFileSync(join(folder, 'participants.tsv'), 'participant_id\nsub-P77\n');
     expect(issuesIn(folder).map(({ code }) => code)).toContain('PARTICIPANT_ID_MISMATCH');
   });

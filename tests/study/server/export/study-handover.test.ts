@@ -25,7 +25,7 @@ let files: Readonly<Record<string, string>>;
 beforeAll(() => {
   content = withMotion();
   files = exportFiles(content);
-  // A whole study: 2 s of a core, which others may need too.
+  // A whole study takes 2 s of a core, and longer on a busy machine.
 }, 60_000);
 
 const zipOf = (of: Readonly<Record<string, string>>): Uint8Array =>

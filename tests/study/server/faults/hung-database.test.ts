@@ -14,11 +14,11 @@ import { directoryWith } from '../../../temporary-directory';
 import { consentAt, paperPlan } from '../../model/studies';
 
 const now = 1_800_000_000;
-/** How long the disk hangs, or another program holds the lock [s]. */
+/** The time for which the disk hangs, or another program holds the lock [s]. */
 const hungSeconds = isNightly ? 30 : 12;
 const lockedSeconds = isNightly ? 30 : 8;
 
-/** A folder of a server whose study P01 takes part in and has consented to. */
+/** Returns a folder with a study in which P01 has consented. */
 function begunStudy() {
   const directory = directoryWith({ 'studies/.keep': '' });
   const file = join(directory, 'studies/studies.db');
@@ -86,7 +86,7 @@ function studyTraffic(url: string, token: string) {
 
 type Server = Awaited<ReturnType<typeof forkServer>>;
 
-/** What a room and the study see while `hang` lasts, and that nothing acknowledged was lost. */
+/** Asserts the answers of a room and the study while `hang` lasts, and that nothing acknowledged was lost. */
 async function observed(server: Server, { file, token }: ReturnType<typeof begunStudy>, hang: () => Promise<void>) {
   const people = await playing(server.url);
   await server.inspect();
@@ -112,7 +112,7 @@ async function observed(server: Server, { file, token }: ReturnType<typeof begun
   expect(refused.filter(({ retryAfter }) => !/^\d+$/.test(retryAfter ?? ''))).toEqual([]);
   expect(lost).toEqual([]);
   expect((await server.inspect()).faults).toEqual([]);
-  // The defect is seconds; a busy machine of the tests is not.
+  // The defect would take seconds, more than a busy machine adds.
   expect(meanwhile.maxMs).toBeLessThan(1000);
   // 20 ms, or three times what the delay was before on a machine that is busy.
   expect(meanwhile.p99Ms).toBeLessThan(Math.max(20, 3 * before.p99Ms));
@@ -154,7 +154,7 @@ describe('a database that hangs', () => {
 
   const strace = installed('strace');
 
-  /** The server on a disk that takes so long for a flush, by strace. */
+  /** Starts the server on a disk whose flushes strace delays. */
   async function onStuckDisk(study: ReturnType<typeof begunStudy>) {
     const delay = `-e inject=fsync,fdatasync:delay_enter=${1e6 * hungSeconds}`;
     const through = `${strace} -D -f --seccomp-bpf -qqq -o /dev/null -e trace=fsync,fdatasync ${delay}`.split(' ');

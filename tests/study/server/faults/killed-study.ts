@@ -18,7 +18,7 @@ import { paperPlan, session } from '../../model/studies';
 const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 
-/** What kills found; every list is empty where nothing was lost. */
+/** The result of the kills; empty lists: nothing was lost. */
 export interface KillReport {
   kills: number;
   /** Kills that came while a request was under way. */
@@ -34,7 +34,7 @@ export interface KillReport {
   readonly unsound: string[];
 }
 
-/** The server and its thread, bundled: they start in a third of the time. */
+/** Bundles the server and its thread, which then start in a third of the time. */
 async function bundledServer(): Promise<string> {
   const folder = join(root, '.cache/study-process');
   const bundle = await rolldown({
@@ -51,7 +51,7 @@ async function bundledServer(): Promise<string> {
   return join(folder, 'study-process.mjs');
 }
 
-/** A device that takes part: it sends each thing until it is acknowledged, as the page does. */
+/** A device of a participant, which repeats each request until it is acknowledged, as the page does. */
 class Device {
   readonly study: string;
   readonly participant: string;
@@ -94,7 +94,7 @@ class Device {
 
 type Ask = (method: string, path: string, token: string | null, body?: unknown) => Promise<Response>;
 
-/** What a device does next; resolves when the server has answered, rejects when it is gone. */
+/** Sends a device's next request; resolves with the server's answer, rejects if the server is gone. */
 async function act(device: Device, ask: Ask, random: RandomSource): Promise<void> {
   const { path, participant } = device;
   if (device.withdrawn === 'asked' || (device.acknowledged.size > 8 && device.code && random.uniform() < 0.02)) {
@@ -111,7 +111,7 @@ async function act(device: Device, ask: Ask, random: RandomSource): Promise<void
     const { invitation, claimed } = states.participants.find(
       (one) => one.participant === participant,
     ) as ParticipantState;
-    // The answer with the token was lost: the experimenter gives the place free, as for any lost device.
+    // The answer with the token was lost, so the experimenter releases the place.
     if (claimed) await ask('POST', `${path}/release`, experimenter);
     // Two tabs at once.
     const claims = await Promise.all([1, 2].map(() => ask('POST', `${path}/claim`, null, { invitation })));
@@ -131,7 +131,7 @@ async function act(device: Device, ask: Ask, random: RandomSource): Promise<void
   device.accepted(batch.filter(({ id }) => acknowledged.includes(id)));
 }
 
-/** What of a device the files of a dead server lack. */
+/** Returns the acknowledged data of a device that the files of a killed server lack. */
 function check(device: Device, store: ReturnType<typeof openStudyStore>, report: KillReport): void {
   const { study, participant, schedule } = device;
   const stored = store.records.all(study, participant);
@@ -139,7 +139,7 @@ function check(device: Device, store: ReturnType<typeof openStudyStore>, report:
     if (stored.length > 0) report.undeleted.push(`${study} ${participant}: ${stored.length} records`);
     return;
   }
-  // A withdrawal without an answer has deleted all or nothing.
+  // A withdrawal without an answer deletes everything or nothing.
   if (device.withdrawn === 'asked' && stored.length === 0) return;
   if (device.token && !store.places.holds(study, participant, device.token))
     report.lost.push(`${study} ${participant}: its place`);

@@ -1,47 +1,27 @@
 import { chmodSync, existsSync, mkdirSync, renameSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { createRouter, noPage } from 'threepoint-http/router';
-import { serve } from 'threepoint-http/web-server';
-import { openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { hasFileModes, movesOpenFiles } from '../../../platform';
 import { reportFigures } from '../../../reliability/report-figures';
-import { testSecret } from '../../../rooms/server/running-relay';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan } from '../../model/studies';
 import { withoutInvitations } from '../older-databases';
-import { experimenter, studyThread, testSoftware } from '../running-studies';
+import { experimenter, servedFolder } from '../running-studies';
 
-/** The studies of this folder on a port of loopback, until the test is over; throws what a start throws. */
+/** Serves the studies of this folder; `add` adds a study. */
 async function started(directory: string) {
-  const lines: string[] = [];
-  const studies = await openStudyService({
-    thread: studyThread,
-    ...{ directory, token: experimenter, secret: testSecret, software: testSoftware.exportedBy },
-    now: () => 1e9,
-    trustProxy: false,
-    log: (line) => lines.push(line),
-  });
-  const server = await serve(createRouter([studies.service], noPage), { host: '127.0.0.1', port: 0 });
-  let open = true;
-  const stop = async () => {
-    if (!open) return;
-    open = false;
-    await server.close();
-    await studies.close();
-  };
-  onTestFinished(stop);
+  const served = await servedFolder(directory);
   const add = async (id: string) => {
-    const response = await fetch(`http://127.0.0.1:${server.port}/api/studies`, {
+    const response = await fetch(`${served.origin}/api/studies`, {
       method: 'POST',
       headers: { authorization: `Bearer ${experimenter}`, 'content-type': 'application/json' },
       body: JSON.stringify({ plan: paperPlan({ id }), simulated: false }),
     });
     return { status: response.status, error: ((await response.json()) as { error?: string }).error };
   };
-  return { add, lines, stop };
+  return { ...served, add };
 }
 
 const modeOf = (path: string) => statSync(path).mode & 0o777;

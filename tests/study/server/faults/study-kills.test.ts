@@ -3,7 +3,7 @@ import { expect, test } from 'vitest';
 import { printFigures } from '../../../print-figures';
 import { killedStudy } from './killed-study';
 
-/** By night a thousand (STUDY_KILLS). */
+/** The number of kills; the nightly run sets a thousand (STUDY_KILLS). */
 const kills = Number(process.env.STUDY_KILLS ?? 40);
 
 test(`a study whose server is killed ${kills} times while it writes loses nothing acknowledged, and no one is in two conditions`, async () => {

@@ -1,4 +1,4 @@
-// The studies' part of the server in a process of its own, to be killed. Its argument is the folder of its files.
+// A process with the service of the studies, to be killed. Its argument is the folder of its files.
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { openStudyService } from 'threepoint-study/server/service';

@@ -11,7 +11,7 @@ import { experimenterToken, forkServer } from '../../../server/server-child';
 import { directoryWith } from '../../../temporary-directory';
 import { consentAt, paperPlan } from '../../model/studies';
 
-/** A folder of a server with a study in which P01 has stored so many remarks of 2 kB. */
+/** Returns a folder with a study in which P01 has stored this number of remarks of 2 kB. */
 function studyWith(remarks: number) {
   const directory = directoryWith({ 'studies/.keep': '' });
   const file = join(directory, 'studies/studies.db');
@@ -34,7 +34,7 @@ function studyWith(remarks: number) {
 
 type Server = Awaited<ReturnType<typeof forkServer>>;
 
-/** One connection for all: where no other can be opened, it is there. */
+/** A permanent connection, because no other one can be opened later. */
 const agent = new Agent({ keepAlive: true, maxSockets: 1 });
 
 async function ask({ port }: Server, method: string, path: string, body?: unknown) {
@@ -75,11 +75,11 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   const { directory } = studyWith(1);
   const through = ['bash', '-c', 'ulimit -n 100; exec "$0" "$@"'];
   const server = await forkServer({}, { directory, through });
-  // The connection that it is asked by stays open.
+  // The connection of the requests stays open.
   expect((await remark(server)).status).toBe(201);
   const strangers = Array.from({ length: 200 }, () => connect(server.port, '127.0.0.1'));
   for (const stranger of strangers) stranger.on('error', () => stranger.destroy());
-  // The server closes the strangers' connections after a while, since they ask nothing.
+  // The server closes the other connections after a while, because they send nothing.
   let exported = await ask(server, 'GET', '/export');
   while (exported.status === 200) exported = await ask(server, 'GET', '/export');
   const answers = [await remark(server), await remark(server)];
@@ -94,7 +94,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
 
 test('a disk that fills is no matter to an export: it needs none', async () => {
   const { directory, file } = studyWith(100);
-  // In blocks of 1024 bytes: what the database has now. Writes beyond fail, as on a full disk.
+  // The limit is the size of the database in blocks of 1024 bytes. Further writes fail, as on a full disk.
   const through = ['bash', '-c', `trap '' XFSZ; ulimit -f 48; exec "$0" "$@"`];
   const server = await forkServer({}, { directory, through });
   let stored = 101;

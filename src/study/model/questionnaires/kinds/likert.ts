@@ -2,16 +2,7 @@ import { integerBetween, ValidationError } from 'threepoint/core/validation/vali
 import * as v from 'valibot';
 import { words } from '../../phrases/localized-text';
 import type { QuestionKind } from '../question-kind';
-import {
-  checkSteps,
-  ends,
-  endTexts,
-  nearestOn,
-  numberOn,
-  pointsOn,
-  type SteppedScale,
-  scaleInWords,
-} from './scale-kind';
+import { answeredOnScale, checkSteps, ends, endTexts, pointsOn, type SteppedScale } from './scale-kind';
 
 const maxPoints = 101;
 
@@ -50,6 +41,7 @@ export const likertPoints = (form: LikertForm): readonly number[] => pointsOn(sc
 export const likert: QuestionKind<LikertForm> = {
   kind: 'likert',
   schema,
+  ...answeredOnScale(scaleOf, endsOf),
   check(form, field) {
     checkSteps(scaleOf(form), maxPoints - 1, field);
     const points = likertPoints(form).length;
@@ -60,14 +52,8 @@ export const likert: QuestionKind<LikertForm> = {
       );
     }
   },
-  answer: (form) => numberOn(scaleOf(form)),
-  range: ({ from, to }) => [from, to],
-  options: () => null,
   texts: (form) => [
     ...endTexts(form.ends),
     ...(form.labels ?? []).map((label, index) => [`labels[${index}]`, label] as const),
   ],
-  ends: endsOf,
-  columns: (form, inWords) => ({ answers: scaleInWords(scaleOf(form), endsOf(form), inWords) }),
-  simulate: (form, part) => nearestOn(scaleOf(form), form.from + (form.to - form.from) * part),
 };

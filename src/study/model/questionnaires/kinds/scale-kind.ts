@@ -13,7 +13,7 @@ export interface SteppedScale {
 const stepsOf = ({ from, to, step }: SteppedScale): number => (to - from) / step;
 
 /** Returns the number on a scale that is nearest to a value, ends included. */
-export function nearestOn(scale: SteppedScale, value: number): number {
+function nearestOn(scale: SteppedScale, value: number): number {
   const { from, step } = scale;
   const steps = Math.min(Math.round(stepsOf(scale)), Math.max(0, Math.round((value - from) / step)));
   return Number((from + steps * step).toFixed(6));
@@ -48,7 +48,7 @@ export function checkSteps(scale: SteppedScale, most: number, field: string): vo
 }
 
 /** Returns the schema of a number on a scale. */
-export const numberOn = (scale: SteppedScale) => {
+const numberOn = (scale: SteppedScale) => {
   const { from, to, step } = scale;
   return v.custom<number>(
     (value) => typeof value === 'number' && Number.isFinite(value) && Math.abs(nearestOn(scale, value) - value) < 1e-6,
@@ -67,13 +67,30 @@ export const endTexts = (texts: Ends | undefined): readonly (readonly [string, W
       ]
     : [];
 
+type EndLabels = { readonly low?: Words | undefined; readonly high?: Words | undefined };
+
 /** Describes a scale in words: "1 Very poor to 5 Excellent". */
-export function scaleInWords(
+function scaleInWords(
   { from, to, step }: SteppedScale,
-  { low, high }: { readonly low?: Words | undefined; readonly high?: Words | undefined },
+  { low, high }: EndLabels,
   inWords: (text: Words) => string,
 ): string {
   const end = (value: number, label: Words | undefined) =>
     label === undefined ? `${value}` : `${value} ${inWords(label)}`;
   return `${end(from, low)} to ${end(to, high)}${step === 1 ? '' : `, in steps of ${step}`}`;
 }
+
+/** Returns the part that kinds of questions share whose answers are the numbers on a scale. */
+export const answeredOnScale = <Form extends Omit<SteppedScale, 'step'>>(
+  scaleOf: (form: Form) => SteppedScale,
+  ends: (form: Form) => EndLabels,
+) => ({
+  answer: (form: Form) => numberOn(scaleOf(form)),
+  range: ({ from, to }: Form) => [from, to] as const,
+  options: () => null,
+  ends,
+  columns: (form: Form, inWords: (text: Words) => string) => ({
+    answers: scaleInWords(scaleOf(form), ends(form), inWords),
+  }),
+  simulate: (form: Form, part: number) => nearestOn(scaleOf(form), form.from + (form.to - form.from) * part),
+});

@@ -2,16 +2,7 @@ import { numberBetween } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 import type { QuestionKind } from '../question-kind';
 import { limit, limitedNumber } from './limits';
-import {
-  checkSteps,
-  ends,
-  endTexts,
-  nearestOn,
-  numberOn,
-  pointsOn,
-  type SteppedScale,
-  scaleInWords,
-} from './scale-kind';
+import { answeredOnScale, checkSteps, ends, endTexts, pointsOn, type SteppedScale } from './scale-kind';
 
 const maxSteps = 200;
 
@@ -41,12 +32,7 @@ export const sliderValues = (form: SliderForm): readonly number[] => pointsOn(sc
 export const slider: QuestionKind<SliderForm> = {
   kind: 'slider',
   schema,
+  ...answeredOnScale(scaleOf, (form) => form.ends),
   check: (form, field) => checkSteps(scaleOf(form), maxSteps, field),
-  answer: (form) => numberOn(scaleOf(form)),
-  range: ({ from, to }) => [from, to],
-  options: () => null,
   texts: (form) => endTexts(form.ends),
-  ends: (form) => form.ends,
-  columns: (form, inWords) => ({ answers: scaleInWords(scaleOf(form), form.ends, inWords) }),
-  simulate: (form, part) => nearestOn(scaleOf(form), form.from + (form.to - form.from) * part),
 };

@@ -21,34 +21,33 @@ from scipy import optimize, stats
 
 ROOT = Path(__file__).resolve().parent.parent
 RELATIVE = 1e-6
-# Figures this small differ by rounding.
+# The difference of two figures up to which it is rounding.
 ABSOLUTE = 1e-9
 CONFIDENCE = 0.95
-# Squares this small, of values about 0, are rounding.
+# The share of all squares up to which an error is rounding.
 CONSTANT_SQUARES = 1e-20
-# Values that differ by at most this share of the largest input are equal up to rounding.
+# The share of the largest input up to which two values are equal but for rounding.
 EQUAL_WITHIN = 1e-9
 # The confidence for a share of the variance, which is one-sided.
 ETA_CONFIDENCE = 0.9
-# F times its degrees of freedom beyond which the export has no interval, nor where an end of it lies beyond this
-# noncentrality.
+# The export has no interval if F times its degrees of freedom, or the noncentrality of an end, is larger.
 LARGEST_F = 700
 LARGEST_LAMBDA = 1400
 # The limits of t and its noncentrality.
 LARGEST_T = 18.5
 LARGEST_DELTA = 37
-# From this many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
+# Wilcoxon's tests are exact below this number of pairs (values in a cohort), without ties and zeros.
 EXACT_BELOW = 50
 
 
 def read(name):
-    """Rows of a table as dictionaries of text; an empty text is no value."""
+    """Returns the rows of a table as dictionaries of text; an empty text is a missing value."""
     with open(ROOT / name, encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def mean_interval(values):
-    """Mean and the ends of its confidence interval; None where one value has none."""
+    """Returns the mean and the ends of its confidence interval, which are None for one value."""
     values = np.asarray(values, float)
     mean = values.mean()
     if len(values) < 2:
@@ -58,14 +57,12 @@ def mean_interval(values):
 
 
 def noncentrality_of_t(t, df, share):
-    """Returns the noncentrality, at least 0, at which the noncentral t is below t with this probability; None: out of
-    reach.
-    """
+    """Returns the noncentrality at which the noncentral t is below t with this probability; None: out of reach."""
 
     def above(noncentrality):
         return stats.nct.cdf(t, df, noncentrality) - share
 
-    # SciPy has no value far out: no further than is needed.
+    # The search widens in small steps, because SciPy has no value far out.
     least = most = t
     while above(least) < 0:
         least -= 1
@@ -77,9 +74,7 @@ def noncentrality_of_t(t, df, share):
 
 
 def effect_interval(t, df, unit, name):
-    """The noncentralities of t under which one as far out is not surprising, times unit; nothing where they are out of
-    reach.
-    """
+    """Returns the confidence interval of the noncentrality of t, times unit; empty if it is out of reach."""
     if abs(t) > LARGEST_T:
         return {}
     ends = [noncentrality_of_t(abs(t), df, (1 + side * CONFIDENCE) / 2) for side in (1, -1)]
@@ -90,7 +85,10 @@ def effect_interval(t, df, unit, name):
 
 
 def biserial(r, error):
-    """Fisher's z with the standard error where nothing differs; no interval where all ranks are on one side."""
+    """Returns the correlation and its interval by Fisher's z, which is missing if all ranks are on one side.
+
+    `error` is the standard error of ranks without a difference.
+    """
     if abs(r) == 1:
         return {"rank_biserial": r}
     half = stats.norm.ppf((1 + CONFIDENCE) / 2) * error
@@ -99,13 +97,12 @@ def biserial(r, error):
 
 
 def rounding_of(values):
-    """How far apart the same figure may come out that is computed from these values."""
+    """Returns the rounding error of a figure that is computed from these values."""
     return EQUAL_WITHIN * np.max(np.abs(values))
 
 
 def levels_of(values, rounding=None):
-    """Which of the values each is, 1 the smallest: those that are equal but for rounding are one, which ties depend on.
-    """
+    """Returns the level of each value, 1 the smallest; values that are equal but for rounding share a level."""
     values = np.asarray(values, float)
     if rounding is None:
         rounding = rounding_of(values)
@@ -116,7 +113,7 @@ def levels_of(values, rounding=None):
 
 
 def paired_t(first, second):
-    """The two-sided paired t-test of first − second; what does not vary has a difference alone."""
+    """Returns the two-sided paired t-test of first − second; only the difference if nothing varies."""
     differences = np.subtract(first, second)
     count = len(differences)
     result = {"difference": differences.mean(), "df": count - 1}
@@ -130,7 +127,7 @@ def paired_t(first, second):
 
 
 def signed_rank(first, second):
-    """Wilcoxon's signed-rank test as R's wilcox.test: zeros dropped, exact where nothing is tied and pairs are few."""
+    """Returns Wilcoxon's signed-rank test as R's wilcox.test: without zeros, exact for few pairs without ties."""
     differences = np.subtract(first, second)
     rounding = rounding_of([first, second])
     nonzero = differences[np.abs(differences) > rounding]
@@ -152,8 +149,7 @@ def signed_rank(first, second):
 
 
 def welch_t(first, second):
-    """Welch's two-sided t-test of first − second, of different participants; what does not vary has a difference alone.
-    """
+    """Returns Welch's two-sided t-test of first − second; only the difference if nothing varies."""
     m, n = len(first), len(second)
     difference = np.mean(first) - np.mean(second)
     result = {"difference": difference}
@@ -173,7 +169,7 @@ def welch_t(first, second):
 
 
 def rank_sum(first, second):
-    """Wilcoxon's rank-sum test (Mann and Whitney's) as R's wilcox.test; with nothing but ties there is no p."""
+    """Returns Wilcoxon's rank-sum test (Mann and Whitney's) as R's wilcox.test; without p if all values are tied."""
     m, n = len(first), len(second)
     levels = levels_of([*first, *second])
     different = len(set(levels))
@@ -189,7 +185,7 @@ def rank_sum(first, second):
 
 
 def holm(p_values):
-    """Holm's adjusted p; a test without a p has none, and counts in the family."""
+    """Returns Holm's adjusted p; a test without a p has none, but counts in the family."""
     order = sorted((p, index) for index, p in enumerate(p_values) if p is not None)
     adjusted = [None] * len(p_values)
     largest = 0.0
@@ -200,7 +196,7 @@ def holm(p_values):
 
 
 class Measure(NamedTuple):
-    """What a study has of one question, scale or score."""
+    """The values of a question, scale or score."""
 
     begun: dict
     # The mean of the counted values by participant and condition.
@@ -222,9 +218,7 @@ def measure(rows, value, cohort_of, begun):
 
 
 def places_of(rows, value):
-    """What was asked with a number, in the order first met: its place, and its name (the id where that is of one place
-    alone).
-    """
+    """Returns place and name of every numeric question or scale, in order; the name is the id if it is unique."""
     places = list(dict.fromkeys((r["task"], r["questionnaire"], r["id"]) for r in rows if r[value] != ""))
     times = Counter(place[2] for place in places)
     return [(place, place[2] if times[place[2]] == 1 else "/".join(place)) for place in places]
@@ -235,7 +229,7 @@ def as_boolean(value):
 
 
 def answer_measures(file, name, value, words, study):
-    """What was answered, or the scales computed from it, as measures."""
+    """Returns the answers, or the scales that are computed from them, as measures."""
     rows = [{**r, "id": r[name], "who": r["participant"]} for r in read(file)]
     found = []
     for place, of in places_of(rows, value):
@@ -247,7 +241,7 @@ def answer_measures(file, name, value, words, study):
 
 
 def score_measures(trials, unit, study):
-    """The scores of every task. The members of a group report one and the same score."""
+    """Returns the scores of every task. The members of a group report the same score."""
     # Practice has no condition.
     played = [{**r, "who": int(r["group"])} for r in trials if r["condition"] != ""]
     found = []
@@ -262,7 +256,7 @@ def score_measures(trials, unit, study):
 
 
 def family(rows, ranks):
-    """Holm's correction over rows that are tested together: of p, and of a second one by ranks."""
+    """Adds Holm's correction over rows that are tested together, for p and for the p by ranks."""
     for p, adjusted in (("p", "p_holm"), (ranks, f"{ranks}_holm")):
         for row, value in zip(rows, holm([row.get(p) for row in rows])):
             row[adjusted] = value
@@ -270,7 +264,7 @@ def family(rows, ranks):
 
 
 def sides(**values):
-    """Mean and interval of each side that has values."""
+    """Returns the mean and interval of each side that has values."""
     row = {}
     for side, own in values.items():
         if own:
@@ -279,7 +273,7 @@ def sides(**values):
 
 
 def compared(measures, first, second):
-    """One family: each of the measures under two conditions, first − second."""
+    """Compares the measures under two conditions, first − second, as one family."""
     rows = []
     for begun, means, _ in measures:
         pairs = [(own[first], own[second]) for _, own in sorted(means.items()) if first in own and second in own]
@@ -292,15 +286,13 @@ def compared(measures, first, second):
 
 
 def complete_values(found, conditions):
-    """Who has a value under each of these conditions, with their values."""
+    """Returns the values of everyone who has one under each of these conditions."""
     _, means, cohorts = found
     return {w: [means[w][c] for c in conditions] for w in cohorts if all(c in means.get(w, {}) for c in conditions)}
 
 
 def between(measures, first, second, conditions):
-    """One family: each of the measures in two cohorts, first − second, by the mean of what each had under all these
-    conditions.
-    """
+    """Compares the measures in two cohorts, first − second, as one family, by the means of these conditions."""
     rows = []
     for found in measures:
         values = complete_values(found, conditions)
@@ -329,7 +321,7 @@ def noncentrality_at(f, df, share):
     def above(noncentrality):
         return stats.ncf.cdf(f, *df, noncentrality) - share
 
-    # SciPy has no value far out: no further than is needed.
+    # The search widens in small steps, because SciPy has no value far out.
     most = f * df[0] + 1
     while above(most) > 0:
         if most >= LARGEST_LAMBDA:
@@ -339,7 +331,7 @@ def noncentrality_at(f, df, share):
 
 
 def effect(squares, error, df, epsilon, scale):
-    """F and what follows from it; only its degrees of freedom where nothing spreads."""
+    """Returns F with p, effect size and interval; only its degrees of freedom if nothing varies."""
     row = {"df1": df[0], "df2": df[1]}
     if df[1] < 1 or error <= CONSTANT_SQUARES * scale:
         return row
@@ -354,8 +346,9 @@ def effect(squares, error, df, epsilon, scale):
 
 
 def variance_analysis(cohorts):
-    """Effects of conditions, cohorts and both, type III: differences of linear models with sum-coded cohorts, contrast
-    by contrast.
+    """Returns the effects of conditions, cohorts and their interaction (type III).
+
+    Each contrast is tested by differences of linear models with sum-coded cohorts.
     """
     values = np.array([row for members in cohorts for row in members], float)
     sizes = [len(members) for members in cohorts]
@@ -394,12 +387,12 @@ def variance_analysis(cohorts):
 
 
 def rank_test(cohorts):
-    """Friedman's test of the conditions; with one condition, Kruskal and Wallis's of the cohorts."""
+    """Returns Friedman's test of the conditions, or Kruskal and Wallis's of the cohorts with one condition."""
     values = np.array([row for members in cohorts for row in members], float)
     count, conditions = values.shape
     values = levels_of(values.ravel()).reshape(values.shape)
     df = (conditions if conditions > 1 else len(cohorts)) - 1
-    # With nothing but ties there is nothing to rank.
+    # Without a difference, the test has no value.
     spread = any(len(set(row)) > 1 for row in values) if conditions > 1 else len(set(values.flat)) > 1
     if not spread:
         return {"df_ranks": df}
@@ -408,7 +401,7 @@ def rank_test(cohorts):
         chi = stats.kruskal(*np.split(values.ravel(), ends[:-1])).statistic
         size = chi / (count - 1)
     else:
-        # By its formula: SciPy's function wants three conditions.
+        # The formula is used, because SciPy's function needs three conditions.
         ranks = np.array([stats.rankdata(row) for row in values])
         ties = sum(float(np.sum(n**3 - n)) for row in values for n in [np.unique(row, return_counts=True)[1]])
         squares = float(np.sum((ranks.sum(axis=0) - count * (conditions + 1) / 2) ** 2))
@@ -418,7 +411,7 @@ def rank_test(cohorts):
 
 
 def overall(measures, conditions):
-    """All conditions and cohorts at once, an effect a row; one family."""
+    """Compares all conditions and cohorts at once, as one family, with a row per effect."""
     found = []
     for one in measures:
         complete = complete_values(one, conditions)
@@ -445,7 +438,7 @@ def overall(measures, conditions):
 
 
 def frame_times(rows, trials, cohort_of):
-    """Work of the page per frame, over all trials of a task under a condition in a cohort."""
+    """Returns the work per frame over all trials of a task under a condition in a cohort."""
     key = ("participant", "task", "block", "run", "attempt", "repetition", "condition")
     missed = {tuple(r[k] for k in key): int(r["missed_frames"]) for r in trials}
     counted = [r for r in rows if r["excluded"] == ""]
@@ -476,14 +469,14 @@ def frame_times(rows, trials, cohort_of):
 
 
 class Study(NamedTuple):
-    """What all measures of a study have in common."""
+    """The planned measures and the cohorts of a study."""
 
     planned: set
     cohort_of: dict
 
 
 def pairs_of(ids):
-    """Every two, the later one of the plan first: what comes first in it is what others are compared with."""
+    """Returns every pair, the later one of the plan first, because the earlier one is the reference."""
     return [(second, first) for first, second in combinations(ids, 2)]
 
 
@@ -500,7 +493,7 @@ def all_tables():
     points = score_measures(trials, "points", study)
     percent = score_measures(trials, "percent", study)
     planned = [one for one in answers + scales + points if one.begun["planned"] == "TRUE"]
-    # By the mean of all conditions, and by each of several alone.
+    # Cohorts are compared by the mean of all conditions, and by each of several alone.
     views = [conditions, *([c] for c in conditions)] if len(conditions) > 1 else [conditions]
     kinds = {"planned": [planned], "answers": [answers], "scales": [scales], "scores": [points, percent]}
     tables = {}
@@ -522,7 +515,7 @@ def all_tables():
 
 
 def difference(ours, theirs):
-    """Why a cell of the export is not what was computed; None: it is."""
+    """Returns how a cell of the export differs from the computed one; None: it does not."""
     if ours is None or isinstance(ours, str):
         return None if (ours or "") == theirs else f"{theirs!r} in the export, {ours!r} here"
     if theirs == "":
@@ -547,7 +540,7 @@ def main():
         complaints = [] if len(table) == len(theirs) else [f"{len(theirs)} rows in the export, {len(table)} here"]
         for number, (ours, row) in enumerate(zip(table, theirs), start=2):
             for column in columns:
-                # Text of a formula's look has an apostrophe of the export's before it.
+                # The export puts an apostrophe in front of text that looks like a formula.
                 said = difference(ours.get(column), row[column].removeprefix("'"))
                 if said:
                     complaints.append(f"line {number}, {column}: {said}")

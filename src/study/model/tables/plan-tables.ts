@@ -1,64 +1,11 @@
+import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
+import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { maxLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
 import { inLanguage, type Words } from '../phrases/localized-text';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
-import type { Answer } from '../questionnaires/question-kind';
 import { questionKind, questionKindNames } from '../questionnaires/question-kinds';
-import { scaleRange, scaleScore } from '../questionnaires/questionnaire-scores';
-import { type Answers, type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
-import type { Place, StudyRecord } from '../records/study-record';
+import { scaleRange } from '../questionnaires/questionnaire-scores';
 import { boolean, number, rowFrom, type Table, text } from './tidy-csv';
-
-/** An answer to a question, or the value of a scale. */
-export interface AnswerRow {
-  readonly participant: string;
-  readonly simulated: boolean;
-  readonly task: string;
-  readonly block: number;
-  readonly run: number;
-  readonly condition: string;
-  readonly questionnaire: string;
-  /** The id of the question or of the scale. */
-  readonly question: string;
-  /** null: without an answer, or without one that the scale needs. */
-  readonly answer: Answer | null;
-  /** Empty: it is counted. */
-  readonly excluded: string;
-}
-
-/** Returns why the records of a block are not counted; empty: they are. */
-export type BlockExclusion = (participant: string, place: Place) => string;
-
-type AnswersRecord = Extract<StudyRecord, { kind: 'answers' }>;
-
-function rowsOf(
-  records: readonly StudyRecord[],
-  plan: StudyPlan,
-  exclusion: BlockExclusion,
-  valuesOf: (asked: Questionnaire, answers: Answers) => readonly (readonly [string, Answer | null])[],
-): readonly (AnswerRow & { readonly record: AnswersRecord })[] {
-  return records.flatMap((record) => {
-    if (record.kind !== 'answers') return [];
-    const { participant, simulated } = record;
-    const { place, answers, condition, questionnaire } = record.body;
-    const asked = questionnaireNamed(plan, questionnaire);
-    if (!asked)
-      throw new Error(`${participant} answered "${questionnaire}", which the plan "${plan.id}" does not hold`);
-    const { task, block, run } = place;
-    const excluded = exclusion(participant, place);
-    return valuesOf(asked, answers).map(([question, answer]) => ({
-      ...{ record, participant, simulated, task, block, run, condition, questionnaire, question, answer, excluded },
-    }));
-  });
-}
-
-/** Returns a row for every question of every submitted questionnaire, with voided ones marked. */
-export const answerRows = (records: readonly StudyRecord[], plan: StudyPlan, exclusion: BlockExclusion) =>
-  rowsOf(records, plan, exclusion, ({ questions }, answers) => questions.map(({ id }) => [id, answers[id] ?? null]));
-
-/** Returns a row for every scale of every submitted questionnaire, with voided ones marked. */
-export const scaleRows = (records: readonly StudyRecord[], plan: StudyPlan, exclusion: BlockExclusion) =>
-  rowsOf(records, plan, exclusion, (asked, answers) =>
-    asked.scales.map((scale) => [scale.id, scaleScore(asked, scale, answers)]),
-  );
 
 const ids = 'small letters, digits, hyphens';
 const codes = 'letters, digits, - and _';
@@ -137,4 +84,74 @@ export const scaleTable = (plan: StudyPlan): Table => ({
       return rowFrom(scaleDefinitionColumns, questionnaire, computed, scale);
     }),
   ),
+});
+
+const from = (field: string) => `plan.json: conditions[].${field} or cohorts[].${field}`;
+
+const conditionColumns = [
+  text('compared', 'condition, cohort', 'plan.json', 'condition: within participants; cohort: between them.'),
+  text('id', ids, from('id'), 'As in the other tables.'),
+  text('label', 'any text', from('label'), 'For the experimenter.'),
+  text(
+    'estimator',
+    threePointNames.join(', '),
+    from('estimator'),
+    'Estimator of the body; here and below empty: not set.',
+  ),
+  text('avatar', builtInBodies.join(', '), from('avatar'), 'Avatar.'),
+  boolean('mirror', from('mirror'), 'Whether there is a mirror.'),
+  boolean('upper_body_only', from('upperBodyOnly'), 'Whether the body ends at the hips.'),
+  number('latency', 'ms', `0 to ${maxLatencyMs}`, from('latencyMs'), 'Additional latency of the body.'),
+  number(
+    'noise_position',
+    'mm',
+    '0 to 100',
+    from('trackerNoise.positionMm'),
+    'Standard deviation along each axis, added to head and hands.',
+  ),
+  number(
+    'noise_rotation',
+    'degrees',
+    '0 to 30',
+    from('trackerNoise.rotationDegrees'),
+    'Standard deviation about each axis.',
+  ),
+  number(
+    'dropouts_per_minute',
+    '',
+    '0 to 60',
+    from('dropouts.perMinute'),
+    'Frequency of tracking losses of each hand.',
+  ),
+  number('dropout_seconds', 's', '0.1 to 10', from('dropouts.seconds'), 'Duration of each loss.'),
+];
+
+/** Returns the table of conditions and cohorts of a plan. */
+export const conditionTable = ({ conditions, cohorts = [] }: StudyPlan): Table => ({
+  name: 'conditions',
+  columns: conditionColumns,
+  rows: [
+    ...conditions.map((one) => rowFrom(conditionColumns, {}, { compared: 'condition' }, one)),
+    ...cohorts.map((one) => rowFrom(conditionColumns, {}, { compared: 'cohort' }, one)),
+  ],
+});
+
+/** Returns the table of planned measures. */
+export const plannedTable = ({ planned = [] }: Pick<StudyPlan, 'planned'>): Table => ({
+  name: 'planned',
+  columns: [
+    text('measure', 'task/questionnaire/id or task/score', 'plan.json: planned', 'As the plan has it.'),
+    text('task', ids, 'plan.json: planned', 'Id of the task.'),
+    text('questionnaire', ids, 'plan.json: planned', 'Id; empty: the score of the task.'),
+    text('id', codes, 'plan.json: planned', 'Question or scale; "score": points of the task.'),
+  ],
+  rows: planned.map((measure) => {
+    const parts = measure.split('/');
+    return {
+      measure,
+      task: parts[0] ?? '',
+      questionnaire: parts.length > 2 ? (parts[1] ?? '') : '',
+      id: parts.at(-1) ?? '',
+    };
+  }),
 });
