@@ -4,9 +4,9 @@ import { begin } from 'threepoint-study/model/progress/progress';
 import type { Answer } from 'threepoint-study/model/questionnaires/question-kind';
 import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
 import { type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
-import { questionPart } from 'threepoint-study/participant/questions/question-screen';
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
 import { height, width } from 'threepoint-study/participant/questions/sheet-target';
+import { questionPart } from 'threepoint-study/participant/screens/question-screen';
 import type { ParticipantSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
 import { expectApart } from '../../page/shell/menu-parts';
@@ -31,7 +31,7 @@ function reader(asked: readonly Question[], language = 'en') {
     return questionPart(
       asked,
       at,
-      { session, typed, triedToSubmit: false, refusal: null },
+      { session, questionnaire: { question: at, typed, triedToSubmit: false }, refusal: null },
       {
         choose,
         goTo: () => undefined,

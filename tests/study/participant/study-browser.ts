@@ -293,8 +293,8 @@ export function browser(server: StudyServer, storageLimitMs?: number) {
        * not.
        */
       async exchange(): Promise<void> {
-        await visit.exchange();
-        await visit.exchange();
+        await visit.flow?.exchange();
+        await visit.flow?.exchange();
       },
       /** Time passes by the clock, and nothing is drawn. */
       pass: (seconds: number) => clock.pass(seconds),
@@ -310,13 +310,13 @@ export function browser(server: StudyServer, storageLimitMs?: number) {
           stamp += 1 / 30;
           clock.pass(1 / 30);
           const time = pageClock.tick(stamp * 1000);
-          visit.frame(time, stretched(time, raised, host.eyes));
+          visit.flow?.frame(time, stretched(time, raised, host.eyes));
           host.drew();
         }
       },
       wear(on: boolean): void {
         host.worn = on;
-        visit.sessionChanged();
+        visit.flow?.sessionChanged();
       },
       /** The page goes: the browser lets go of its locks. */
       close(): void {

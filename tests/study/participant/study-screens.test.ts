@@ -1,8 +1,8 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
 import type { ProgressEvent } from 'threepoint-study/model/progress/apply-event';
-import type { ScreenActions, StudySituation } from 'threepoint-study/participant/questions/study-situation';
 import { screenOf, uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
+import type { ScreenActions, StudySituation } from 'threepoint-study/participant/screens/study-situation';
 import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
@@ -39,9 +39,7 @@ function participant(...events: readonly ProgressEvent[]) {
           ...{
             session,
             inSession: true,
-            question: 0,
-            typed: null,
-            triedToSubmit: false,
+            questionnaire: { question: 0, typed: null, triedToSubmit: false },
             calibration: null,
             refusal: null,
             stopping: false,

@@ -159,7 +159,7 @@ describe('a round', () => {
     await tab.exchange();
     if (what === 'the headset comes off') {
       tab.wear(false);
-      expect(tab.visit.idle).toBe(true);
+      expect(tab.visit.state().running).toBe(false);
       expect(tab.display.shown).toBe('trial-enter');
       tab.wear(true);
     } else {
@@ -190,10 +190,10 @@ describe('a round', () => {
     await tab.exchange();
     expect(tab.display.shown).toBe('paused');
     expect(archery.paused).toBe(true);
-    expect(tab.visit.paused).toBe(true);
+    expect(tab.visit.flow?.paused).toBe(true);
     tab.wear(false);
     tab.display.press('resume');
-    expect(tab.visit.paused).toBe(true);
+    expect(tab.visit.flow?.paused).toBe(true);
     tab.wear(true);
     expect(tab.display.shown).toBe('playing');
     expect(archery).toMatchObject({ paused: false, running: true });
@@ -236,7 +236,7 @@ describe('a round', () => {
     expect(tab.host.games.archery.running).toBe(false);
     tab.wear(true);
     expect(tab.host.games.archery.running).toBe(true);
-    expect(tab.visit.idle).toBe(false);
+    expect(tab.visit.state().running).toBe(true);
   });
 
   test('lies alike in both conditions, and the practice does not', async () => {
@@ -315,7 +315,7 @@ describe('a place that was released', () => {
     await server.experimenter.release('paper', 'P01');
     await tab.exchange();
     expect(tab.host.games.archery.running).toBe(false);
-    expect(tab.visit.idle).toBe(true);
+    expect(tab.visit.state().running).toBe(false);
     expect(tab.display.inHeadset?.id).toBe('locked-out');
     const form = tab.display.asked('locked-out');
     expect(form).toMatchObject({ participant: 'P01', unsent: 0 });

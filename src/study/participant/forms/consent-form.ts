@@ -1,8 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { complaintLine, type FormOf, paragraphs, row } from './form-parts';
-import { languageChoice } from './language-choice';
+import { complaintLine, type FormOf, languageChoice, paragraphs, row } from './form-parts';
 
 function box() {
   const input = element('input', { type: 'checkbox' });

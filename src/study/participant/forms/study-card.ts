@@ -1,10 +1,45 @@
 import { button, element } from 'threepoint-ui/element';
 import type { Phrases } from '../../model/phrases/phrases';
-import { dotNodes, questionNodes } from '../questions/question-card';
-import type { StudyScreen } from '../questions/study-screen';
+import { questionView } from '../questions/question-views';
+import type { ScreenQuestion, StudyScreen } from '../questions/study-screen';
 import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
 import type { StudyForm } from './study-form';
+
+const phraseOfState = {
+  answered: 'question.answered',
+  open: 'question.open',
+  missing: 'question.open',
+  optional: 'question.optional',
+} as const;
+
+/** Returns a button for each question in order. */
+const dotNodes = (question: ScreenQuestion): readonly Node[] =>
+  question.all.map(({ id, state }, index) =>
+    button(String(index + 1), () => question.goTo(index), {
+      'data-id': `go-${id}`,
+      class: `dot ${state}`,
+      'aria-label': question.phrases.say(phraseOfState[state], { number: index + 1 }),
+      ...(index + 1 === question.number && { 'aria-current': 'step' }),
+    }),
+  );
+
+/** Returns the text of a question and its field, without the dots. */
+const questionNodes = ({ id, text, language, optional, field, phrases }: ScreenQuestion): readonly Node[] => [
+  element(
+    'fieldset',
+    { class: 'scale', lang: language },
+    element(
+      'legend',
+      {},
+      text,
+      optional
+        ? element('span', { class: 'soft', lang: phrases.spoken }, ` ${phrases.say('question.mayStayOpen')}`)
+        : element('span', { class: 'must', lang: phrases.spoken, title: phrases.say('question.needed') }, ' *'),
+    ),
+    ...questionView(field).card(field, id, phrases),
+  ),
+];
 
 const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): HTMLButtonElement =>
   button(label, act, {
