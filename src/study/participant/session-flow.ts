@@ -188,7 +188,7 @@ export class SessionFlow {
       };
     }
     if (session.step.kind !== 'demographics') return null;
-    return { kind: 'demographics', phrases, stop, done: (answers) => this.#takeDemographics(answers) };
+    return { kind: 'demographics', phrases, stop, done: (answers) => this.#submitDemographics(answers) };
   }
 
   #lockedOutForm(): StudyForm {
@@ -263,7 +263,7 @@ export class SessionFlow {
   }
 
   /** Returns why the answers are refused, or null if they are stored. */
-  #takeDemographics(answers: Record<string, unknown>): string | null {
+  #submitDemographics(answers: Record<string, unknown>): string | null {
     const complaint = this.session.apply({ type: 'demographics', demographics: answers });
     if (complaint === null) {
       void this.exchange();

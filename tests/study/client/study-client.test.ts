@@ -1,7 +1,7 @@
 import { requestTimeoutMs } from 'threepoint-http/web-server';
 import {
   createParticipantClient,
-  motionPatienceMs,
+  motionTimeoutMs,
   NoStudyServer,
   ServerRefusal,
   ServerUnreachable,
@@ -32,5 +32,5 @@ test('a server that is away for now is unreachable, with a proxy’s page as wit
 });
 
 test('a recording may be on its way for as long as the server lets a request arrive', () => {
-  expect(motionPatienceMs).toBe(requestTimeoutMs);
+  expect(motionTimeoutMs).toBe(requestTimeoutMs);
 });

@@ -30,10 +30,10 @@ export function consentForm(
     phrases = phrasesOf(study, language);
     complaint.hide();
     onLanguage(phrases);
-    read();
+    showTexts();
   });
 
-  function read(): void {
+  function showTexts(): void {
     const { language, say } = phrases;
     choice.label(say('language'));
     kicker.textContent = say('consent.kicker', { version: consent.version });
@@ -60,7 +60,7 @@ export function consentForm(
   agreed.input.addEventListener('change', () => {
     go.disabled = !agreed.input.checked;
   });
-  read();
+  showTexts();
   return [
     kicker,
     ...(languages.length > 1 ? [choice.node] : []),

@@ -70,7 +70,7 @@ class PreviewSession implements ShownSession {
     this.#progress = { ...progress, step, paused: false, draft: this.#drafts.get(step) ?? {} };
   }
 
-  read(language: string): void {
+  setLanguage(language: string): void {
     this.#progress = { ...this.#progress, language };
   }
 
@@ -154,8 +154,8 @@ export class PreviewWalk {
     this.#onChange();
   }
 
-  read(language: string): void {
-    this.#session.read(language);
+  setLanguage(language: string): void {
+    this.#session.setLanguage(language);
     this.#onChange();
   }
 
@@ -174,7 +174,7 @@ export class PreviewWalk {
     const leaves = this.#session.step.id !== step;
     if (leaves || paused || unwell) this.#session.goTo(step);
     if (leaves) this.#questionnaire.enterStep();
-    this.#stand(index);
+    this.#moveTo(index);
   }
 
   #nearest(index: number): number {
@@ -182,7 +182,7 @@ export class PreviewWalk {
   }
 
   /** Moves to a stop within the present step. */
-  #stand(index: number): void {
+  #moveTo(index: number): void {
     this.#at = this.#nearest(index);
     this.#stopping = false;
     this.#questionnaire.goTo(this.stop.question);
@@ -279,7 +279,7 @@ export class PreviewWalk {
     const { step } = this.#session;
     if (step.id === id) this.#showRefusal(refusal);
     // Not by goTo, because the answers that were handed in may lead to the question whether to stop.
-    else this.#stand(this.stops.findIndex((stop) => stop.step === step.id));
+    else this.#moveTo(this.stops.findIndex((stop) => stop.step === step.id));
   }
 
   #goToQuestion(index: number): void {
