@@ -16,7 +16,7 @@ import { browser, ofAnother } from './study-browser';
 import { place, studyServer } from './study-server';
 
 describe('the entrance', () => {
-  test('an address without a participant asks who takes part, and leads to the place that is told', async () => {
+  test('an address without a participant asks for the code, and leads to the place that is entered', async () => {
     const tab = await browser(await studyServer()).open({ participant: null, invitation: null });
     const form = tab.display.asked('participant');
     expect(form).toMatchObject({ complaint: null, known: { participant: null, invitation: null } });
@@ -25,7 +25,7 @@ describe('the entrance', () => {
     expect(tab.visit.state()).toMatchObject({ screen: 'participant', step: null, running: false });
   });
 
-  test('a wrong invitation is said once consent is given, and the place stays free', async () => {
+  test('a wrong invitation is reported after consent, and the place stays free', async () => {
     const server = await studyServer();
     const tab = await browser(server).open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
     expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
@@ -33,7 +33,7 @@ describe('the entrance', () => {
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
 
-  test('a text that was changed while it was read is read anew, and the place stays free', async () => {
+  test('a text that was changed while it was read is shown again, and the place stays free', async () => {
     const server = await studyServer();
     const { plan, store } = server;
     const tab = await browser(server).open();
@@ -50,7 +50,7 @@ describe('the entrance', () => {
   });
 
   test.each(['participant', 'consent'] as const)(
-    'who leaves at the first screen, when asked for %s, is thanked, and nothing is kept here or on the server',
+    'a participant who leaves at the first screen, the %s form, is thanked, and nothing is stored here or on the server',
     async (first) => {
       const server = await studyServer();
       const tab = await browser(server).open(first === 'participant' ? { invitation: null } : {});
@@ -65,7 +65,7 @@ describe('the entrance', () => {
     },
   );
 
-  test('a study that the server does not have, and a server that does not answer, are said', async () => {
+  test('an unknown study and a server that does not answer are reported', async () => {
     const server = await studyServer();
     const elsewhere = await browser(server).open({ study: 'another' });
     expect(elsewhere.display.asked('fault').text).toBe(
