@@ -138,8 +138,11 @@ export async function signIn(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'Open' }).click();
 }
 
-export async function openResults(page: Page, id: string): Promise<void> {
-  await page.goto('/results');
+/** Opens a study on the experimenter's page or on that of the results. */
+export async function openStudy(page: Page, address: string, id: string): Promise<void> {
+  await page.goto(address);
   await signIn(page);
   await page.getByRole('combobox', { name: 'Study' }).selectOption(id);
 }
+
+export const openResults = (page: Page, id: string): Promise<void> => openStudy(page, '/results', id);

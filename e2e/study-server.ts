@@ -6,7 +6,9 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { studyLink } from 'threepoint-study/client/study-link';
 import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
+import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { begin } from 'threepoint-study/model/progress/progress';
+import type { NumberedCommand, ParticipantState } from 'threepoint-study/model/progress/study-api';
 import { recordVersion } from 'threepoint-study/model/records/study-record';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
@@ -120,6 +122,17 @@ export function experimenter(origin: string) {
         if (!response.ok) throw new Error(`${participant} did not get to ${path}: ${await response.text()}`);
       }
       return place;
+    },
+    /** Reports that a participant who has consented is at this step, as the participant's page does. */
+    async report(plan: StudyPlan, participant: string, step: string, running = false): Promise<void> {
+      const progress = { ...begin(scheduleFor(plan, participant)), motion: false, step, running };
+      const { status } = await ask(`/${plan.id}/participants/${participant}/progress`, 'PUT', progress);
+      if (status !== 204) throw new Error(`the step of ${participant} was not stored: ${status}`);
+    },
+    /** Returns the experimenter's commands to a participant. */
+    async commands(study: string, participant: string): Promise<readonly NumberedCommand[]> {
+      const response = await ask(`/${study}/participants/${participant}/commands`);
+      return ((await response.json()) as { commands: NumberedCommand[] }).commands;
     },
     async begin(plan: StudyPlan, simulated: boolean): Promise<void> {
       const response = await ask('', 'POST', { plan, simulated });

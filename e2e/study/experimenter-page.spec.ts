@@ -1,9 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { parsePlan } from 'threepoint-study/model/plan/plan';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { begin } from 'threepoint-study/model/progress/progress';
 import { expect } from '../page-fixture';
-import { signIn, test } from '../study-participant';
+import { openStudy, signIn, test } from '../study-participant';
 import { experimenter } from '../study-server';
 
 const plan = (id: string) => ({
@@ -20,9 +19,8 @@ test('a participant whose page has just reported is there, though the experiment
   const study = plan('clocks');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
-  const place = await experimenting.consented(study, 'P01');
-  const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step: 'demographics' };
-  expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
+  await experimenting.consented(study, 'P01');
+  await experimenting.report(study, 'P01', 'demographics');
   await page.clock.setFixedTime(Date.now() + 600_000);
   await page.goto(`${origin}/experimenter?study=clocks`);
   await signIn(page);
@@ -35,18 +33,10 @@ test('the link of a participant under way is in sight on a narrow screen too @fu
   const study = plan('narrow');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
-  const place = await experimenting.consented(study, 'P01');
-  const progress = {
-    ...begin(scheduleFor(study, 'P01')),
-    motion: false,
-    step: 'archery/2/questionnaire',
-    running: true,
-  };
-  expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
+  await experimenting.consented(study, 'P01');
+  await experimenting.report(study, 'P01', 'archery/2/questionnaire', true);
   await page.setViewportSize({ width: 960, height: 800 });
-  await page.goto(`${origin}/experimenter`);
-  await signIn(page);
-  await page.getByRole('combobox', { name: 'Study' }).selectOption('narrow');
+  await openStudy(page, `${origin}/experimenter`, 'narrow');
   const row = page.getByRole('row', { name: /^P01 / });
   await expect(row).toContainText('running');
   const shown = await row.getByText('New …').boundingBox();
@@ -90,26 +80,17 @@ test('a block of those who play together is voided for all of them, if the exper
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
   const { members } = scheduleFor(study, 'P01').groups.ball as { readonly members: readonly string[] };
-  const placeOf = (participant: string) => `/trios/participants/${participant}`;
   const at = async (participant: string, step: string) => {
     await experimenting.consented(study, participant);
-    const progress = { ...begin(scheduleFor(study, participant)), motion: false, step };
-    expect((await experimenting.ask(`${placeOf(participant)}/progress`, 'PUT', progress)).status).toBe(204);
+    await experimenting.report(study, participant, step);
   };
   const others = members.filter((member) => member !== 'P01');
   const [second, third] = others as [string, string];
   await at('P01', 'ball/1/trial-1');
   await at(second, 'ball/1/rest');
   await at(third, 'ball/2/calibration');
-  await page.goto(`${origin}/experimenter`);
-  await signIn(page);
-  await page.getByRole('combobox', { name: 'Study' }).selectOption('trios');
-  const voided = async (participant: string) => {
-    const { commands } = (await (await experimenting.ask(`${placeOf(participant)}/commands`)).json()) as {
-      commands: { command: { type: string } }[];
-    };
-    return commands.length;
-  };
+  await openStudy(page, `${origin}/experimenter`, 'trios');
+  const voided = async (participant: string) => (await experimenting.commands('trios', participant)).length;
   const voidBlock = async (uncheck: boolean) => {
     await page.getByRole('row', { name: /^P01 / }).getByRole('button', { name: 'Void block' }).click();
     await page.getByRole('textbox').fill('a ball rolled away');
@@ -133,22 +114,15 @@ test('a block that is over by the time the reason is written is not taken for th
   const study = plan('moving-on');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
-  const place = await experimenting.consented(study, 'P01');
-  const at = async (step: string) => {
-    const progress = { ...begin(scheduleFor(study, 'P01')), motion: false, step };
-    expect((await experimenting.ask(`${place}/progress`, 'PUT', progress)).status).toBe(204);
-  };
-  await at('archery/1/questionnaire');
-  await page.goto(`${origin}/experimenter`);
-  await signIn(page);
-  await page.getByRole('combobox', { name: 'Study' }).selectOption('moving-on');
+  await experimenting.consented(study, 'P01');
+  await experimenting.report(study, 'P01', 'archery/1/questionnaire');
+  await openStudy(page, `${origin}/experimenter`, 'moving-on');
   const row = page.getByRole('row', { name: /^P01 / });
   await row.getByRole('button', { name: 'Void block' }).click();
-  await at('archery/2/trial-1');
+  await experimenting.report(study, 'P01', 'archery/2/trial-1');
   await expect(page.locator('tr', { hasText: 'P01' }).first()).toContainText('archery, block 2');
   await page.getByRole('textbox').fill('the phone rang');
   await page.getByRole('button', { name: 'Void it' }).click();
   await expect(page.getByRole('alert')).toHaveText('Not voided for P01: block 1 of archery is over there.');
-  const { commands } = (await (await experimenting.ask(`${place}/commands`)).json()) as { commands: unknown[] };
-  expect(commands).toEqual([]);
+  expect(await experimenting.commands('moving-on', 'P01')).toEqual([]);
 });

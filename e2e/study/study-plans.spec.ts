@@ -48,7 +48,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   await page.getByRole('button', { name: 'Delete this simulated study' }).click();
   await expect(page.getByText('“latency-simulated” is deleted.')).toBeVisible();
   const { studies } = (await (await experimenter(origin).ask('')).json()) as { studies: { id: string }[] };
-  // Other specs have studies of their own on this server.
+  // Other specs have studies on this server too.
   const names = studies.map(({ id }) => id);
   expect(names).toEqual(expect.arrayContaining(['uneven', 'latency']));
   expect(names).not.toContain('latency-simulated');

@@ -7,11 +7,21 @@ import { experimenter } from '../study-server';
 
 test.use({ viewport: { width: 1280, height: 800 } });
 
-test('every screen of a plan, in the headset and at the desk, in both languages, and nothing is recorded @full', async ({
+/** A question of each kind in the shipped example, by its label in the list of stops. */
+const kinds = [
+  ['likert', /^mine: /],
+  ['slider', /^delay: /],
+  ['choice', /^watched: /],
+  ['number', /^guess: /],
+  ['text', /^remarks: /],
+  ['tlx', /^mental: /],
+] as const;
+
+test('a plan is previewed in the headset and at the desk, in both languages, and nothing is recorded @full', async ({
   page,
   origin,
 }) => {
-  // Other specs have studies of their own on this server.
+  // Other specs have studies on this server too.
   const studies = async () => (await (await experimenter(origin).ask('')).json()) as object;
   const before = await studies();
   const sent: string[] = [];
@@ -27,17 +37,6 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   await page.getByRole('combobox', { name: 'Language' }).first().selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
 
-  const stops = page.locator('#stops button');
-  const count = await stops.count();
-  const met: (string | undefined)[] = [];
-  for (let index = 0; index < count; index++) {
-    met.push(await view.evaluate(({ dataset }) => `${dataset.stop} ${dataset.place}`));
-    await expect(view.locator('.study-card:visible, canvas:visible, .playing:visible')).toHaveCount(1);
-    if (index < count - 1) await next.click();
-  }
-  expect(new Set(met).size).toBe(count);
-  await expect(next).toBeDisabled();
-
   await page
     .getByRole('button', { name: /^delay: / })
     .first()
@@ -51,6 +50,13 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   await page.getByRole('button', { name: 'At the desk' }).click();
   await page.getByRole('radio', { name: 'Meine Arme' }).check();
   await keepPicture(page, 'study-preview-desk');
+  for (const [kind, name] of kinds) {
+    await page.getByRole('button', { name }).first().click();
+    for (const place of ['In the headset', 'At the desk']) {
+      await page.getByRole('button', { name: place }).click();
+      await keepPicture(page, `study-question-${kind}${place === 'At the desk' ? '-desktop' : ''}`);
+    }
+  }
   await page.getByRole('button', { name: 'before Round 1' }).first().click();
   await keepPicture(page, 'study-preview-ready');
   await next.click();
@@ -63,7 +69,7 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   expect(await studies()).toEqual(before);
 });
 
-test('a participant who reads German meets no English of the page, and nothing that is cut @full', async ({
+test('every screen in German is shown without English of the page and without cut-off labels @full', async ({
   page,
   origin,
 }) => {
@@ -74,9 +80,12 @@ test('a participant who reads German meets no English of the page, and nothing t
   await page.getByRole('combobox', { name: 'Language' }).first().selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
   const next = page.getByRole('button', { name: 'Next', exact: true }).first();
-  const stops = await page.locator('#stops button').count();
+  const view = page.locator('#view');
+  const count = await page.locator('#stops button').count();
+  const stops = new Set<string | undefined>();
   const said = new Set<string>();
-  for (let index = 0; index < stops; index++) {
+  for (let index = 0; index < count; index++) {
+    stops.add(await view.evaluate(({ dataset }) => dataset.stop));
     await readScreen(page, said);
     for (const place of ['In the headset', 'At the desk']) {
       const shown = page.getByRole('button', { name: place });
@@ -84,8 +93,10 @@ test('a participant who reads German meets no English of the page, and nothing t
       await shown.click();
       await readScreen(page, said);
     }
-    if (index < stops - 1) await next.click();
+    if (index < count - 1) await next.click();
   }
+  expect(stops.size).toBe(count);
+  await expect(next).toBeDisabled();
   const text = [...said].join('\n');
   expect(text).toContain('Setzen Sie das Headset auf');
   expect(text).toContain('Weiter');

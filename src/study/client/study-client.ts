@@ -42,27 +42,27 @@ export class NoStudyServer extends ServerRefusal {
 /** There was no answer: no network, no server, or an aborted request. A later attempt may succeed. */
 export class ServerUnreachable extends Error {}
 
-interface Asked {
+interface RequestOptions {
   readonly method?: 'GET' | 'POST' | 'PUT' | 'DELETE';
   readonly token?: string;
   readonly body?: unknown;
   /** Text that is sent instead of `body`. */
   readonly text?: string;
   /** The time after which the request is aborted [ms]; null: it may take any time. */
-  readonly patienceMs?: number | null;
+  readonly timeoutMs?: number | null;
 }
 
-const usualPatienceMs = 15_000;
+const usualTimeoutMs = 15_000;
 /** The time limit while a person waits before an empty page [ms]. */
-const shortPatienceMs = 4000;
+const shortTimeoutMs = 4000;
 /** The time limit of an upload of a recording [ms], which is the time that the server gives a request to arrive. */
-export const motionPatienceMs = 120_000;
+export const motionTimeoutMs = 120_000;
 
 /** `server`: the folder of its page, no slash at its end. */
-async function ask(
+async function request(
   server: string,
   path: string,
-  { method = 'GET', token, body, text, patienceMs = usualPatienceMs }: Asked,
+  { method = 'GET', token, body, text, timeoutMs = usualTimeoutMs }: RequestOptions,
 ): Promise<Response> {
   const content = text ?? (body === undefined ? undefined : JSON.stringify(body));
   let response: Response;
@@ -75,7 +75,7 @@ async function ask(
       },
       ...(content !== undefined && { body: content }),
       cache: 'no-store',
-      ...(patienceMs !== null && { signal: AbortSignal.timeout(patienceMs) }),
+      ...(timeoutMs !== null && { signal: AbortSignal.timeout(timeoutMs) }),
     });
   } catch (error) {
     throw new ServerUnreachable(`the server does not answer (${reasonOf(error)})`);
@@ -92,7 +92,7 @@ async function ask(
 }
 
 /** Resolves with the body of an answer; rejects if it is incomplete. */
-async function whole<T>(body: Promise<T>): Promise<T> {
+async function readBody<T>(body: Promise<T>): Promise<T> {
   try {
     return await body;
   } catch (error) {
@@ -102,12 +102,12 @@ async function whole<T>(body: Promise<T>): Promise<T> {
 
 /** Returns a function that requests JSON from a server. */
 const answersOf = (server: string) =>
-  async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
-    const response = await ask(server, path, asked);
-    return (response.status === 204 ? null : await whole(response.json())) as T;
+  async function answer<T>(path: string, asked: RequestOptions = {}): Promise<T> {
+    const response = await request(server, path, asked);
+    return (response.status === 204 ? null : await readBody(response.json())) as T;
   };
 
-const of = (study: string, participant?: string) =>
+const pathOf = (study: string, participant?: string) =>
   `/${encodeURIComponent(study)}${participant === undefined ? '' : `/participants/${encodeURIComponent(participant)}`}`;
 
 const versionPart = (version: number | undefined) => (version === undefined ? '' : `?version=${version}`);
@@ -128,40 +128,40 @@ export type ParticipantClient = ReturnType<typeof createParticipantClient>;
 /** Returns the requests of a participant's page. Every call rejects with ServerRefusal or ServerUnreachable. */
 export function createParticipantClient(server: string) {
   const answer = answersOf(server);
-  const own = ({ study, participant }: StudyPlace, request: string) => `${of(study, participant)}/${request}`;
+  const ownPath = ({ study, participant }: StudyPlace, name: string) => `${pathOf(study, participant)}/${name}`;
   return {
     /** Returns the study with the text of the plan version that this participant follows. */
     study: ({ study, participant }: StudyPlace): Promise<PublicStudy> =>
-      answer(`${of(study)}?participant=${encodeURIComponent(participant)}`),
+      answer(`${pathOf(study)}?participant=${encodeURIComponent(participant)}`),
     /** `invitation` is taken from the link or was typed; `consent` is the version of the text that was read. */
     claim: (place: StudyPlace, invitation: string, consent: string): Promise<Claim> =>
-      answer(own(place, 'claim'), { method: 'POST', body: { invitation, consent } }),
+      answer(ownPath(place, 'claim'), { method: 'POST', body: { invitation, consent } }),
     /** Resolves with the ids that are stored now. */
     async send(place: TakenPlace, records: readonly StudyRecord[]): Promise<readonly string[]> {
       const asked = { method: 'POST', token: place.token, body: { records } } as const;
-      return (await answer<{ acknowledged: string[] }>(own(place, 'records'), asked)).acknowledged;
+      return (await answer<{ acknowledged: string[] }>(ownPath(place, 'records'), asked)).acknowledged;
     },
     /** Resolves with null if nothing was reported. */
     async progress(place: TakenPlace): Promise<Progress | null> {
-      const asked = { token: place.token, patienceMs: shortPatienceMs };
-      return (await answer<{ progress: Progress | null }>(own(place, 'progress'), asked)).progress;
+      const asked = { token: place.token, timeoutMs: shortTimeoutMs };
+      return (await answer<{ progress: Progress | null }>(ownPath(place, 'progress'), asked)).progress;
     },
     saveProgress: (place: TakenPlace, progress: Progress): Promise<void> =>
-      answer(own(place, 'progress'), { method: 'PUT', token: place.token, body: progress }),
+      answer(ownPath(place, 'progress'), { method: 'PUT', token: place.token, body: progress }),
     async commands(place: TakenPlace, after: number): Promise<readonly NumberedCommand[]> {
-      const path = own(place, `commands?after=${after}`);
+      const path = ownPath(place, `commands?after=${after}`);
       return (await answer<{ commands: NumberedCommand[] }>(path, { token: place.token })).commands;
     },
     sendMotion: (place: TakenPlace, trial: string, recording: string): Promise<void> =>
-      answer(own(place, `motion?trial=${encodeURIComponent(trial)}`), {
+      answer(ownPath(place, `motion?trial=${encodeURIComponent(trial)}`), {
         method: 'PUT',
         token: place.token,
         text: recording,
-        patienceMs: motionPatienceMs,
+        timeoutMs: motionTimeoutMs,
       }),
     /** Resolves with the participant's seat in the room of a trial that a group plays together. */
     seat: (place: TakenPlace, trial: PlayedTogether): Promise<SignedSeat> =>
-      answer(own(place, 'seat'), { method: 'POST', token: place.token, body: trial }),
+      answer(ownPath(place, 'seat'), { method: 'POST', token: place.token, body: trial }),
   };
 }
 
@@ -170,10 +170,10 @@ export function createWithdrawalClient(server: string) {
   const answer = answersOf(server);
   return {
     /** Returns the public part of the study. */
-    study: (study: string): Promise<PublicStudy> => answer(of(study)),
+    study: (study: string): Promise<PublicStudy> => answer(pathOf(study)),
     /** Deletes everything of the participant who has this code, in any notation of the code. */
     withdraw: (study: string, code: string): Promise<Receipt> =>
-      answer(`${of(study)}/withdraw`, { method: 'POST', body: { code } }),
+      answer(`${pathOf(study)}/withdraw`, { method: 'POST', body: { code } }),
   };
 }
 
@@ -195,32 +195,32 @@ export function createExperimenterClient(token: string, server: string) {
       post('', { plan, simulated, newVersion }),
     /** Resolves with the records under this version of the plan, or under the newest one. */
     records: (study: string, version?: number): Promise<RecordedStudy> =>
-      answer(`${of(study)}/records${versionPart(version)}`, { token }),
-    participants: (study: string) => list<ParticipantState>('participants', `${of(study)}/participants`),
-    receipts: (study: string) => list<Receipt>('receipts', `${of(study)}/receipts`),
+      answer(`${pathOf(study)}/records${versionPart(version)}`, { token }),
+    participants: (study: string) => list<ParticipantState>('participants', `${pathOf(study)}/participants`),
+    receipts: (study: string) => list<Receipt>('receipts', `${pathOf(study)}/receipts`),
     command: (study: string, participant: string, command: StudyCommand): Promise<unknown> =>
-      post(`${of(study, participant)}/commands`, command),
+      post(`${pathOf(study, participant)}/commands`, command),
     remark: (study: string, participant: string, text: string): Promise<unknown> =>
-      post(`${of(study, participant)}/remarks`, { text }),
-    release: (study: string, participant: string): Promise<void> => post(`${of(study, participant)}/release`),
+      post(`${pathOf(study, participant)}/remarks`, { text }),
+    release: (study: string, participant: string): Promise<void> => post(`${pathOf(study, participant)}/release`),
     /** Makes another invitation; links with the old one stop working. */
-    reinvite: (study: string, participant: string): Promise<void> => post(`${of(study, participant)}/invitation`),
+    reinvite: (study: string, participant: string): Promise<void> => post(`${pathOf(study, participant)}/invitation`),
     /** Resolves with the zip file of a participant, or of all under a version of the plan. */
     async export(
       study: string,
       { participant, version }: { readonly participant?: string; readonly version?: number } = {},
     ) {
       // A zip file of many recordings takes minutes to make and to download.
-      const asked = { token, patienceMs: null };
-      const response = await ask(server, `${of(study, participant)}/export${versionPart(version)}`, asked);
+      const asked = { token, timeoutMs: null };
+      const response = await request(server, `${pathOf(study, participant)}/export${versionPart(version)}`, asked);
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
-      return { name: name ?? `${study}.zip`, zip: await whole(response.blob()) };
+      return { name: name ?? `${study}.zip`, zip: await readBody(response.blob()) };
     },
     delete: (study: string, participant: string): Promise<Receipt> =>
-      answer(of(study, participant), { method: 'DELETE', token }),
+      answer(pathOf(study, participant), { method: 'DELETE', token }),
     /** Stores a simulated participant from the first record to the last. */
     async addSimulated(study: string, { participant, records, progress }: SimulatedParticipant): Promise<void> {
-      const place = of(study, participant);
+      const place = pathOf(study, participant);
       await post(`${place}/claim`, {});
       for (let at = 0; at < records.length; at += recordsAtOnce) {
         await post(`${place}/records`, { records: records.slice(at, at + recordsAtOnce) });
@@ -228,6 +228,6 @@ export function createExperimenterClient(token: string, server: string) {
       await answer(`${place}/progress`, { method: 'PUT', token, body: progress });
     },
     /** Deletes a simulated study completely. */
-    deleteSimulated: (study: string): Promise<void> => answer(of(study), { method: 'DELETE', token }),
+    deleteSimulated: (study: string): Promise<void> => answer(pathOf(study), { method: 'DELETE', token }),
   };
 }

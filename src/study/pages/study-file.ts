@@ -3,12 +3,12 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { type StudyPlan, storedPlan } from '../model/plan/plan';
 import { checkedRecord, type StudyRecord } from '../model/records/study-record';
 
-/** A study as an export contains it. */
+/** A study and its records under one version of its plan, as an export contains them. */
 export interface OpenedStudy {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly records: readonly StudyRecord[];
-  /** The version of the plan, if the plan has several. */
+  /** The version of the plan that the records follow, if the plan has several. */
   readonly planVersion?: number;
 }
 

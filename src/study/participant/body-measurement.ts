@@ -54,7 +54,7 @@ export class BodyMeasurement {
     });
   }
 
-  /** The step of the measurement; null: nobody is being measured. */
+  /** The step of the measurement; null: there is no measurement. */
   get step(): CalibrationStep | null {
     return this.#step;
   }

@@ -65,7 +65,7 @@ async function readDevice(place: StudyPlace, storageLimitMs?: number): Promise<O
  * Resolves with whether this is the only page of the participant: two pages would send two sessions to the server. A
  * browser without storage refuses the lock too, and its pages share no session.
  */
-function alone({ study, participant }: StudyPlace): Promise<boolean> {
+function lockParticipant({ study, participant }: StudyPlace): Promise<boolean> {
   if (!navigator.locks) return Promise.resolve(true);
   return new Promise((resolve, reject) => {
     const held = navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
@@ -100,7 +100,7 @@ async function reportedProgress(client: ParticipantClient, session: KeptSession)
 export async function openSession(place: StudyPlace, opening: OpeningOptions): Promise<OpenedSession> {
   const { participant } = place;
   const { client } = opening;
-  if (!(await alone(place))) throw new PhrasedError('entrance.otherTab', { participant });
+  if (!(await lockParticipant(place))) throw new PhrasedError('entrance.otherTab', { participant });
   const { vault, kept } = await readDevice(place, opening.storageLimitMs);
   const options = { ...opening, vault };
   if (kept) {

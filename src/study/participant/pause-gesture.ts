@@ -1,12 +1,12 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 
 /** The height above the eyes [m] and the duration [s] of the gesture. */
-const above = 0.1;
+const raisedBy = 0.1;
 const holdSeconds = 1.5;
 
 /** Detects the gesture that pauses a round, with controllers and bare hands: every visible hand held above the head. */
 export class PauseGesture {
-  /** The time since the hands are up [s]; null: they are not. */
+  /** The time at which the hands were raised [s]; null: they are not up. */
   #since: number | null = null;
   #reported = false;
 
@@ -15,7 +15,7 @@ export class PauseGesture {
    * enough.
    */
   update(frame: TrackingFrame | null): boolean {
-    const height = (frame?.head.position.y ?? 0) + above;
+    const height = (frame?.head.position.y ?? 0) + raisedBy;
     const hands = frame ? [frame.leftHand, frame.rightHand].filter((hand) => hand !== null) : [];
     if (!frame || hands.length === 0 || hands.some(({ position }) => position.y < height)) {
       this.#since = null;

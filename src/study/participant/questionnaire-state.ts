@@ -12,38 +12,26 @@ export const screenQuestions = ({ step }: Pick<ParticipantSession, 'step'>): rea
 /** The position of a participant in the questionnaire of the present step. */
 export class QuestionnaireState {
   readonly #session: Answered;
-  #question = 0;
-  #typed: string | null = null;
-  #triedToSubmit = false;
+  /** The index of the question on display. */
+  question = 0;
+  /** The text that was typed into its field; null: none. */
+  typed: string | null = null;
+  /** Whether handing in failed because an answer is missing. */
+  triedToSubmit = false;
 
   constructor(session: Answered) {
     this.#session = session;
   }
 
-  /** The index of the question on display. */
-  get question(): number {
-    return this.#question;
-  }
-
-  /** The text that was typed into its field; null: none. */
-  get typed(): string | null {
-    return this.#typed;
-  }
-
-  /** Whether handing in failed because an answer is missing. */
-  get triedToSubmit(): boolean {
-    return this.#triedToSubmit;
-  }
-
   /** Called when another step has begun. Its questions start at the first one without an answer. */
   enterStep(): void {
-    this.#triedToSubmit = false;
+    this.triedToSubmit = false;
     this.goTo(Math.max(0, this.#firstOpenQuestion()));
   }
 
   goTo(index: number): void {
-    this.#question = index;
-    this.#typed = null;
+    this.question = index;
+    this.typed = null;
   }
 
   /** Answers a question; returns why the answer is refused, or null if it is taken. */
@@ -56,7 +44,7 @@ export class QuestionnaireState {
    * null.
    */
   type(question: Question, typed: string): string | null {
-    this.#typed = typed;
+    this.typed = typed;
     const value = typedAnswer(question.answer, typed);
     return this.#session.apply({ type: 'answer', question: question.id, value });
   }
@@ -65,7 +53,7 @@ export class QuestionnaireState {
   readyToSubmit(): boolean {
     const open = this.#firstOpenQuestion();
     if (open < 0) return true;
-    this.#triedToSubmit = true;
+    this.triedToSubmit = true;
     this.goTo(open);
     return false;
   }

@@ -7,8 +7,8 @@ import type { StudyForm } from './forms/study-form';
 import { localizedReason, localizedRefusal } from './localized-reasons';
 import { PauseGesture } from './pause-gesture';
 import { QuestionnaireState } from './questionnaire-state';
-import type { ScreenActions } from './questions/study-situation';
 import { lockedOutScreen, screenOf } from './screens/study-screens';
+import type { ScreenActions } from './screens/study-situation';
 import type { ParticipantSession } from './session/participant-session';
 import type { StudyPage } from './study-page';
 import { SessionTrials } from './trial/session-trials';
@@ -18,7 +18,7 @@ import type { FinishedTrial } from './trial/study-trial';
 /** The interval at which the screen follows the clock [ms]. */
 const tickEveryMs = 250;
 
-export interface SessionFlowOptions {
+interface SessionFlowOptions {
   readonly host: StudyHost;
   readonly page: StudyPage;
   /** Removes everything of this participant from the device. */
@@ -37,7 +37,7 @@ export class SessionFlow {
   readonly #exchanges: ExchangeTimer;
   readonly #measurement: BodyMeasurement;
   readonly #trials: SessionTrials;
-  readonly #questionnaireState: QuestionnaireState;
+  readonly #questionnaire: QuestionnaireState;
   readonly #actions: ScreenActions;
   readonly #pauseGesture = new PauseGesture();
   /** Why the last action changed nothing; null: it did. */
@@ -52,7 +52,7 @@ export class SessionFlow {
     this.#page = page;
     this.#forget = forget;
     const onChange = () => this.show();
-    this.#questionnaireState = new QuestionnaireState(session);
+    this.#questionnaire = new QuestionnaireState(session);
     this.#exchanges = new ExchangeTimer(session, page.after);
     this.#measurement = new BodyMeasurement(session, host, onChange);
     this.#trials = new SessionTrials({ session, host, now: page.now, onChange });
@@ -72,7 +72,7 @@ export class SessionFlow {
 
   /** Shows the present step from now on and starts to exchange with the server. */
   begin(): void {
-    this.#host.setCalibration(this.session.calibration);
+    this.#host.setCalibration(this.session.kept.calibration);
     this.#setBowSide();
     this.show();
     this.#tickLater();
@@ -128,13 +128,13 @@ export class SessionFlow {
     return {
       apply: (event) => this.#apply(event),
       goTo: (index) => {
-        this.#questionnaireState.goTo(index);
+        this.#questionnaire.goTo(index);
         this.#showRefusal(null);
       },
-      choose: (question, value) => this.#showRefusal(this.#questionnaireState.choose(question, value)),
-      type: (question, typed) => this.#showRefusal(this.#questionnaireState.type(question, typed)),
+      choose: (question, value) => this.#showRefusal(this.#questionnaire.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#questionnaire.type(question, typed)),
       submit: () => {
-        if (this.#questionnaireState.readyToSubmit()) this.#apply({ type: 'submit' });
+        if (this.#questionnaire.readyToSubmit()) this.#apply({ type: 'submit' });
         else this.#showRefusal(null);
       },
       calibrate: () => this.#measurement.start(),
@@ -156,9 +156,7 @@ export class SessionFlow {
       {
         session: this.session,
         inSession: this.#host.inSession(),
-        question: this.#questionnaireState.question,
-        typed: this.#questionnaireState.typed,
-        triedToSubmit: this.#questionnaireState.triedToSubmit,
+        questionnaire: this.#questionnaire,
         calibration: this.#measurement.step,
         withdrawalPage: this.#page.address.withdrawalPage(),
         setupFaults: this.#measurement.faults,
@@ -176,7 +174,8 @@ export class SessionFlow {
   /** Returns the form that takes the place of a screen at the desk; null: none does. */
   #form(): StudyForm | null {
     const { session } = this;
-    const { phrases, withdrawalCode } = session;
+    const { phrases, kept } = session;
+    const { withdrawalCode } = kept;
     const stop = () => this.#apply({ type: 'stop', by: 'participant' });
     if (withdrawalCode !== null) {
       return {
@@ -189,7 +188,7 @@ export class SessionFlow {
       };
     }
     if (session.step.kind !== 'demographics') return null;
-    return { kind: 'demographics', phrases, stop, done: (answers) => this.#takeDemographics(answers) };
+    return { kind: 'demographics', phrases, stop, done: (answers) => this.#submitDemographics(answers) };
   }
 
   #lockedOutForm(): StudyForm {
@@ -224,7 +223,7 @@ export class SessionFlow {
     this.#refusal = null;
     this.#stopping = false;
     this.#measurement.reset();
-    this.#questionnaireState.enterStep();
+    this.#questionnaire.enterStep();
     void this.#restoreBody();
   }
 
@@ -264,7 +263,7 @@ export class SessionFlow {
   }
 
   /** Returns why the answers are refused, or null if they are stored. */
-  #takeDemographics(answers: Record<string, unknown>): string | null {
+  #submitDemographics(answers: Record<string, unknown>): string | null {
     const complaint = this.session.apply({ type: 'demographics', demographics: answers });
     if (complaint === null) {
       void this.exchange();
@@ -276,7 +275,7 @@ export class SessionFlow {
 
   /** Puts the bow into the hand that does not draw it. */
   #setBowSide(): void {
-    const { preferredHand } = this.session;
+    const { preferredHand } = this.session.kept;
     if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
   }
 }

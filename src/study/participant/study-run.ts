@@ -10,7 +10,7 @@ import { invitationIn, studyLink, withdrawalLink } from '../client/study-link';
 import { createStudyCard, type StudyCard } from './forms/study-card';
 import { VrStudyPanel } from './sheet/vr-study-panel';
 import type { After, StudyAddressBar, StudyDisplay } from './study-page';
-import { type AskedStudy, StudyVisit, type VisitState } from './study-visit';
+import { type RequestedStudy, StudyVisit, type VisitState } from './study-visit';
 import type { StudyHost } from './trial/study-host';
 
 /** The study on the page, for its frame loop. */
@@ -80,17 +80,17 @@ const addressBarOf = (study: string): StudyAddressBar => ({
 });
 
 /** Opens the study in the address, which has the page to itself while it runs. */
-export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
+export function createStudyRun(requested: RequestedStudy, host: StudyHost): StudyRun {
   document.body.classList.add('in-study');
   const sheet = new VrStudyPanel();
-  const visit = new StudyVisit(asked, createParticipantClient(pageFolder()), host, {
+  const visit = new StudyVisit(requested, createParticipantClient(pageFolder()), host, {
     display: createDisplay(createStudyCard(), sheet),
-    address: addressBarOf(asked.study),
+    address: addressBarOf(requested.study),
     languages: navigator.languages,
     now: nowSeconds,
     after,
   });
-  window.addEventListener('online', () => void visit.exchange());
+  window.addEventListener('online', () => void visit.flow?.exchange());
   window.addEventListener('beforeunload', (event) => {
     if (visit.losesAnswers) event.preventDefault();
   });
@@ -98,20 +98,20 @@ export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
   return {
     object: sheet.object,
     get idle() {
-      return visit.idle;
+      return !visit.flow?.playing;
     },
     get paused() {
-      return visit.paused;
+      return visit.flow?.paused ?? false;
     },
     frame(time, frame) {
       if (frame) {
         const forward = rotate(frame.head.orientation, vec3(0, 0, -1));
         sheet.follow({ position: frame.head.position, forward });
       }
-      visit.frame(time, frame);
+      visit.flow?.frame(time, frame);
     },
     point: (pointers) => sheet.point(pointers),
-    sessionChanged: () => visit.sessionChanged(),
+    sessionChanged: () => visit.flow?.sessionChanged(),
     probe: () => ({ ...visit.state(), pointedAt: sheet.pointedAt, targets: sheet.targets() }),
   };
 }

@@ -1,4 +1,3 @@
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { formatSentence } from 'threepoint-ui/text-format';
 import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
 import { inLanguage } from '../model/phrases/localized-text';
@@ -12,7 +11,7 @@ import type { StudyPage } from './study-page';
 import type { StudyHost } from './trial/study-host';
 
 /** The study in the address; `participant` null: the address names none. */
-export interface AskedStudy {
+export interface RequestedStudy {
   readonly study: string;
   readonly participant: string | null;
 }
@@ -32,14 +31,14 @@ type NewSession = Extract<OpenedSession, { kind: 'new' }>;
 
 /** A visit of the page for a study: participant, invitation and consent, then the session until the page closes. */
 export class StudyVisit {
-  readonly #asked: AskedStudy;
+  readonly #requested: RequestedStudy;
   readonly #client: ParticipantClient;
   readonly #host: StudyHost;
   readonly #page: StudyPage;
-  #running: SessionFlow | null = null;
+  #flow: SessionFlow | null = null;
 
-  constructor(asked: AskedStudy, client: ParticipantClient, host: StudyHost, page: StudyPage) {
-    this.#asked = asked;
+  constructor(requested: RequestedStudy, client: ParticipantClient, host: StudyHost, page: StudyPage) {
+    this.#requested = requested;
     this.#client = client;
     this.#host = host;
     this.#page = page;
@@ -47,30 +46,25 @@ export class StudyVisit {
 
   /** Resolves when the session is open or a form asks for missing input; faults are shown. */
   async enter(): Promise<void> {
-    const { participant } = this.#asked;
+    const { participant } = this.#requested;
     if (participant === null) {
-      this.#askWho(null);
+      this.#askForParticipant(null);
       return;
     }
     try {
       const opened = await this.#open(participant);
       const invitation = this.#page.address.invitation();
       if (opened.kind === 'resumed') this.#begin(opened.session);
-      else if (invitation === null) this.#askWho(opened.study);
+      else if (invitation === null) this.#askForParticipant(opened.study);
       else this.#askForConsent(opened, participant, invitation);
     } catch (error) {
       this.#page.display.ask({ kind: 'fault', ...this.#fault(error) });
     }
   }
 
-  /** Whether no trial is being played, so that hands that point at the sheet draw no bow. */
-  get idle(): boolean {
-    return !this.#running?.playing;
-  }
-
-  /** Whether the round on the page is paused. */
-  get paused(): boolean {
-    return this.#running?.paused ?? false;
+  /** The flow of the session; null: it is not open yet. */
+  get flow(): SessionFlow | null {
+    return this.#flow;
   }
 
   /** Whether closing the page would lose answers. */
@@ -79,29 +73,14 @@ export class StudyVisit {
     return unsaved > 0 && unsent > 0;
   }
 
-  /** Takes a drawn frame into account; null: the head was not seen. */
-  frame(time: number, frame: TrackingFrame | null): void {
-    this.#running?.frame(time, frame);
-  }
-
-  /** Called when the headset was put on or taken off. */
-  sessionChanged(): void {
-    this.#running?.sessionChanged();
-  }
-
-  /** Exchanges with the server at once; resolves when that is over. */
-  async exchange(): Promise<void> {
-    await this.#running?.exchange();
-  }
-
   state(): VisitState {
-    const running = this.#running;
-    const { unsent, unsaved, online } = running?.session.uploadStatus ?? { unsent: 0, unsaved: 0, online: true };
+    const { flow } = this;
+    const { unsent, unsaved, online } = flow?.session.uploadStatus ?? { unsent: 0, unsaved: 0, online: true };
     return {
       screen: this.#page.display.shown,
-      step: running?.session.step.id ?? null,
-      simulated: running?.session.simulated ?? false,
-      running: running?.playing ?? false,
+      step: flow?.session.step.id ?? null,
+      simulated: flow?.session.simulated ?? false,
+      running: flow?.playing ?? false,
       unsent,
       unsaved,
       online,
@@ -110,22 +89,22 @@ export class StudyVisit {
 
   #open(participant: string): Promise<OpenedSession> {
     return openSession(
-      { study: this.#asked.study, participant },
+      { study: this.#requested.study, participant },
       {
         client: this.#client,
         now: this.#page.now,
         storageLimitMs: this.#page.storageLimitMs,
-        onChange: () => this.#running?.show(),
-        onCommand: () => this.#running?.conclude(),
+        onChange: () => this.#flow?.show(),
+        onCommand: () => this.#flow?.conclude(),
       },
     );
   }
 
   #begin(session: ParticipantSession): void {
     const { participant } = session.progress;
-    const forget = () => forgetSession({ study: this.#asked.study, participant });
-    this.#running = new SessionFlow(session, { host: this.#host, page: this.#page, forget });
-    this.#running.begin();
+    const forget = () => forgetSession({ study: this.#requested.study, participant });
+    this.#flow = new SessionFlow(session, { host: this.#host, page: this.#page, forget });
+    this.#flow.begin();
   }
 
   /** Returns the study's language that the user of the browser reads, or one of the page without a study. */
@@ -141,7 +120,7 @@ export class StudyVisit {
     const phrases = this.#phrasesOf(null);
     const unknown = error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer);
     const text = unknown
-      ? phrases.say('entrance.noStudy', { study: this.#asked.study })
+      ? phrases.say('entrance.noStudy', { study: this.#requested.study })
       : localizedReason(error, phrases);
     return { phrases, text };
   }
@@ -150,7 +129,11 @@ export class StudyVisit {
    * Asks for participant and invitation if the address lacks them. `complaint` is what was wrong with the address, in
    * the language of `phrases`.
    */
-  #askWho(study: PublicStudy | null, phrases = this.#phrasesOf(study), complaint: string | null = null): void {
+  #askForParticipant(
+    study: PublicStudy | null,
+    phrases = this.#phrasesOf(study),
+    complaint: string | null = null,
+  ): void {
     const { display, address } = this.#page;
     // A link that is pasted into the address of this tab may change its fragment only.
     address.reloadWhenChanged();
@@ -158,7 +141,7 @@ export class StudyVisit {
       kind: 'participant',
       phrases,
       complaint,
-      known: { participant: this.#asked.participant, invitation: address.invitation() },
+      known: { participant: this.#requested.participant, invitation: address.invitation() },
       go: (invited) => address.goTo(invited),
       decline: () => display.ask({ kind: 'declined', phrases, title: phrases.say('study') }),
     });
@@ -181,7 +164,7 @@ export class StudyVisit {
             contact === null
               ? phrases.say('entrance.wrongInvitation', { participant })
               : phrases.say('entrance.wrongInvitationRemote', { participant, contact });
-          this.#askWho(study, phrases, complaint);
+          this.#askForParticipant(study, phrases, complaint);
           return null;
         }
         if (taken === 'changed') {

@@ -1,7 +1,7 @@
 import { requestTimeoutMs } from 'threepoint-http/web-server';
 import {
   createParticipantClient,
-  motionPatienceMs,
+  motionTimeoutMs,
   NoStudyServer,
   ServerRefusal,
   ServerUnreachable,
@@ -12,7 +12,7 @@ import { answeringHost, says } from '../../rooms/client/answering-host';
 const clientOf = async (status: number, body: string) =>
   createParticipantClient((await answeringHost(says(status, body))).folder);
 
-test('a host of files is told from a server that has no such study', async () => {
+test('a host of files is distinguished from a server without the study', async () => {
   const files = await clientOf(404, '<h1>Not found</h1>');
   await expect(files.study({ study: 'paper', participant: 'P01' })).rejects.toThrow(NoStudyServer);
   await expect(files.study({ study: 'paper', participant: 'P01' })).rejects.toThrow(
@@ -32,5 +32,5 @@ test('a server that is away for now is unreachable, with a proxy’s page as wit
 });
 
 test('a recording may be on its way for as long as the server lets a request arrive', () => {
-  expect(motionPatienceMs).toBe(requestTimeoutMs);
+  expect(motionTimeoutMs).toBe(requestTimeoutMs);
 });

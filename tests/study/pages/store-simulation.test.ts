@@ -17,12 +17,12 @@ async function server() {
   return { ...served, plan, client: createExperimenterClient(experimenter, served.origin) };
 }
 
-test('a simulation goes through the plan to the end, into a study of its own, with what was put in', async () => {
+test('a simulation goes through the plan to the end, into a separate study, with the stated effects', async () => {
   const { client, plan } = await server();
-  const told: string[] = [];
-  const onProgress = (done: number, all: number) => told.push(`${done}/${all}`);
+  const reported: string[] = [];
+  const onProgress = (done: number, all: number) => reported.push(`${done}/${all}`);
   expect(await storeSimulation(client, plan, { seed: 3, effects, at: now, onProgress })).toBe('latency-simulated');
-  expect(told.at(-1)).toBe('6/6');
+  expect(reported.at(-1)).toBe('6/6');
   const { records, simulated, plan: simulatedPlan } = await client.records('latency-simulated');
   expect(simulated).toBe(true);
   expect(simulatedPlan.title).toBe(`SIMULATED: ${plan.title}`);

@@ -11,11 +11,11 @@ import type { StudyPlugin } from 'threepoint-study/model/questionnaires/study-pl
 import { checkedRecord } from 'threepoint-study/model/records/study-record';
 import { measuresIn } from 'threepoint-study/model/results/exported-results';
 import { answersIn, studyTables } from 'threepoint-study/model/tables/study-tables';
-import { questionPart } from 'threepoint-study/participant/questions/question-screen';
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
 import type { QuestionView } from 'threepoint-study/participant/questions/question-view';
 import { questionView, registerQuestionView } from 'threepoint-study/participant/questions/question-views';
-import type { ShownSession } from 'threepoint-study/participant/questions/study-situation';
+import { questionPart } from 'threepoint-study/participant/screens/question-screen';
+import type { ShownSession } from 'threepoint-study/participant/screens/study-situation';
 import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
 import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
 import { simulateStudy } from 'threepoint-study/simulation/simulate-study';
@@ -82,7 +82,11 @@ function shown(answer: Answer | undefined, choose: (value: Answer) => void) {
   return questionPart(
     step.questionnaire.questions as readonly Question[],
     0,
-    { session: session as ShownSession, typed: null, triedToSubmit: false, refusal: null },
+    {
+      session: session as ShownSession,
+      questionnaire: { question: 0, typed: null, triedToSubmit: false },
+      refusal: null,
+    },
     { goTo: () => undefined, choose: (_, value) => choose(value), type: () => undefined },
   ).question;
 }

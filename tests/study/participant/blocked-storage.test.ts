@@ -60,7 +60,7 @@ test.each(Object.entries(blockedFactories))(
   },
 );
 
-/** Keeps the stores busy, as another page that writes for ever; what this returns lets go of them. */
+/** Keeps the stores busy, like another page that writes without end; returns a function that releases them. */
 async function occupyStorage(): Promise<() => void> {
   const database = await openDB('threepoint-studies');
   const { objectStoreNames } = database;

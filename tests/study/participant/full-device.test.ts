@@ -5,7 +5,7 @@ import { studyServer } from './study-server';
 
 afterEach(() => vi.restoreAllMocks());
 
-test('answers given while the device is full are there after a crash: the server was told them', async () => {
+test('answers given while the device is full are restored after a crash from the server', async () => {
   const { device, tab } = await beforeTheQuestions(await studyServer());
   choose(tab, 4);
   await tab.exchange();

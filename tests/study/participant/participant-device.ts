@@ -8,10 +8,10 @@ import { place } from './study-server';
 
 const plan = paperPlan();
 
-/** How the participant is measured. */
+/** The measures of the participant. */
 export const calibration = { eyeHeight: 1.62, armSpan: 1.4 };
 
-/** A device of P01's with a vault of its own and a clock that rises with every look. */
+/** A device of P01 with a separate vault and a clock that advances with every reading. */
 export async function device(
   { origin, invitation }: { readonly origin: string; readonly invitation: string },
   { clock = 1e9 }: { readonly clock?: number } = {},
@@ -36,7 +36,7 @@ export async function device(
     claim,
     options,
     vault,
-    /** The page is loaded again: nothing is left but the vault. */
+    /** Loads the page again: only the vault is left. */
     async reload(): Promise<ParticipantSession> {
       const again = await openStudyVault(name);
       const kept = await again.session(place);

@@ -44,7 +44,7 @@ test('a reload in a questionnaire without a network goes on at the same question
   const second = await reload();
   expect(second.step.id).toBe(first.step.id);
   expect(second.progress.draft).toEqual({ Q1: 4, Q2: 5 });
-  expect(second.calibration).toEqual(calibration);
+  expect(second.kept.calibration).toEqual(calibration);
   for (const question of ['Q3', 'Q4', 'Q5', 'Q6', 'Q7']) second.apply({ type: 'answer', question, value: 3 });
   expect(second.apply({ type: 'submit' })).toBe(null);
   await second.exchange();

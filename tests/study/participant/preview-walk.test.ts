@@ -59,7 +59,7 @@ test('answers stay while one walks on and comes back, and handing in leads to wh
 
 test('a pause can be seen and left; a language holds for all that follows', () => {
   const walk = walkOf();
-  walk.read('de');
+  walk.setLanguage('de');
   walk.goTo(walk.stops.findIndex(({ id }) => id.endsWith('/mine')));
   expect(screenAt(walk).title).toEqual(expect.anything());
   expect(screenAt(walk).question?.text).toContain('Der virtuelle Körper');

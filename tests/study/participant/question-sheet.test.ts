@@ -4,9 +4,9 @@ import { begin } from 'threepoint-study/model/progress/progress';
 import type { Answer } from 'threepoint-study/model/questionnaires/question-kind';
 import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
 import { type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
-import { questionPart } from 'threepoint-study/participant/questions/question-screen';
 import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
 import { height, width } from 'threepoint-study/participant/questions/sheet-target';
+import { questionPart } from 'threepoint-study/participant/screens/question-screen';
 import type { ParticipantSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
 import { expectApart } from '../../page/shell/menu-parts';
@@ -17,7 +17,7 @@ const schedule = scheduleFor(plan, 'P01');
 const body = schedule.steps.flatMap((step) => (step.kind === 'questionnaire' ? [step.questionnaire] : []))[0];
 const questions = body?.questions ?? [];
 
-/** A participant before these questions, who presses what stands on the sheet. */
+/** A participant who presses the targets of these questions on the sheet. */
 function reader(asked: readonly Question[], language = 'en') {
   let draft: Record<string, Answer> = {};
   let typed: string | null = null;
@@ -31,7 +31,7 @@ function reader(asked: readonly Question[], language = 'en') {
     return questionPart(
       asked,
       at,
-      { session, typed, triedToSubmit: false, refusal: null },
+      { session, questionnaire: { question: at, typed, triedToSubmit: false }, refusal: null },
       {
         choose,
         goTo: () => undefined,
@@ -87,7 +87,7 @@ describe('a question on the sheet in the headset', () => {
     expect(one.press('answer-100', 'more', 'less', 'less').answerTo('delay')).toBe(98);
   });
 
-  test('a number that cannot be is no answer, and what is expected is said', () => {
+  test('a number outside its range is not an answer, and a hint states the range', () => {
     const one = reader(questions).goTo('guess').press('key-9');
     expect(one.answerTo('guess')).toBeUndefined();
     expect(one.part().hint).toBe('* Expected a whole number from 0 to 4.');

@@ -20,8 +20,8 @@ async function alone(): Promise<Tab> {
 
 const textOf = ({ display }: Tab) => display.screen?.text.join(' ') ?? '';
 
-describe('what a participant has who is alone', () => {
-  test('is right with a headset, room and eyes of a person who stands', () => {
+describe('the set-up of a participant who takes part alone', () => {
+  test('is accepted with a headset, enough room and a standing eye height', () => {
     expect(setupFaults(remote, sound, english)).toEqual([]);
     expect(setupFaults(remote, { ...sound, room: null, eyeHeight: null }, english)).toEqual([]);
   });
@@ -31,15 +31,15 @@ describe('what a participant has who is alone', () => {
     [{ room: { width: 3, depth: 1.2 } }, /leaves 3\.0 m by 1\.2 m, the games need 2\.0 m/],
     [{ eyeHeight: 0.8 }, /0\.8 m above the floor\. Stand up/],
     [{ eyeHeight: 2.3 }, /2\.3 m above the floor: the floor of the headset is too low/],
-  ])('is told in words: %j', (change, words) => {
+  ])('is reported if it is unsuitable: %j', (change, words) => {
     const faults = setupFaults(remote, { ...sound, ...change }, english);
     expect(faults).toHaveLength(1);
     expect(faults[0]).toMatch(words);
   });
 });
 
-describe('a study with no one beside its participants', () => {
-  test('says on a device without a headset that it cannot be used, and whom to ask', async () => {
+describe('a study without an experimenter present', () => {
+  test('reports a device without a headset and shows the contact', async () => {
     const tab = await alone();
     expect(tab.display.shown).toBe('calibration-enter');
     tab.host.fault = { kind: 'no-headset' };
@@ -50,7 +50,7 @@ describe('a study with no one beside its participants', () => {
     expect(tab.display.screen?.buttons.map(({ id }) => id)).toEqual(['ask-to-stop']);
   });
 
-  test('is told nowhere to call an experimenter: the contact of the plan stands there instead', async () => {
+  test('never asks to call an experimenter, and shows the contact of the plan instead', async () => {
     const server = await studyServer({ remote });
     const device = browser(server);
     const stranger = await device.open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
@@ -74,7 +74,7 @@ describe('a study with no one beside its participants', () => {
     expect(said).not.toMatch(/experimenter/i);
   });
 
-  test('says what the server refuses, and that one can go on', () => {
+  test('reports what the server refuses, and that the participant can go on', () => {
     const refused = { unsent: 2, unsaved: 0, storageFault: null, online: true, refusal: 'no', lockedOut: false };
     expect(uploadStatusText(refused, english, remote)).toEqual([
       'They stay on this device: the server refuses 2 records (no). You can go on. Write to lab@example.org',
@@ -83,7 +83,7 @@ describe('a study with no one beside its participants', () => {
     expect(uploadStatusText(refused, english)[0]).toContain('Call the experimenter');
   });
 
-  test('begins in a boundary that is large enough alone', async () => {
+  test('begins only within a boundary that is large enough', async () => {
     const tab = await alone();
     tab.host.free = { width: 1, depth: 3 };
     tab.wear(true);
@@ -94,7 +94,7 @@ describe('a study with no one beside its participants', () => {
     expect(tab.display.inHeadset?.id).toBe('calibration');
   });
 
-  test('measures again who sat, and takes the measures of who stood up', async () => {
+  test('repeats the measurement of a seated participant and accepts that of a standing one', async () => {
     const tab = await alone();
     tab.wear(true);
     tab.host.eyes = 0.9;

@@ -18,7 +18,7 @@ import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study
 import { expect, vi } from 'vitest';
 import type { StudyServer } from './study-server';
 
-/** A clock that stands until the test lets time pass, and what is to be done by it. */
+/** A clock that the test advances, with its timers. */
 class StandingClock {
   #now = 1e9;
   #due: { readonly at: number; readonly act: () => void }[] = [];
@@ -33,7 +33,7 @@ class StandingClock {
     };
   };
 
-  /** The machine sleeps: what is due meanwhile is done when it is awake. */
+  /** Suspends the machine: timers that are due meanwhile run when it resumes. */
   sleep(seconds: number): void {
     this.#now += seconds;
   }
@@ -51,7 +51,7 @@ class StandingClock {
   }
 }
 
-/** What is shown on the desk and in the headset; `reaches` and `until` wait for something to be shown. */
+/** The content at the desk and in the headset; `reaches` and `until` wait for content. */
 export class ShownParts implements StudyDisplay {
   form: StudyForm | null = null;
   screen: StudyScreen | null = null;
@@ -105,10 +105,7 @@ export class ShownParts implements StudyDisplay {
   }
 }
 
-/**
- * A game of one shot: the test says when it hits, which ends it. What was put away must be prepared again, as the court
- * must.
- */
+/** A game of one shot, whose hit by the test ends it. After `abort` it must be prepared again, as the court must. */
 export class OneShotGame implements TaskRunner {
   readonly waitingFor = null;
   readonly standing = false;
@@ -136,7 +133,7 @@ export class OneShotGame implements TaskRunner {
     this.interrupted = false;
   }
 
-  /** Its server has forgotten it. */
+  /** Loses the game, as when its server has restarted. */
   breakOff(): void {
     this.interrupted = this.running;
   }
@@ -169,7 +166,7 @@ export class OneShotGame implements TaskRunner {
   }
 }
 
-/** What the page has before a study begins: its user's measures, or those of the participant before. */
+/** The calibration of the page before a study begins: that of its user or of the previous participant. */
 export const ofAnother: Calibration = { eyeHeight: 1.8, armSpan: 1.74 };
 
 /** The page around the study: a headset to be put on and taken off, bodies that load, two games. */
@@ -177,7 +174,7 @@ class TestHost implements StudyHost {
   readonly games = { archery: new OneShotGame(), ball: new OneShotGame() };
   readonly runners = this.games;
   worn = false;
-  /** null: of no one. */
+  /** null: not measured. */
   measures: Calibration | null = ofAnother;
   embodiment: Embodiment = { estimator: 'hands-only' };
   /** Estimators that this page cannot load. */
@@ -190,7 +187,7 @@ class TestHost implements StudyHost {
     this.worn = true;
   }
   inSession = (): boolean => this.worn;
-  /** How high the eyes are seen [m]. */
+  /** The tracked height of the eyes [m]. */
   eyes = 1.6;
   fault: DeviceFault | null = null;
   free: { readonly width: number; readonly depth: number } | null = null;
@@ -249,7 +246,7 @@ export function browser(server: StudyServer, storageLimitMs?: number) {
   vi.stubGlobal('indexedDB', new IDBFactory());
   const locks = new Map<string, object>();
 
-  /** Loads the page with this address; without a word, that of the link of P01. */
+  /** Loads the page with this address; by default that of the link of P01. */
   async function open(link: Partial<{ [Part in keyof Invited]: string | null }> & { readonly study?: string } = {}) {
     const tab = {};
     const { participant = 'P01', invitation = server.invitation, study = server.plan.id } = link;
@@ -286,19 +283,19 @@ export function browser(server: StudyServer, storageLimitMs?: number) {
       visit,
       display,
       host,
-      /** The address that the page is sent to, once it is. */
+      /** Resolves with the address to which the page is sent. */
       wentTo,
       /**
        * Resolves when the server has all there is now: an exchange under way may have begun before, a second one has
        * not.
        */
       async exchange(): Promise<void> {
-        await visit.exchange();
-        await visit.exchange();
+        await visit.flow?.exchange();
+        await visit.flow?.exchange();
       },
-      /** Time passes by the clock, and nothing is drawn. */
+      /** Advances the clock without drawing a frame. */
       pass: (seconds: number) => clock.pass(seconds),
-      /** The machine sleeps: the time of day goes on; so does that of frames, where `both`. */
+      /** Suspends the machine: the time of day advances, and with `both` the time of frames too. */
       sleep(seconds: number, both: boolean): void {
         clock.sleep(seconds);
         if (both) stamp += seconds;
@@ -310,15 +307,15 @@ export function browser(server: StudyServer, storageLimitMs?: number) {
           stamp += 1 / 30;
           clock.pass(1 / 30);
           const time = pageClock.tick(stamp * 1000);
-          visit.frame(time, stretched(time, raised, host.eyes));
+          visit.flow?.frame(time, stretched(time, raised, host.eyes));
           host.drew();
         }
       },
       wear(on: boolean): void {
         host.worn = on;
-        visit.sessionChanged();
+        visit.flow?.sessionChanged();
       },
-      /** The page goes: the browser lets go of its locks. */
+      /** Closes the page: the browser releases its locks. */
       close(): void {
         for (const [name, owner] of locks) if (owner === tab) locks.delete(name);
       },

@@ -1,8 +1,8 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
 import { Phrases } from 'threepoint-study/model/phrases/phrases';
 import type { ProgressEvent } from 'threepoint-study/model/progress/apply-event';
-import type { ScreenActions, StudySituation } from 'threepoint-study/participant/questions/study-situation';
 import { screenOf, uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
+import type { ScreenActions, StudySituation } from 'threepoint-study/participant/screens/study-situation';
 import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
@@ -24,11 +24,11 @@ function participant(...events: readonly ProgressEvent[]) {
     { records: [], motion: [] },
     { client: createParticipantClient('http://127.0.0.1:9'), vault: null, now: () => now, onChange: () => undefined },
   );
-  const tell = (event: ProgressEvent) => expect(session.apply(event)).toBeNull();
-  events.forEach(tell);
+  const apply = (event: ProgressEvent) => expect(session.apply(event)).toBeNull();
+  events.forEach(apply);
   return {
     session,
-    tell,
+    apply,
     pass(seconds: number) {
       now += seconds;
     },
@@ -39,9 +39,7 @@ function participant(...events: readonly ProgressEvent[]) {
           ...{
             session,
             inSession: true,
-            question: 0,
-            typed: null,
-            triedToSubmit: false,
+            questionnaire: { question: 0, typed: null, triedToSubmit: false },
             calibration: null,
             refusal: null,
             stopping: false,
@@ -61,21 +59,21 @@ function participant(...events: readonly ProgressEvent[]) {
 function beforeTheQuestions() {
   const one = participant(consent, demographics, measured);
   for (let step = 0; one.session.step.kind !== 'questionnaire' && step < 20; step++) {
-    if (one.session.step.kind === 'calibration') one.tell(measured);
+    if (one.session.step.kind === 'calibration') one.apply(measured);
     else if (one.session.step.kind === 'rest') {
       one.pass(one.session.step.seconds);
-      one.tell({ type: 'tick' });
+      one.apply({ type: 'tick' });
     } else {
-      one.tell({ type: 'start' });
+      one.apply({ type: 'start' });
       one.pass(42);
-      one.tell({ type: 'trial-finished', outcome: outcomeOf() });
+      one.apply({ type: 'trial-finished', outcome: outcomeOf() });
     }
   }
   return one;
 }
 
 describe('a participant who is to be measured', () => {
-  test('is told why it did not succeed, and may try again', () => {
+  test('reads why the measurement failed, and may try again', () => {
     const failed = participant(consent, demographics).screen({
       calibration: { kind: 'failed', fault: 'handsUnseen', text: '' },
     });
@@ -88,7 +86,7 @@ describe('a participant who is to be measured', () => {
 });
 
 describe('a participant before a round', () => {
-  test('cannot start what is still loading, and is told how long it lasts', () => {
+  test('cannot start a round that is still loading, and reads how long it lasts', () => {
     const one = participant(consent, demographics, measured);
     expect(one.session.step.kind).toBe('tutorial');
     const loading = one.screen({ prepared: { state: 'loading', reason: '' } });
@@ -113,7 +111,7 @@ describe('a participant before a round', () => {
 describe('a participant who plays', () => {
   const playing = () => participant(consent, demographics, measured, { type: 'start' });
 
-  test('is told for whom the game waits, and when it stands for another', () => {
+  test('reads for which participants the game waits, and when another one pauses it', () => {
     const one = playing();
     expect(one.screen({ playing: true, waitingFor: ['P02', 'P03'] })).toMatchObject({
       id: 'waiting',
@@ -135,7 +133,7 @@ describe('a participant with a questionnaire', () => {
   });
 });
 
-describe('where answers are', () => {
+describe('the upload status', () => {
   const safe = { unsent: 0, unsaved: 0, storageFault: null, online: true, refusal: null, lockedOut: false };
   test.each([
     [{}, 'Everything is saved.', false],
@@ -152,7 +150,7 @@ describe('where answers are', () => {
       'Call the experimenter: the server refuses 2 records (no such study). They stay here.',
       true,
     ],
-  ])('%j is said, and whether to worry', (change, text, worrying) => {
+  ])('%j is shown in a sentence, with whether data are at risk', (change, text, worrying) => {
     expect(uploadStatusText({ ...safe, ...change }, new Phrases('en'))).toEqual([text, worrying]);
   });
 });

@@ -16,7 +16,7 @@ describe('what scores in a round', () => {
     const { outcome, recording, landed } = playedRound({ paused });
     const { frames } = parseRecording(recording ?? '');
     const { clock } = outcome;
-    if (!clock) throw new Error('the outcome tells no clock');
+    if (!clock) throw new Error('the outcome has no clock');
     expect(outcome.events.length).toBeGreaterThan(3);
     for (const [index, { onset = Number.NaN }] of outcome.events.entries()) {
       const time = recordingTime(clock, onset);
@@ -28,7 +28,7 @@ describe('what scores in a round', () => {
   test('after the head was lost for three seconds too, though the game stood meanwhile', () => {
     const { outcome, landed } = playedRound({ paused: () => false, headless: (time) => time > 5 && time < 8 });
     const { clock, events } = outcome;
-    if (!clock) throw new Error('the outcome tells no clock');
+    if (!clock) throw new Error('the outcome has no clock');
     const [first, last] = [events[0], events.at(-1)];
     expect(events.map(({ onset = Number.NaN }) => recordingTime(clock, onset))).toEqual(
       landed.map((time) => expect.closeTo(time, 6)),
@@ -38,7 +38,7 @@ describe('what scores in a round', () => {
   });
 });
 
-test('second 0 of a round is told by the clock of the device, and every pause with its second', () => {
+test('the outcome gives second 0 of a round by the clock of the device, and every pause with its second', () => {
   const { outcome, began } = playedRound({ paused: (time) => time > 9 && time < 29 });
   expect(outcome.clock).toMatchObject({ start: began, epoch: epoch + began });
   expect(outcome.clock?.pauses).toHaveLength(1);

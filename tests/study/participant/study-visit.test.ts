@@ -16,7 +16,7 @@ import { browser, ofAnother } from './study-browser';
 import { place, studyServer } from './study-server';
 
 describe('the entrance', () => {
-  test('an address without a participant asks who takes part, and leads to the place that is told', async () => {
+  test('an address without a participant asks for the code, and leads to the place that is entered', async () => {
     const tab = await browser(await studyServer()).open({ participant: null, invitation: null });
     const form = tab.display.asked('participant');
     expect(form).toMatchObject({ complaint: null, known: { participant: null, invitation: null } });
@@ -25,7 +25,7 @@ describe('the entrance', () => {
     expect(tab.visit.state()).toMatchObject({ screen: 'participant', step: null, running: false });
   });
 
-  test('a wrong invitation is said once consent is given, and the place stays free', async () => {
+  test('a wrong invitation is reported after consent, and the place stays free', async () => {
     const server = await studyServer();
     const tab = await browser(server).open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
     expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
@@ -33,7 +33,7 @@ describe('the entrance', () => {
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
 
-  test('a text that was changed while it was read is read anew, and the place stays free', async () => {
+  test('a text that was changed while it was read is shown again, and the place stays free', async () => {
     const server = await studyServer();
     const { plan, store } = server;
     const tab = await browser(server).open();
@@ -50,7 +50,7 @@ describe('the entrance', () => {
   });
 
   test.each(['participant', 'consent'] as const)(
-    'who leaves at the first screen, when asked for %s, is thanked, and nothing is kept here or on the server',
+    'a participant who leaves at the first screen, the %s form, is thanked, and nothing is stored here or on the server',
     async (first) => {
       const server = await studyServer();
       const tab = await browser(server).open(first === 'participant' ? { invitation: null } : {});
@@ -65,7 +65,7 @@ describe('the entrance', () => {
     },
   );
 
-  test('a study that the server does not have, and a server that does not answer, are said', async () => {
+  test('an unknown study and a server that does not answer are reported', async () => {
     const server = await studyServer();
     const elsewhere = await browser(server).open({ study: 'another' });
     expect(elsewhere.display.asked('fault').text).toBe(
@@ -159,7 +159,7 @@ describe('a round', () => {
     await tab.exchange();
     if (what === 'the headset comes off') {
       tab.wear(false);
-      expect(tab.visit.idle).toBe(true);
+      expect(tab.visit.state().running).toBe(false);
       expect(tab.display.shown).toBe('trial-enter');
       tab.wear(true);
     } else {
@@ -190,10 +190,10 @@ describe('a round', () => {
     await tab.exchange();
     expect(tab.display.shown).toBe('paused');
     expect(archery.paused).toBe(true);
-    expect(tab.visit.paused).toBe(true);
+    expect(tab.visit.flow?.paused).toBe(true);
     tab.wear(false);
     tab.display.press('resume');
-    expect(tab.visit.paused).toBe(true);
+    expect(tab.visit.flow?.paused).toBe(true);
     tab.wear(true);
     expect(tab.display.shown).toBe('playing');
     expect(archery).toMatchObject({ paused: false, running: true });
@@ -236,7 +236,7 @@ describe('a round', () => {
     expect(tab.host.games.archery.running).toBe(false);
     tab.wear(true);
     expect(tab.host.games.archery.running).toBe(true);
-    expect(tab.visit.idle).toBe(false);
+    expect(tab.visit.state().running).toBe(true);
   });
 
   test('lies alike in both conditions, and the practice does not', async () => {
@@ -315,7 +315,7 @@ describe('a place that was released', () => {
     await server.experimenter.release('paper', 'P01');
     await tab.exchange();
     expect(tab.host.games.archery.running).toBe(false);
-    expect(tab.visit.idle).toBe(true);
+    expect(tab.visit.state().running).toBe(false);
     expect(tab.display.inHeadset?.id).toBe('locked-out');
     const form = tab.display.asked('locked-out');
     expect(form).toMatchObject({ participant: 'P01', unsent: 0 });

@@ -6,7 +6,7 @@ import { type ExperimenterClient, ServerRefusal } from '../../client/study-clien
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyInfo } from '../../model/progress/study-api';
 import { simulatedPlan, statedInWords } from '../../simulation/simulate-study';
-import { StudyAccess } from '../study-access';
+import { ExperimenterAccess } from '../experimenter-access';
 import {
   type NewStudy,
   type NewStudyActions,
@@ -25,7 +25,7 @@ const refreshEveryMs = 1500;
 /** The experimenter's page: one study, its participants and the actions on them. */
 class ExperimenterPage {
   readonly #content: HTMLElement;
-  readonly #access = new StudyAccess(
+  readonly #access = new ExperimenterAccess(
     () => this.#render(),
     (study) => void this.#open(study),
   );

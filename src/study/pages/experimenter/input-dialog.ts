@@ -2,7 +2,7 @@ import { button, element } from 'threepoint-ui/element';
 import { labelled } from 'threepoint-ui/fields';
 
 /** The content of a dialog and the button that confirms it. */
-interface Question {
+interface DialogContent {
   readonly content: readonly Node[];
   readonly confirm: HTMLButtonElement;
 }
@@ -11,7 +11,7 @@ interface Question {
  * Opens a dialog with a title, content and a button to cancel; resolves with the answer, or with null if it is
  * cancelled.
  */
-export function askInDialog<T>(title: string, ask: (answer: (value: T) => void) => Question): Promise<T | null> {
+export function askInDialog<T>(title: string, ask: (answer: (value: T) => void) => DialogContent): Promise<T | null> {
   return new Promise((resolve) => {
     const dialog = element('dialog', { 'aria-label': title });
     const close = (value: T | null) => {
@@ -34,7 +34,7 @@ export function askInDialog<T>(title: string, ask: (answer: (value: T) => void) 
 }
 
 /** The texts of a dialog that asks for a sentence. */
-export interface SentenceQuestion {
+export interface SentenceDialog {
   readonly title: string;
   readonly label: string;
   /** The label of the confirming button. */
@@ -44,7 +44,7 @@ export interface SentenceQuestion {
 }
 
 /** Asks for a sentence in a dialog; resolves with null if it is cancelled. */
-export function askForSentence({ title, label, confirm, extra = [] }: SentenceQuestion): Promise<string | null> {
+export function askForSentence({ title, label, confirm, extra = [] }: SentenceDialog): Promise<string | null> {
   const text = element('textarea', { maxlength: 500, 'aria-label': label });
   return askInDialog<string>(title, (answer) => {
     const go = button(confirm, () => answer(text.value.trim()), { class: 'primary', disabled: true });

@@ -2,7 +2,7 @@ import { offerDownload } from 'threepoint-ui/downloads';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import type { ExperimenterClient } from '../../client/study-client';
 import { type OpenStudy, receiptText } from './experimenter-view';
-import { askForSentence, type SentenceQuestion } from './input-dialog';
+import { askForSentence, type SentenceDialog } from './input-dialog';
 import type { ParticipantActions } from './participant-row';
 import { askHowToVoid, isIn } from './void-block-dialog';
 
@@ -32,7 +32,7 @@ export async function download(
 /** Asks for a sentence and acts with it; nothing happens if the experimenter cancels. */
 async function withSentence(
   attempt: Attempt,
-  question: SentenceQuestion,
+  question: SentenceDialog,
   act: (client: ExperimenterClient, sentence: string) => Promise<string>,
 ): Promise<void> {
   const sentence = await askForSentence(question);

@@ -58,7 +58,7 @@ export function participantRow(
       stateBadge(state, silence),
       session ? placeText(schedule, session.step) : '',
       session?.remainingSeconds != null && session.kind !== 'end' ? clockText(session.remainingSeconds) : '',
-      session ? heardText(silence) : '',
+      session ? lastSeenText(silence) : '',
       String(records),
       actionsCell(state, actions),
       element('div', { class: 'soft' }, ...orderTexts(schedule, plan).map((line) => element('div', {}, line))),
@@ -67,7 +67,7 @@ export function participantRow(
   };
 }
 
-const heardText = (seconds: number) =>
+const lastSeenText = (seconds: number) =>
   seconds < 120
     ? `${Math.max(0, Math.round(seconds))} s ago`
     : seconds < 7200

@@ -4,20 +4,22 @@ import { button, element } from 'threepoint-ui/element';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { swarmOffsets } from './swarm-layout';
 
-/** The labels of the two conditions or cohorts that are compared. */
-interface ComparedLabels {
-  readonly first: string;
-  readonly second: string;
-}
-
-export interface ChartOptions {
+/** Comparisons on one scale, drawn side by side. */
+export interface Chart {
+  readonly comparisons: readonly Comparison[];
   readonly title: string;
-  readonly labels: ComparedLabels;
   /** Returns the name of a comparison below the axis. */
   readonly nameOf: (comparison: Comparison) => string;
   readonly axis: string;
   /** Ends of the scale. */
   readonly domain: readonly [number, number];
+  /** The unit that has one value each. */
+  readonly each: 'participant' | 'group';
+}
+
+/** The labels of two conditions or cohorts, and whether the pictures are marked as simulated. */
+export interface ChartLegend {
+  readonly labels: { readonly first: string; readonly second: string };
   readonly simulated: boolean;
 }
 
@@ -43,7 +45,8 @@ const noteLines = (note: string, width: number, letter = 6.3): readonly string[]
 /** Adds the title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
 function headed(
   plot: SVGSVGElement | HTMLElement,
-  { title, labels, simulated }: ChartOptions,
+  title: string,
+  { labels, simulated }: ChartLegend,
   note: string,
 ): SVGSVGElement {
   if (!(plot instanceof SVGSVGElement)) throw new Error('results/charts: expected a plain SVG from the plot');
@@ -84,7 +87,7 @@ const shared = {
 } as const;
 
 /** Answers are whole numbers; other scales choose their own ticks. */
-const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions, 'domain'>) =>
+const ticksOf = ({ domain: [low, high] }: Pick<Chart, 'domain'>) =>
   high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
 
 /** Formats ends of scales as whole numbers: "3", not "3.0". */
@@ -95,25 +98,25 @@ const height = 360;
 
 /** Draws comparisons side by side; `plot` is what differs between charts. */
 function drawn(
-  comparisons: readonly Comparison[],
-  options: ChartOptions,
+  chart: Chart,
+  legend: ChartLegend,
   note: string,
   { padding, ...plot }: Plot.PlotOptions & { readonly padding: number },
 ): SVGSVGElement {
   const picture = Plot.plot({
     ...shared,
-    width: widthFor(comparisons.length),
+    width: widthFor(chart.comparisons.length),
     height,
-    fx: { label: null, domain: comparisons.map(options.nameOf), padding },
-    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options), tickFormat: tickText },
+    fx: { label: null, domain: chart.comparisons.map(chart.nameOf), padding },
+    y: { label: null, domain: [...chart.domain], grid: true, ticks: ticksOf(chart), tickFormat: tickText },
     color: { domain: [...sides], range: [colours.first, colours.second] },
     ...plot,
   });
-  return headed(picture as SVGSVGElement, options, `${options.axis}; ${note}`);
+  return headed(picture, chart.title, legend, `${chart.axis}; ${note}`);
 }
 
 /** Returns the mean of each side with its 95 % confidence interval, clipped to the scale. */
-const meansOf = (comparisons: readonly Comparison[], { nameOf, domain }: ChartOptions) =>
+const meansOf = ({ comparisons, nameOf, domain }: Chart) =>
   comparisons.flatMap((comparison) =>
     sides.flatMap((side) => {
       const summary = comparison[side];
@@ -126,10 +129,10 @@ const meansOf = (comparisons: readonly Comparison[], { nameOf, domain }: ChartOp
   );
 
 /** Draws means as bars with their 95 % confidence intervals, as figures 11 to 14 of the paper. */
-export function barChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
-  const [low] = options.domain;
-  const bars = meansOf(comparisons, options);
-  return drawn(comparisons, options, 'mean and 95 % confidence interval', {
+export function barChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
+  const [low] = chart.domain;
+  const bars = meansOf(chart);
+  return drawn(chart, legend, 'mean and 95 % confidence interval', {
     padding: 0.25,
     x: { axis: null, domain: [...sides], padding: 0.12 },
     marks: [
@@ -152,9 +155,9 @@ export function barChart(comparisons: readonly Comparison[], options: ChartOptio
 }
 
 /** Draws every participant (or group) as a line from one condition to the other. Equal lines make a thicker one. */
-export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
-  const lines = comparisons.flatMap((comparison) => {
-    const of = options.nameOf(comparison);
+export function pairedChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
+  const lines = chart.comparisons.flatMap((comparison) => {
+    const of = chart.nameOf(comparison);
     const alike = new Map<string, { first: number; second: number; count: number }>();
     comparison.values.first.forEach((first, index) => {
       const second = comparison.values.second[index] as number;
@@ -169,8 +172,8 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
       ];
     });
   });
-  const means = meansOf(comparisons, options);
-  return drawn(comparisons, options, `left ${options.labels.second}, right ${options.labels.first}`, {
+  const means = meansOf(chart);
+  return drawn(chart, legend, `left ${legend.labels.second}, right ${legend.labels.first}`, {
     padding: 0.2,
     x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
     color: {
@@ -199,11 +202,9 @@ const dotDiameter = 7;
 const strip = { mean: 0.07, dots: 0.29, width: 0.34 } as const;
 
 /** Draws every participant (or group) of two cohorts as a dot next to means and 95 % confidence intervals. */
-export function stripChart(
-  comparisons: readonly Comparison[],
-  options: ChartOptions & { readonly each: string },
-): SVGSVGElement {
-  const [low, high] = options.domain;
+export function stripChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
+  const { comparisons, nameOf } = chart;
+  const [low, high] = chart.domain;
   const width = widthFor(comparisons.length, 130);
   const padding = 0.1;
   const comparisonWidth = ((width - shared.marginLeft - 20) * (1 - padding)) / (comparisons.length + padding);
@@ -217,15 +218,15 @@ export function stripChart(
         (strip.width * comparisonWidth) / dotDiameter,
       );
       return values.map((value, index) => ({
-        of: options.nameOf(comparison),
+        of: nameOf(comparison),
         side,
         value,
         x: outwards[side] * strip.dots + ((beside[index] as number) * dotDiameter) / comparisonWidth,
       }));
     }),
   );
-  const means = meansOf(comparisons, options).map((one) => ({ ...one, x: outwards[one.side] * strip.mean }));
-  return drawn(comparisons, options, `each dot a ${options.each}, mean and 95 % confidence interval`, {
+  const means = meansOf(chart).map((one) => ({ ...one, x: outwards[one.side] * strip.mean }));
+  return drawn(chart, legend, `each dot a ${chart.each}, mean and 95 % confidence interval`, {
     padding,
     width,
     x: { axis: null, domain: [-0.5, 0.5] },

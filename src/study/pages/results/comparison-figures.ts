@@ -4,36 +4,26 @@ import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
-import type { Comparison } from '../../model/results/compare-conditions';
-import { barChart, figure, pairedChart, stripChart } from './charts';
+import { barChart, type Chart, figure, pairedChart, stripChart } from './charts';
 import type { Compared } from './shown-results';
 
-/** Comparisons on one scale in one chart. */
-interface Chart {
-  readonly comparisons: readonly Comparison[];
-  readonly title: string;
+/** A chart of the page with the name of its files. */
+interface NamedChart extends Chart {
   readonly file: string;
-  readonly axis: string;
-  readonly domain: readonly [number, number];
-  readonly nameOf: (one: Comparison) => string;
   /** A note after the caption of the means of two conditions. */
   readonly note: string;
-  /** The unit that has one value each. */
-  readonly each: 'participant' | 'group';
 }
 
 /** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
-export function chartFigures({ results, labels, between }: Compared, chart: Chart): HTMLElement {
-  const { comparisons, title, note, each } = chart;
+export function chartFigures({ results, labels, between }: Compared, chart: NamedChart): HTMLElement {
+  const { title, note, each } = chart;
   const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
-  const options = { ...chart, labels, simulated: results.study.simulated };
-  const every = between
-    ? stripChart(comparisons, options)
-    : pairedChart(comparisons, { ...options, title: `${title}, pairs` });
+  const legend = { labels, simulated: results.study.simulated };
+  const every = between ? stripChart(chart, legend) : pairedChart({ ...chart, title: `${title}, pairs` }, legend);
   return element(
     'div',
     { class: 'figures' },
-    figure(barChart(comparisons, options), `${title}, means${between ? '' : note}`, file),
+    figure(barChart(chart, legend), `${title}, means${between ? '' : note}`, file),
     figure(every, `${title}, every ${each}`, `${file}-${between ? 'strip' : 'pairs'}`),
   );
 }
@@ -52,10 +42,10 @@ const paperFigures: Readonly<Record<string, string>> = {
 };
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
-export function questionCharts({ results, answers }: Compared): readonly Chart[] {
+export function questionCharts({ results, answers }: Compared): readonly NamedChart[] {
   const { asked } = results;
   const [language] = languagesOf(results.study.plan);
-  const charts = new Map<string, Chart>();
+  const charts = new Map<string, NamedChart>();
   for (const one of answers) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
@@ -85,9 +75,9 @@ export function questionCharts({ results, answers }: Compared): readonly Chart[]
 }
 
 /** Returns a chart for each scale, with all tasks side by side. */
-export function scaleCharts({ results, scales }: Compared): readonly Chart[] {
+export function scaleCharts({ results, scales }: Compared): readonly NamedChart[] {
   const { asked } = results;
-  const charts = new Map<string, Chart>();
+  const charts = new Map<string, NamedChart>();
   for (const one of scales) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const scale = questionnaire?.scales.find(({ id }) => id === one.asked?.question);
@@ -109,7 +99,7 @@ export function scaleCharts({ results, scales }: Compared): readonly Chart[] {
 }
 
 /** Returns a chart for each task that has scores. */
-export const scoreCharts = ({ results, percent }: Compared): readonly Chart[] =>
+export const scoreCharts = ({ results, percent }: Compared): readonly NamedChart[] =>
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);

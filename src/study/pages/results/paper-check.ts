@@ -2,7 +2,7 @@ import { element } from 'threepoint-ui/element';
 import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../../model/results/paper-tables';
 import { paperTable } from '../../model/results/result-tables';
 import { tableNode } from '../table';
-import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
+import { bar, csvButton, fixed, paperAboutOf, pText } from './result-cells';
 
 /** Returns the paper's printed numbers, recomputed from its t values and tables. */
 export function paperCheck(): readonly Node[] {
@@ -43,7 +43,7 @@ export function paperCheck(): readonly Node[] {
         ],
       })),
     ),
-    element('div', { class: 'bar' }, csvButton(paperTable(), 'paper-check')),
+    bar(csvButton(paperTable(), 'paper-check')),
     element(
       'ul',
       {},

@@ -35,8 +35,8 @@ export const paperAboutOf = (id: string): string =>
     .find((question) => question.id === id)?.about ?? '';
 
 /** Returns a button that saves a table as `file`.csv. */
-export const csvButton = (table: Table, file: string) =>
-  button('CSV', () => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)), { class: 'small' });
+export const csvButton = (table: Table, file: string, label = 'CSV') =>
+  button(label, () => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)), { class: 'small' });
 
 /** Returns buttons in a row. */
 export const bar = (...buttons: readonly Node[]) => element('div', { class: 'bar' }, ...buttons);

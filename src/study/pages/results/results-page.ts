@@ -3,7 +3,7 @@ import { studyTitle } from '../../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
 import { button, element, pageElement } from 'threepoint-ui/element';
 import { chooser, fileField } from 'threepoint-ui/fields';
-import { StudyAccess } from '../study-access';
+import { ExperimenterAccess } from '../experimenter-access';
 import { openStudyFile } from '../study-file';
 import { paperCheck } from './paper-check';
 import { firstSelection, type Selection, simulatedNotice, studyResults } from './results-view';
@@ -12,7 +12,7 @@ import type { ShownStudy } from './shown-results';
 /** The page of results: a study of this server or of an export, and what it shows about it. */
 class ResultsPage {
   readonly #content: HTMLElement;
-  readonly #access = new StudyAccess(
+  readonly #access = new ExperimenterAccess(
     () => this.#render(),
     (study) => void this.#load(study),
   );

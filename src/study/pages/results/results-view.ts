@@ -1,15 +1,13 @@
-import { offerDownload } from 'threepoint-ui/downloads';
-import { button, element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui/element';
 import { type Choice, chooser } from 'threepoint-ui/fields';
 import type { StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { cohortViews } from '../../model/results/exported-results';
 import type { Exclusion } from '../../model/results/measures';
 import { studyTables } from '../../model/tables/study-tables';
-import { tidyCsv } from '../../model/tables/tidy-csv';
 import { frameTimeParts } from './frame-time-results';
 import { overallResults } from './overall-results';
-import { bar } from './result-cells';
+import { bar, csvButton } from './result-cells';
 import { type ShownResults, type ShownStudy, shownResults } from './shown-results';
 import { cohortResults, pairResults } from './two-sided-results';
 
@@ -31,19 +29,16 @@ export function firstSelection(plan: Pick<StudyPlan, 'conditions' | 'cohorts'>):
   return { conditions: pairOf(plan.conditions), cohorts: pairOf(plan.cohorts ?? []), under };
 }
 
-/** Returns lines such as "P03, P07: voided: the phone rang (archery)"; equal reasons share a line. */
+/** Returns lines such as "P03 (archery, ball): voided: the phone rang", one for each participant and reason. */
 function exclusionList(all: readonly Exclusion[]): readonly string[] {
-  const lines = new Map<string, { who: Set<string>; of: Set<string> }>();
+  const lines = new Map<string, { readonly participant: string; readonly reason: string; readonly of: Set<string> }>();
   for (const { participant, of, reason } of all) {
-    const line = lines.get(`${participant} ${reason}`) ?? { who: new Set(), of: new Set() };
-    line.who.add(participant);
+    const key = `${participant} ${reason}`;
+    const line = lines.get(key) ?? { participant, reason, of: new Set<string>() };
     line.of.add(of);
-    lines.set(`${participant} ${reason}`, line);
+    lines.set(key, line);
   }
-  return [...lines].map(([key, { who, of }]) => {
-    const [participant] = [...who];
-    return `${participant} (${[...of].join(', ')}): ${key.slice((participant?.length ?? 0) + 1)}`;
-  });
+  return [...lines.values()].map(({ participant, reason, of }) => `${participant} (${[...of].join(', ')}): ${reason}`);
 }
 
 function demographicsText(records: readonly StudyRecord[]): string {
@@ -189,13 +184,5 @@ function leftOutParts({ study: { records } }: ShownResults, all: readonly Exclus
 
 const exportParts = ({ study: { plan, records }, fileOf }: ShownResults): readonly Node[] => [
   element('h2', {}, 'Tables of the export'),
-  bar(
-    ...studyTables(records, plan).map((table) =>
-      button(
-        `${table.name}.csv`,
-        () => offerDownload(`${fileOf(table.name)}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)),
-        { class: 'small' },
-      ),
-    ),
-  ),
+  bar(...studyTables(records, plan).map((table) => csvButton(table, fileOf(table.name), `${table.name}.csv`))),
 ];

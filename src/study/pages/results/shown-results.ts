@@ -1,19 +1,15 @@
-import { questionnairesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
+import { questionnairesOf, taskTitle } from '../../model/plan/plan';
 import type { PlanVersion } from '../../model/progress/study-api';
 import type { Questionnaire } from '../../model/questionnaires/questionnaires';
-import type { StudyRecord } from '../../model/records/study-record';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { aboutIn, measuresIn, type StudyMeasures } from '../../model/results/exported-results';
 import { isPlanned, type Measured } from '../../model/results/measures';
 import type { TableFacts } from '../../model/results/result-tables';
+import type { OpenedStudy } from '../study-file';
 
 /** The data from which results are computed. */
-export interface ShownStudy {
-  readonly plan: StudyPlan;
-  readonly simulated: boolean;
-  readonly records: readonly StudyRecord[];
-  /** The version of the plan that the records follow, if the plan has several. */
-  readonly planVersion?: number;
+export interface ShownStudy extends OpenedStudy {
+  /** All versions of the plan, if it has several and the study is on the server. */
   readonly versions?: readonly PlanVersion[];
 }
 

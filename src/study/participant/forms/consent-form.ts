@@ -1,8 +1,7 @@
 import { button, element } from 'threepoint-ui/element';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { complaintLine, type FormOf, paragraphs, row } from './form-parts';
-import { languageChoice } from './language-choice';
+import { complaintLine, type FormOf, languageChoice, paragraphs, row } from './form-parts';
 
 function box() {
   const input = element('input', { type: 'checkbox' });
@@ -31,10 +30,10 @@ export function consentForm(
     phrases = phrasesOf(study, language);
     complaint.hide();
     onLanguage(phrases);
-    read();
+    showTexts();
   });
 
-  function read(): void {
+  function showTexts(): void {
     const { language, say } = phrases;
     choice.label(say('language'));
     kicker.textContent = say('consent.kicker', { version: consent.version });
@@ -61,7 +60,7 @@ export function consentForm(
   agreed.input.addEventListener('change', () => {
     go.disabled = !agreed.input.checked;
   });
-  read();
+  showTexts();
   return [
     kicker,
     ...(languages.length > 1 ? [choice.node] : []),

@@ -1,10 +1,45 @@
 import { button, element } from 'threepoint-ui/element';
 import type { Phrases } from '../../model/phrases/phrases';
-import { dotNodes, questionNodes } from '../questions/question-card';
-import type { StudyScreen } from '../questions/study-screen';
+import { questionView } from '../questions/question-views';
+import type { ScreenQuestion, StudyScreen } from '../questions/study-screen';
 import { formNodes, formNote } from './form-nodes';
 import { paragraphs } from './form-parts';
 import type { StudyForm } from './study-form';
+
+const phraseOfState = {
+  answered: 'question.answered',
+  open: 'question.open',
+  missing: 'question.open',
+  optional: 'question.optional',
+} as const;
+
+/** Returns a button for each question in order. */
+const dotNodes = (question: ScreenQuestion): readonly Node[] =>
+  question.all.map(({ id, state }, index) =>
+    button(String(index + 1), () => question.goTo(index), {
+      'data-id': `go-${id}`,
+      class: `dot ${state}`,
+      'aria-label': question.phrases.say(phraseOfState[state], { number: index + 1 }),
+      ...(index + 1 === question.number && { 'aria-current': 'step' }),
+    }),
+  );
+
+/** Returns the text of a question and its field, without the dots. */
+const questionNodes = ({ id, text, language, optional, field, phrases }: ScreenQuestion): readonly Node[] => [
+  element(
+    'fieldset',
+    { class: 'scale', lang: language },
+    element(
+      'legend',
+      {},
+      text,
+      optional
+        ? element('span', { class: 'soft', lang: phrases.spoken }, ` ${phrases.say('question.mayStayOpen')}`)
+        : element('span', { class: 'must', lang: phrases.spoken, title: phrases.say('question.needed') }, ' *'),
+    ),
+    ...questionView(field).card(field, id, phrases),
+  ),
+];
 
 const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): HTMLButtonElement =>
   button(label, act, {
@@ -13,19 +48,19 @@ const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): H
     disabled: look === 'off',
   });
 
-const put = (node: HTMLElement, text: string | null) => {
+const setText = (node: HTMLElement, text: string | null) => {
   node.hidden = text === null;
   if (text !== null && node.textContent !== text) node.textContent = text;
 };
 
 /**
- * Replaces the content of the card. `held`: the keyboard focus was in the card and moves to the new heading, which
+ * Replaces the content of the card. `hadFocus`: the keyboard focus was in the card and moves to the new heading, which
  * screen readers read out.
  */
-function fill(card: HTMLElement, nodes: readonly Node[], held: boolean): void {
+function replaceContent(card: HTMLElement, nodes: readonly Node[], hadFocus: boolean): void {
   card.replaceChildren(...nodes);
   card.scrollTop = 0;
-  const words = held ? card.querySelector<HTMLElement>('h1, legend') : null;
+  const words = hadFocus ? card.querySelector<HTMLElement>('h1, legend') : null;
   if (!words) return;
   words.tabIndex = -1;
   words.focus({ preventScroll: true });
@@ -50,7 +85,7 @@ export function createStudyCard(parent: HTMLElement = document.body) {
   let shownKey = '';
   let shownDots = '';
 
-  const speak = ({ say, spoken }: Phrases) => {
+  const setLanguage = ({ say, spoken }: Phrases) => {
     card.lang = spoken;
     card.ariaLabel = say('study');
     bar.ariaLabel = say('progress');
@@ -67,13 +102,13 @@ export function createStudyCard(parent: HTMLElement = document.body) {
         return;
       }
       const { question, text, title, buttons } = screen;
-      speak(screen.phrases);
+      setLanguage(screen.phrases);
       // Fields show their answers themselves. Rebuilding the card at every key would lose the cursor.
       const key = JSON.stringify([screen.id, title, text, buttons.map(({ id, label, look }) => [id, label, look])]);
       if (key !== shownKey) {
         shownKey = key;
         const focused = document.activeElement?.getAttribute('data-id');
-        const held = card.contains(document.activeElement);
+        const hadFocus = card.contains(document.activeElement);
         const another = card.dataset.screen !== screen.id;
         card.dataset.screen = screen.id;
         content.replaceChildren(
@@ -81,7 +116,7 @@ export function createStudyCard(parent: HTMLElement = document.body) {
         );
         row.replaceChildren(...buttons.map(buttonNode));
         const parts = [kicker, content, figure, bar, hint, row, footnote];
-        if (another) fill(card, parts, held);
+        if (another) replaceContent(card, parts, hadFocus);
         else {
           card.replaceChildren(...parts);
           // A rebuilt screen keeps the keyboard focus when its card is rebuilt.
@@ -94,23 +129,23 @@ export function createStudyCard(parent: HTMLElement = document.body) {
         if (state !== shownDots) dots.replaceChildren(...dotNodes(question));
         shownDots = state;
       }
-      put(kicker, screen.kicker);
+      setText(kicker, screen.kicker);
       kicker.classList.toggle('trouble', screen.trouble);
-      put(figure, screen.figure);
+      setText(figure, screen.figure);
       bar.hidden = screen.part === null;
       if (screen.part !== null) bar.value = screen.part;
-      put(hint, screen.hint);
-      put(footnote, screen.footnote);
+      setText(hint, screen.hint);
+      setText(footnote, screen.footnote);
     },
     /** Shows a form instead of a screen; it is built once until something else is shown. */
     ask(form: StudyForm): void {
       layer.hidden = false;
-      speak(form.phrases);
-      put(footnote, formNote(form));
+      setLanguage(form.phrases);
+      setText(footnote, formNote(form));
       if (shownKey === `form ${form.kind}`) return;
       shownKey = `form ${form.kind}`;
       card.dataset.screen = form.kind;
-      fill(card, [...formNodes(form, speak), footnote], card.contains(document.activeElement));
+      replaceContent(card, [...formNodes(form, setLanguage), footnote], card.contains(document.activeElement));
     },
   };
 }

@@ -90,7 +90,7 @@ class PreviewPage {
     });
     this.#walk = walk;
     // Another participant keeps the screen, if there is one with this id.
-    if (before) walk.read(before.language);
+    if (before) walk.setLanguage(before.language);
     const asked = before?.stop.id ?? decodeURIComponent(location.hash.slice(1));
     walk.goTo(walk.stops.findIndex(({ id }) => id === asked));
   }
@@ -172,7 +172,7 @@ class PreviewPage {
         this.#begin(participant),
       ),
       ...(languages.length > 1
-        ? [chooser('Language', languages.map(choiceOf), walk.language, (language) => walk.read(language))]
+        ? [chooser('Language', languages.map(choiceOf), walk.language, (language) => walk.setLanguage(language))]
         : []),
       element(
         'div',

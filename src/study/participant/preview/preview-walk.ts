@@ -9,8 +9,8 @@ import type { StudyForm } from '../forms/study-form';
 import { localizedRefusal } from '../localized-reasons';
 import { QuestionnaireState } from '../questionnaire-state';
 import type { StudyScreen } from '../questions/study-screen';
-import type { ScreenActions, ShownSession, StudySituation } from '../questions/study-situation';
 import { screenOf } from '../screens/study-screens';
+import type { ScreenActions, ShownSession, StudySituation } from '../screens/study-situation';
 import type { UploadStatus } from '../session/participant-session';
 import { type PreviewStop, previewStops } from './preview-stops';
 
@@ -70,7 +70,7 @@ class PreviewSession implements ShownSession {
     this.#progress = { ...progress, step, paused: false, draft: this.#drafts.get(step) ?? {} };
   }
 
-  read(language: string): void {
+  setLanguage(language: string): void {
     this.#progress = { ...this.#progress, language };
   }
 
@@ -96,7 +96,7 @@ export interface PreviewWalkOptions {
 export class PreviewWalk {
   readonly stops: readonly PreviewStop[];
   readonly #session: PreviewSession;
-  readonly #questionnaireState: QuestionnaireState;
+  readonly #questionnaire: QuestionnaireState;
   readonly #onChange: () => void;
   readonly #actions: ScreenActions;
   readonly #participant: string;
@@ -111,16 +111,15 @@ export class PreviewWalk {
     this.#participant = participant;
     this.#withdrawalPage = withdrawalPage;
     this.#session = new PreviewSession(plan, participant, languagesOf(plan)[0]);
-    this.#questionnaireState = new QuestionnaireState(this.#session);
+    this.#questionnaire = new QuestionnaireState(this.#session);
     this.#onChange = onChange;
     const next = () => this.next();
     this.#actions = {
       apply: (event) => this.#apply(event),
       goTo: (index) => this.#goToQuestion(index),
-      choose: (question, value) => this.#showRefusal(this.#questionnaireState.choose(question, value)),
-      type: (question, typed) => this.#showRefusal(this.#questionnaireState.type(question, typed)),
-      submit: () =>
-        this.#questionnaireState.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion(),
+      choose: (question, value) => this.#showRefusal(this.#questionnaire.choose(question, value)),
+      type: (question, typed) => this.#showRefusal(this.#questionnaire.type(question, typed)),
+      submit: () => (this.#questionnaire.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion()),
       calibrate: next,
       enterVr: next,
       prepareAgain: next,
@@ -155,8 +154,8 @@ export class PreviewWalk {
     this.#onChange();
   }
 
-  read(language: string): void {
-    this.#session.read(language);
+  setLanguage(language: string): void {
+    this.#session.setLanguage(language);
     this.#onChange();
   }
 
@@ -174,8 +173,8 @@ export class PreviewWalk {
     const { paused, unwell } = this.#session.progress;
     const leaves = this.#session.step.id !== step;
     if (leaves || paused || unwell) this.#session.goTo(step);
-    if (leaves) this.#questionnaireState.enterStep();
-    this.#stand(index);
+    if (leaves) this.#questionnaire.enterStep();
+    this.#moveTo(index);
   }
 
   #nearest(index: number): number {
@@ -183,10 +182,10 @@ export class PreviewWalk {
   }
 
   /** Moves to a stop within the present step. */
-  #stand(index: number): void {
+  #moveTo(index: number): void {
     this.#at = this.#nearest(index);
     this.#stopping = false;
-    this.#questionnaireState.goTo(this.stop.question);
+    this.#questionnaire.goTo(this.stop.question);
     this.#showRefusal(null);
   }
 
@@ -244,9 +243,7 @@ export class PreviewWalk {
     return {
       session: this.#session,
       inSession: kind !== 'enter',
-      question: this.#questionnaireState.question,
-      typed: this.#questionnaireState.typed,
-      triedToSubmit: this.#questionnaireState.triedToSubmit,
+      questionnaire: this.#questionnaire,
       calibration: kind === 'measuring' ? measuring : null,
       prepared: { state: 'ready', reason: '' },
       refusal: this.#refusal,
@@ -282,20 +279,18 @@ export class PreviewWalk {
     const { step } = this.#session;
     if (step.id === id) this.#showRefusal(refusal);
     // Not by goTo, because the answers that were handed in may lead to the question whether to stop.
-    else this.#stand(this.stops.findIndex((stop) => stop.step === step.id));
+    else this.#moveTo(this.stops.findIndex((stop) => stop.step === step.id));
   }
 
   #goToQuestion(index: number): void {
-    this.#questionnaireState.goTo(index);
+    this.#questionnaire.goTo(index);
     this.#followQuestion();
   }
 
   /** Moves the position in the list to the question on display. */
   #followQuestion(): void {
     const { step } = this.stop;
-    this.#at = this.stops.findIndex(
-      (stop) => stop.step === step && stop.question === this.#questionnaireState.question,
-    );
+    this.#at = this.stops.findIndex((stop) => stop.step === step && stop.question === this.#questionnaire.question);
     this.#showRefusal(null);
   }
 

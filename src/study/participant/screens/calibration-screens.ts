@@ -2,8 +2,8 @@ import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import type { Phrases } from '../../model/phrases/phrases';
 import type { RemoteTerms } from '../../model/plan/remote-setup';
 import type { StudyScreen } from '../questions/study-screen';
-import type { StudySituation } from '../questions/study-situation';
 import { askToStopButton, calibrateButton, enterButton, pauseButton, type ScreenParts } from './screen-parts';
+import type { StudySituation } from './study-situation';
 
 /** Returns the screens before and during a measurement: putting the headset on, faults of the set-up, measuring. */
 export function calibrationScreen(

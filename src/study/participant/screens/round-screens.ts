@@ -1,7 +1,7 @@
 import type { PlayedStep } from '../../model/plan/schedule';
 import type { StudyScreen } from '../questions/study-screen';
-import type { StudySituation } from '../questions/study-situation';
 import { enterButton, pauseButton, type ScreenParts } from './screen-parts';
+import type { StudySituation } from './study-situation';
 
 /** Returns the screen of a round or a practice, or null while it is played. */
 export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: StudySituation): StudyScreen | null {

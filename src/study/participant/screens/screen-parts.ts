@@ -1,7 +1,7 @@
 import type { PhraseKey } from '../../model/phrases/catalogue';
 import type { Phrases } from '../../model/phrases/phrases';
 import type { ScreenButton, StudyScreen } from '../questions/study-screen';
-import type { ScreenActions } from '../questions/study-situation';
+import type { ScreenActions } from './study-situation';
 
 /** The parts that the screens of a step share by default. */
 export type ScreenBase = Pick<

@@ -4,16 +4,15 @@ import { taskTitle } from '../../model/plan/plan';
 import type { RemoteTerms } from '../../model/plan/remote-setup';
 import type { StudyStep } from '../../model/plan/schedule';
 import { clockText, type Progress } from '../../model/progress/progress';
-import { screenQuestions } from '../questionnaire-state';
-import { questionPart } from '../questions/question-screen';
 import type { StudyScreen } from '../questions/study-screen';
-import type { ScreenActions, ShownSession, StudySituation } from '../questions/study-situation';
 import type { UploadStatus } from '../session/participant-session';
 import { noStorage } from '../session/session-store';
 import { silentStorage } from '../session/storage-timeout';
 import { calibrationScreen } from './calibration-screens';
+import { questionScreen } from './question-screen';
 import { roundScreen } from './round-screens';
 import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
+import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 
 /** Why the device could not store, in the participant's language where the page knows the reason. */
 function storageReason(fault: string, say: Phrases['say']): string {
@@ -183,34 +182,5 @@ function endScreen({ base, phrases }: ScreenParts, { session, withdrawalPage }: 
       say('end.withdraw', { address: withdrawalPage.replace(/^https?:\/\//, '') }),
     ],
     buttons: [],
-  };
-}
-
-function questionScreen(parts: ScreenParts, situation: StudySituation): StudyScreen {
-  const { base, phrases, actions } = parts;
-  const { say } = phrases;
-  const { session, question: index } = situation;
-  const questions = screenQuestions(session);
-  const at = Math.min(index, questions.length - 1);
-  const last = at === questions.length - 1;
-  const left = session.remaining();
-  const time =
-    left === null ? '' : left > 0 ? say('question.timeLeft', { time: clockText(left) }) : say('question.takeTime');
-  const { question, hint } = questionPart(questions, at, situation, actions);
-  return {
-    ...base,
-    id: `question-${question.id}`,
-    title: question.text,
-    text: [],
-    hint,
-    question,
-    buttons: [
-      { id: 'back', label: say('back'), look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
-      pauseButton(parts),
-      last
-        ? { id: 'submit', label: say('submit'), look: 'primary', act: actions.submit }
-        : { id: 'next', label: say('next'), look: 'primary', act: () => actions.goTo(at + 1) },
-    ],
-    footnote: time ? `${time} · ${base.footnote}` : base.footnote,
   };
 }

@@ -1,4 +1,5 @@
-import { ServerRefusal, ServerUnreachable } from '../../client/study-client';
+import { ServerUnreachable } from '../../client/study-client';
+import { refusalOf } from './send-records';
 import type { SessionStore } from './session-store';
 
 /** The most exchanges that pass before failed uploads are repeated. Each may be 16 MiB. */
@@ -59,7 +60,11 @@ export class MotionSender {
     let refusal: string | null = null;
     try {
       for (const { trial, recording } of this.#store.motion) {
-        refusal = (await this.#sendOrRefuse(trial, recording)) ?? refusal;
+        const refused = await refusalOf(async () => {
+          await this.#options.send(trial, recording);
+          await this.#store.acknowledgeMotion(trial);
+        });
+        refusal = refused ?? refusal;
       }
       this.#restAfter(refusal !== null);
     } catch (error) {
@@ -67,17 +72,6 @@ export class MotionSender {
       if (!(error instanceof ServerUnreachable)) this.#options.onFault(error);
     }
     this.#refusal = refusal;
-  }
-
-  async #sendOrRefuse(trial: string, recording: string): Promise<string | null> {
-    try {
-      await this.#options.send(trial, recording);
-    } catch (error) {
-      if (!(error instanceof ServerRefusal) || error.status === 401) throw error;
-      return error.message;
-    }
-    await this.#store.acknowledgeMotion(trial);
-    return null;
   }
 
   #restAfter(failed: boolean): void {

@@ -77,12 +77,13 @@ export class ParticipantSession {
     this.#onCommand = onCommand;
   }
 
-  get #session(): KeptSession {
+  /** The session as this device stores it. */
+  get kept(): KeptSession {
     return this.#store.session;
   }
 
   get plan() {
-    return this.#session.plan;
+    return this.kept.plan;
   }
 
   /** The phrases of the page in the participant's language. */
@@ -93,29 +94,15 @@ export class ParticipantSession {
   }
 
   get simulated() {
-    return this.#session.simulated;
+    return this.kept.simulated;
   }
 
   get progress() {
-    return this.#session.progress;
+    return this.kept.progress;
   }
 
   get step() {
     return currentStep(this.schedule, this.progress);
-  }
-
-  /** The withdrawal code; null: the participant has noted it. */
-  get withdrawalCode() {
-    return this.#session.withdrawalCode;
-  }
-
-  get preferredHand() {
-    return this.#session.preferredHand;
-  }
-
-  /** The newest measures of the body; null: not measured yet. */
-  get calibration() {
-    return this.#session.calibration;
   }
 
   get uploadStatus(): UploadStatus {
@@ -135,13 +122,29 @@ export class ParticipantSession {
     return remainingSeconds(this.schedule, this.progress, this.#now());
   }
 
-  /** Applies an event and stores its consequences; returns why it is refused, or null. */
-  apply(event: ProgressEvent): string | null {
-    return this.#take(event);
+  /**
+   * Applies an event and stores its consequences; returns why it is refused, or null. `command` is the number of the
+   * experimenter's command that caused the event, which counts as followed even if nothing changes.
+   */
+  apply(event: ProgressEvent, command?: number): string | null {
+    const { kept } = this;
+    const before = command === undefined ? kept.progress : { ...kept.progress, commandsSeen: command };
+    const { progress, records, refusal } = applyEvent(this.schedule, before, event, this.#now());
+    if (progress === kept.progress && records.length === 0) return refusal;
+    const demographics = records.find((record) => record.kind === 'demographics')?.body;
+    const next = {
+      ...kept,
+      progress,
+      ...(demographics && { preferredHand: preferredHandOf(demographics) }),
+      ...(event.type === 'calibrated' && { calibration: event.calibration }),
+    };
+    this.#store.change(next, records);
+    return refusal;
   }
 
+  /** Removes the withdrawal code from the device, once the participant has noted it. */
   codeNoted(): void {
-    this.#store.change({ ...this.#session, withdrawalCode: null });
+    this.#store.change({ ...this.kept, withdrawalCode: null });
   }
 
   /**
@@ -149,7 +152,7 @@ export class ParticipantSession {
    * if there is none.
    */
   seat(trial: PlayedTogether): Promise<SignedSeat> {
-    return this.#client.seat(this.#session, trial);
+    return this.#client.seat(this.kept, trial);
   }
 
   /** Keeps the tracking frames of a trial until the server has them. */
@@ -178,26 +181,6 @@ export class ParticipantSession {
     return this.#store.settled();
   }
 
-  /**
-   * `command` is the number of the experimenter's command that caused the event. It counts as followed even if nothing
-   * changes.
-   */
-  #take(event: ProgressEvent, command?: number): string | null {
-    const session = this.#session;
-    const before = command === undefined ? session.progress : { ...session.progress, commandsSeen: command };
-    const { progress, records, refusal } = applyEvent(this.schedule, before, event, this.#now());
-    if (progress === session.progress && records.length === 0) return refusal;
-    const told = records.find((record) => record.kind === 'demographics')?.body;
-    const next = {
-      ...session,
-      progress,
-      ...(told && { preferredHand: preferredHandOf(told) }),
-      ...(event.type === 'calibrated' && { calibration: event.calibration }),
-    };
-    this.#store.change(next, records);
-    return refusal;
-  }
-
   async #exchangeOnce(): Promise<void> {
     // The server must not be ahead of the device: after a crash the device would send other records for the same
     // events.
@@ -205,7 +188,7 @@ export class ParticipantSession {
     try {
       await this.#report();
       const { commandsSeen = 0 } = this.progress;
-      for (const command of await this.#client.commands(this.#session, commandsSeen)) this.#follow(command);
+      for (const command of await this.#client.commands(this.kept, commandsSeen)) this.#follow(command);
       // The changes of a command are reported at once, because the experimenter waits for them.
       if (this.progress !== this.#reported) await this.#report();
       this.#online = true;
@@ -218,11 +201,11 @@ export class ParticipantSession {
 
   /** Sends the unsent records and then the progress, which is not reported before consent. */
   async #report(): Promise<void> {
-    const session = this.#session;
-    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(session, records));
+    const { kept } = this;
+    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(kept, records));
     const { progress } = this;
     if (progress.motion === null) return;
-    await this.#client.saveProgress(session, reported(progress, this.#now()));
+    await this.#client.saveProgress(kept, reported(progress, this.#now()));
     this.#reported = progress;
   }
 
@@ -239,7 +222,7 @@ export class ParticipantSession {
     if (number <= (this.progress.commandsSeen ?? 0)) return;
     this.#onCommand();
     const { step, running, motion } = this.progress;
-    const refusal = this.#take(command, number);
+    const refusal = this.apply(command, number);
     // A record states why a command changed nothing.
     if (refusal === null || motion === null) return;
     const where = `${step}${running ? ', running' : ''}`;

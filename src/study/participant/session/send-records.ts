@@ -10,14 +10,16 @@ type Send = (records: readonly StudyRecord[]) => Promise<readonly string[]>;
  * for this device.
  */
 export async function sendRecords(store: SessionStore, send: Send): Promise<string | null> {
+  const refusalOfAll = (records: readonly StudyRecord[]) =>
+    refusalOf(async () => store.acknowledge(await send(records)));
   const refused = new Set<string>();
   let reason: string | null = null;
   for (let batch = store.nextBatch(refused); batch.length > 0; batch = store.nextBatch(refused)) {
-    const refusal = await sendOrRefuse(store, send, batch);
+    const refusal = await refusalOfAll(batch);
     if (refusal === null) continue;
     // One of them is at fault, so each is sent separately.
     for (const record of batch) {
-      const why = batch.length === 1 ? refusal : await sendOrRefuse(store, send, [record]);
+      const why = batch.length === 1 ? refusal : await refusalOfAll([record]);
       if (why === null) continue;
       refused.add(record.id);
       reason = why;
@@ -26,10 +28,10 @@ export async function sendRecords(store: SessionStore, send: Send): Promise<stri
   return reason;
 }
 
-/** Resolves with why the server takes none of these records, or with null if it has them. */
-async function sendOrRefuse(store: SessionStore, send: Send, records: readonly StudyRecord[]): Promise<string | null> {
+/** Sends something; resolves with why the server refuses it, or with null. Rejects if none serves this device. */
+export async function refusalOf(send: () => Promise<void>): Promise<string | null> {
   try {
-    await store.acknowledge(await send(records));
+    await send();
     return null;
   } catch (error) {
     if (!(error instanceof ServerRefusal) || error.status === 401) throw error;

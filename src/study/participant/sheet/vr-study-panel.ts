@@ -32,7 +32,7 @@ export class VrStudyPanel {
   #screen: StudyScreen | null = null;
   #targets: readonly Target[] = [];
   /** The targets that can be pressed. */
-  #open: readonly Target[] = [];
+  #enabled: readonly Target[] = [];
   #hovered: string | null = null;
   #drawn = '';
   #placed = false;
@@ -51,7 +51,7 @@ export class VrStudyPanel {
   show(screen: StudyScreen | null): void {
     this.#screen = screen;
     this.#targets = screen ? targetsOf(screen) : [];
-    this.#open = this.#targets.filter(({ look }) => look !== 'off');
+    this.#enabled = this.#targets.filter(({ look }) => look !== 'off');
     if (!screen) this.#placed = false;
     this.object.visible = this.#placed;
     this.#redraw();
@@ -62,7 +62,7 @@ export class VrStudyPanel {
     if (!this.#screen) return;
     const { object } = this;
     const yaw = Math.atan2(-forward.x, -forward.z);
-    if (this.#placed && !this.#isLeft(position, yaw)) return;
+    if (this.#placed && !this.#isOutOfView(position, yaw)) return;
     object.rotation.y = yaw;
     object.position.set(position.x - reach * Math.sin(yaw), position.y - below, position.z - reach * Math.cos(yaw));
     this.#placed = true;
@@ -71,7 +71,7 @@ export class VrStudyPanel {
 
   point(pointers: readonly Pointer[]): void {
     if (!this.object.visible) return;
-    const { pointedAt, pressed } = this.#touch.follow(pointers, this.#open);
+    const { pointedAt, pressed } = this.#touch.follow(pointers, this.#enabled);
     this.#hovered = pointedAt?.id ?? null;
     // Only the first press acts, because it may have changed the screen.
     pressed[0]?.act();
@@ -83,7 +83,7 @@ export class VrStudyPanel {
     if (!this.object.visible) return [];
     const { mesh } = this.#panel;
     mesh.updateWorldMatrix(true, false);
-    return this.#open.map(({ id, at: [x, y, w, h] }) => {
+    return this.#enabled.map(({ id, at: [x, y, w, h] }) => {
       const {
         x: across,
         y: up,
@@ -99,7 +99,7 @@ export class VrStudyPanel {
    * Returns whether a participant at this eye position [m, floor frame] with this heading [rad] no longer faces the
    * sheet.
    */
-  #isLeft({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }, yaw: number): boolean {
+  #isOutOfView({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }, yaw: number): boolean {
     const { position, rotation } = this.object;
     const turn = yaw - rotation.y;
     // The position of the participant when the sheet was placed.

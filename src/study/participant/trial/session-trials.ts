@@ -8,7 +8,13 @@ import type { ParticipantSession } from '../session/participant-session';
 import type { StudyHost } from './study-host';
 import { type FinishedTrial, lastPlayedBefore, PlayedTrial } from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
-import { type Prepared, TrialPreparation } from './trial-preparation';
+
+/** How far the game and the body of a step are loaded. */
+export interface Prepared {
+  readonly state: 'loading' | 'ready' | 'failed';
+  /** Why loading failed, in a sentence; otherwise empty. */
+  readonly reason: string;
+}
 
 export interface SessionTrialsOptions {
   readonly session: ParticipantSession;
@@ -25,7 +31,8 @@ export class SessionTrials {
   readonly #host: StudyHost;
   readonly #now: () => number;
   readonly #onChange: () => void;
-  readonly #preparation: TrialPreparation;
+  /** The preparation of one attempt. Results of earlier attempts are ignored. */
+  #preparation: (Prepared & { readonly attempt: string }) | null = null;
   #trial: PlayedTrial | null = null;
   #embodied = false;
 
@@ -34,7 +41,6 @@ export class SessionTrials {
     this.#host = host;
     this.#now = now;
     this.#onChange = onChange;
-    this.#preparation = new TrialPreparation((step) => this.#load(step), onChange);
   }
 
   /** The trial that was started; null: none. */
@@ -44,7 +50,7 @@ export class SessionTrials {
 
   /** How far the trial of the present step is prepared; null: not at all. */
   get prepared(): Prepared | null {
-    return this.#preparation.of(this.attempt);
+    return this.#preparation?.attempt === this.attempt ? this.#preparation : null;
   }
 
   /** The step, run and attempt of the session. A trial of another attempt is void. */
@@ -65,7 +71,7 @@ export class SessionTrials {
     this.#trial?.pause(progress.paused || !this.#host.inSession());
     if (!isPlayed(step)) return;
     // Every attempt loads its game, because the game of a void trial was put away.
-    if (!this.prepared) void this.#preparation.begin(this.attempt, step);
+    if (!this.prepared) void this.#prepare(step);
     const ready = this.prepared?.state === 'ready';
     if (progress.running && !progress.paused && !this.#trial && ready && this.#host.inSession()) this.#start(step);
   }
@@ -88,7 +94,7 @@ export class SessionTrials {
 
   /** Discards the preparation, so that the game and the body are loaded again. */
   prepareAgain(): void {
-    this.#preparation.forget();
+    this.#preparation = null;
   }
 
   /**
@@ -116,14 +122,26 @@ export class SessionTrials {
     this.#onChange();
   }
 
-  /** Loads the game and the body of a step; rejects with a sentence for the participant. */
-  async #load(step: PlayedStep): Promise<void> {
+  /** Loads the game and the body of a step for the present attempt. */
+  async #prepare(step: PlayedStep): Promise<void> {
+    const { attempt } = this;
+    const loading = { attempt, state: 'loading', reason: '' } as const;
+    this.#preparation = loading;
+    const reason = await this.#load(step);
+    if (this.#preparation !== loading) return;
+    this.#preparation = reason === null ? { ...loading, state: 'ready' } : { attempt, state: 'failed', reason };
+    this.#onChange();
+  }
+
+  /** Resolves with why the game or the body of a step could not be loaded, in the participant's language, or null. */
+  async #load(step: PlayedStep): Promise<string | null> {
     try {
       const runner = this.#runnerOf(step);
       if (!runner) throw new PhrasedError('round.game');
       await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
+      return null;
     } catch (error) {
-      throw new Error(localizedReason(error, this.#session.phrases));
+      return localizedReason(error, this.#session.phrases);
     }
   }
 

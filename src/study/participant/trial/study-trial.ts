@@ -33,7 +33,7 @@ export interface FinishedTrial {
 }
 
 /** The time for which the end of a round is on display before the sheet [s]. */
-const afterglow = 2.5;
+const endShownSeconds = 2.5;
 /** Participants consent to keeping the motion of head and wrists only. */
 const headAndWrists = ({ fingers: _, deviceBody: __, ...frame }: TrackingFrame): TrackingFrame => frame;
 
@@ -85,7 +85,7 @@ export class PlayedTrial {
     this.#seconds = new TrialSeconds(now);
     for (const name of runner.assists()) this.#log.assist(name);
     host.listenToFrames((spent, late) => {
-      if (!this.#stands && this.#endedAt === null && runner.waitingFor === null) this.#log.frame(spent, late);
+      if (!this.#isPaused && this.#endedAt === null && runner.waitingFor === null) this.#log.frame(spent, late);
     });
     runner.start({ seed, seconds: step.seconds });
   }
@@ -118,7 +118,7 @@ export class PlayedTrial {
    */
   follow(pageTime: number, frame: TrackingFrame | null): FinishedTrial | null {
     if (this.#runner.waitingFor !== null) return null;
-    if (this.#stands) {
+    if (this.#isPaused) {
       this.#seconds.pause(pageTime);
       return null;
     }
@@ -129,8 +129,8 @@ export class PlayedTrial {
       else this.#log.event({ ...event, onset: time });
     }
     const { end } = this.#runner;
-    if (this.#endedAt !== null) return end && time - this.#endedAt > afterglow ? this.#finish(end) : null;
-    this.#note(time, frame);
+    if (this.#endedAt !== null) return end && time - this.#endedAt > endShownSeconds ? this.#finish(end) : null;
+    this.#recordFrame(time, frame);
     if (end) this.#endedAt = time;
     return null;
   }
@@ -147,7 +147,7 @@ export class PlayedTrial {
     this.#runner.abort();
   }
 
-  get #stands(): boolean {
+  get #isPaused(): boolean {
     return this.#paused || this.#runner.standing;
   }
 
@@ -159,7 +159,7 @@ export class PlayedTrial {
   }
 
   /** Records what was tracked and drawn at this second of the trial. */
-  #note(time: number, frame: TrackingFrame | null): void {
+  #recordFrame(time: number, frame: TrackingFrame | null): void {
     this.#log.tracked(time, {
       head: frame !== null,
       leftHand: frame?.leftHand != null,

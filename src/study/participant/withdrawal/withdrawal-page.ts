@@ -8,7 +8,7 @@ import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
-import { languageChoice } from '../forms/language-choice';
+import { languageChoice } from '../forms/form-parts';
 import { localizedReason } from '../localized-reasons';
 import { openStudyVault } from '../session/study-vault';
 

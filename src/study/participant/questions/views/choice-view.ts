@@ -3,7 +3,7 @@ import { inLanguage } from '../../../model/phrases/localized-text';
 import type { ChoiceForm } from '../../../model/questionnaires/kinds/choice';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
-import { radios, type ScreenPoint } from './card-parts';
+import { radios, type ScreenPoint } from './scale-parts';
 
 /** A list of options. */
 export interface ChoiceField {

@@ -3,8 +3,7 @@ import { inLanguage } from '../../../model/phrases/localized-text';
 import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
-import { endNodes, maxNumberedPoints, radios, type ScreenEnds, type ScreenPoint } from './card-parts';
-import { paintEnds } from './sheet-parts';
+import { endNodes, maxNumberedPoints, paintEnds, radios, type ScreenEnds, type ScreenPoint } from './scale-parts';
 
 /** A row of points. */
 export interface LikertField {

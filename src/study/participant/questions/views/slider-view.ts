@@ -4,8 +4,7 @@ import { inLanguage } from '../../../model/phrases/localized-text';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
 import type { QuestionView } from '../question-view';
 import { inner, margin, type Target, width } from '../sheet-target';
-import { endNodes, type ScreenEnds } from './card-parts';
-import { paintEnds } from './sheet-parts';
+import { endNodes, paintEnds, type ScreenEnds } from './scale-parts';
 
 /** A line without points. */
 export interface SliderField {

@@ -1,4 +1,6 @@
+import { vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
 import { element } from 'threepoint-ui/element';
+import { inner, margin, width } from '../sheet-target';
 
 /** A point that can be chosen. */
 export interface ScreenPoint<Value> {
@@ -16,9 +18,19 @@ export interface ScreenEnds {
 /** A scale with more points shows no numbers, on the card as on the sheet, as on the paper form of NASA-TLX. */
 export const maxNumberedPoints = 11;
 
-/** Returns the node with the texts below the ends of a scale. */
+/** Returns the node on the card with the texts below the ends of a scale. */
 export const endNodes = ({ low, high }: ScreenEnds): HTMLElement =>
   element('div', { class: 'ends', 'aria-hidden': 'true' }, element('span', {}, low), element('span', {}, high));
+
+/** Draws the texts below the ends of a scale on the sheet, at this height [pixels]. */
+export function paintEnds(context: CanvasRenderingContext2D, { low, high }: ScreenEnds, y: number): void {
+  context.font = `500 32px ${vrFont}`;
+  context.fillStyle = vrColors.inkSoft;
+  context.fillText(low, margin, y, inner / 2 - 140);
+  context.textAlign = 'right';
+  context.fillText(high, width - margin, y, inner / 2 - 140);
+  context.textAlign = 'left';
+}
 
 /** Points of which one can be chosen. */
 export interface Radios<Value> {

@@ -1,19 +1,23 @@
 import { inLanguage } from '../../model/phrases/localized-text';
+import { clockText } from '../../model/progress/progress';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
 import { typedAnswer, unanswered } from '../../model/questionnaires/questionnaires';
-import { questionView } from './question-views';
-import type { ScreenQuestion } from './study-screen';
+import { screenQuestions } from '../questionnaire-state';
+import { questionView } from '../questions/question-views';
+import type { ScreenQuestion, StudyScreen } from '../questions/study-screen';
+import { pauseButton, type ScreenParts } from './screen-parts';
 import type { ScreenActions, StudySituation } from './study-situation';
-
-type Asking = Pick<StudySituation, 'session' | 'typed' | 'triedToSubmit' | 'refusal'>;
-type Asked = Pick<ScreenActions, 'choose' | 'goTo' | 'type'>;
 
 /** Returns the question at this index and the hint above the buttons. */
 export function questionPart(
   questions: readonly Question[],
   at: number,
-  { session, typed, triedToSubmit, refusal }: Asking,
-  actions: Asked,
+  {
+    session,
+    questionnaire: { typed, triedToSubmit },
+    refusal,
+  }: Pick<StudySituation, 'session' | 'questionnaire' | 'refusal'>,
+  actions: Pick<ScreenActions, 'choose' | 'goTo' | 'type'>,
 ): { readonly question: ScreenQuestion; readonly hint: string | null } {
   const shown = questions[at] as Question;
   const { draft } = session.progress;
@@ -55,5 +59,35 @@ export function questionPart(
           : open.length > 0
             ? say('question.someOpen', { count: open.length, total: required })
             : null),
+  };
+}
+
+/** Returns the screen of a questionnaire with the question on display. */
+export function questionScreen(parts: ScreenParts, situation: StudySituation): StudyScreen {
+  const { base, phrases, actions } = parts;
+  const { say } = phrases;
+  const { session, questionnaire } = situation;
+  const questions = screenQuestions(session);
+  const at = Math.min(questionnaire.question, questions.length - 1);
+  const last = at === questions.length - 1;
+  const left = session.remaining();
+  const time =
+    left === null ? '' : left > 0 ? say('question.timeLeft', { time: clockText(left) }) : say('question.takeTime');
+  const { question, hint } = questionPart(questions, at, situation, actions);
+  return {
+    ...base,
+    id: `question-${question.id}`,
+    title: question.text,
+    text: [],
+    hint,
+    question,
+    buttons: [
+      { id: 'back', label: say('back'), look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
+      pauseButton(parts),
+      last
+        ? { id: 'submit', label: say('submit'), look: 'primary', act: actions.submit }
+        : { id: 'next', label: say('next'), look: 'primary', act: () => actions.goTo(at + 1) },
+    ],
+    footnote: time ? `${time} · ${base.footnote}` : base.footnote,
   };
 }

@@ -5,10 +5,15 @@ import { chooser } from 'threepoint-ui/fields';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
 import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
-import { forgetToken, keptToken, signInForm } from './sign-in';
+
+/**
+ * The key under which the session storage keeps the token while the tab is open. It is not kept longer, because
+ * computers are shared.
+ */
+const tokenKey = 'threepoint-experimenter-token';
 
 /** The studies of this server, for a page whose user has entered the experimenter's token. */
-export class StudyAccess {
+export class ExperimenterAccess {
   readonly #onChange: () => void;
   readonly #onAsked: (study: string) => void;
   readonly #server = new ServerPresence(pageFolder(), () => undefined);
@@ -29,6 +34,7 @@ export class StudyAccess {
     return this.#client;
   }
 
+  /** The studies of the server as they were last requested. */
   get listed(): readonly StudyListing[] {
     return this.#listed;
   }
@@ -38,7 +44,7 @@ export class StudyAccess {
     void this.#server.whenKnown().then((state) => {
       if (state === 'none') this.#onChange();
     });
-    const token = keptToken();
+    const token = sessionStorage.getItem(tokenKey);
     if (token !== null) await this.#signIn(token);
   }
 
@@ -82,7 +88,7 @@ export class StudyAccess {
 
   signOutButton(): HTMLElement {
     return button('Sign out', () => {
-      forgetToken();
+      sessionStorage.removeItem(tokenKey);
       location.reload();
     });
   }
@@ -101,4 +107,39 @@ export class StudyAccess {
     if (asked) this.#onAsked(asked);
     return null;
   }
+}
+
+/** Asks for the experimenter's token; `use` resolves with a complaint, or with null if the token is accepted. */
+function signInForm(use: (token: string) => Promise<string | null>): HTMLElement {
+  const input = element('input', {
+    type: 'password',
+    name: 'token',
+    autocomplete: 'off',
+    'aria-label': 'Token',
+    size: 40,
+  });
+  const complaint = element('p', { class: 'complaint', role: 'alert' });
+  complaint.hidden = true;
+  const go = button('Open', () => void open(), { class: 'primary' });
+  async function open(): Promise<void> {
+    const token = input.value.trim();
+    if (!token) return;
+    go.disabled = true;
+    const refusal = await use(token);
+    go.disabled = false;
+    complaint.hidden = refusal === null;
+    complaint.textContent = refusal ?? '';
+    if (refusal === null) sessionStorage.setItem(tokenKey, token);
+  }
+  input.addEventListener('keydown', ({ key }) => {
+    if (key === 'Enter') void open();
+  });
+  return element(
+    'div',
+    { class: 'sign-in' },
+    element('label', {}, element('span', {}, 'The experimenter’s token'), input),
+    go,
+    element('p', { class: 'soft' }, 'The server generates it at its first start and prints the path of its file.'),
+    complaint,
+  );
 }

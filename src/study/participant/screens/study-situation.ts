@@ -2,8 +2,9 @@ import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import type { ProgressEvent } from '../../model/progress/apply-event';
 import type { Answer } from '../../model/questionnaires/question-kind';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
+import type { QuestionnaireState } from '../questionnaire-state';
 import type { ParticipantSession } from '../session/participant-session';
-import type { Prepared } from '../trial/trial-preparation';
+import type { Prepared } from '../trial/session-trials';
 
 /** The parts of a session that screens show. */
 export type ShownSession = Pick<
@@ -15,13 +16,9 @@ export type ShownSession = Pick<
 export interface StudySituation {
   readonly session: ShownSession;
   readonly inSession: boolean;
-  /** The index of the question on display. */
-  readonly question: number;
-  /** The typed text in the field of that question; null: nothing was typed. */
-  readonly typed: string | null;
-  /** Whether handing in failed because an answer is missing. */
-  readonly triedToSubmit: boolean;
-  /** The step of the measurement; null: nobody is being measured. */
+  /** The position in the questionnaire of the present step. */
+  readonly questionnaire: Readonly<Pick<QuestionnaireState, 'question' | 'typed' | 'triedToSubmit'>>;
+  /** The step of the measurement; null: there is no measurement. */
   readonly calibration: CalibrationStep | null;
   /** What is wrong with device, room or height of a participant who takes part alone; empty: nothing. */
   readonly setupFaults: readonly string[];
@@ -31,6 +28,7 @@ export interface StudySituation {
   readonly prepared: Prepared | null;
   /** Why the last action changed nothing; null: it did. */
   readonly refusal: string | null;
+  /** Whether a trial was started and goes on. */
   readonly playing: boolean;
   /** The participants that a started trial waits for, empty if unknown; null: none. */
   readonly waitingFor: readonly string[] | null;
