@@ -146,9 +146,12 @@ export default {
         'threepoint has neither three nor onnxruntime in it: what draws is reached through api/three alone, the runtime through api/onnx and its ' +
         'worker alone; the others take of onnx what fetches and computes without a runtime.',
       severity: 'error',
-      from: { path: '^src/threepoint/api/', pathNot: '/(three|react|onnx|onnx-worker|polyfill)\\.ts$' },
+      from: {
+        path: '^src/threepoint/api/',
+        pathNot: '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill)\\.ts$',
+      },
       to: {
-        path: '^src/threepoint/(xr|avatar|onnx|api/(three|react|onnx|onnx-worker))',
+        path: '^src/threepoint/(xr|avatar|onnx|api/(three|body-tracker|avatar-source|react|onnx|onnx-worker))',
         pathNot: '^src/threepoint/onnx/(load-plain-regressor|model-files)\\.ts$',
       },
     },
@@ -158,13 +161,15 @@ export default {
         'threepoint/polyfill serves pages of any engine: it reads sessions, and has neither three nor a runtime.',
       severity: 'error',
       from: { path: '^src/threepoint/api/polyfill\\.ts$' },
-      to: { path: '^src/threepoint/(avatar|onnx|xr/(?!tracked-session)|api/(three|react|onnx|onnx-worker))' },
+      to: {
+        path: '^src/threepoint/(avatar|onnx|xr/(?!tracked-session)|api/(three|body-tracker|avatar-source|react|onnx))',
+      },
     },
     {
       name: 'library-draws-without-runtime',
       comment: 'A page that draws with threepoint/three loads no runtime: threepoint/onnx brings it.',
       severity: 'error',
-      from: { path: '^src/threepoint/api/three\\.ts$' },
+      from: { path: '^src/threepoint/api/(three|body-tracker|avatar-source)\\.ts$' },
       to: {
         path: '^src/threepoint/(onnx|api/onnx)',
         pathNot: '^src/threepoint/onnx/(load-plain-regressor|model-files)\\.ts$',
@@ -206,7 +211,7 @@ export default {
       from: {
         path: '^(src|server)/',
         pathNot:
-          '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/three\\.ts$',
+          '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/body-tracker\\.ts$',
       },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },

@@ -1,8 +1,8 @@
 import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
-import { type MotionWriter, writeMotionFile } from 'threepoint/api/motion-file';
-import { type MotionFormat, motionFormats } from 'threepoint/api/motion-formats';
+import { type MotionFormat, type MotionWriter, motionFormats } from 'threepoint/api/motion-file';
 import type { WorkOptions } from 'threepoint/api/run-work';
+import { writeMotionFile } from 'threepoint/api/write-motion-file';
 import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
 import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';

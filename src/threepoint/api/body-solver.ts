@@ -339,7 +339,7 @@ export class BodySolver {
     return this.#choice.dispose();
   }
 
-  /** Returns a copy of the measures of a page, or the measures themselves where the body returned them before. */
+  /** Returns a copy of a page's measures, or the measures themselves if this body returned them before. */
   #own(calibration: Calibration): Calibration {
     const known = calibration === this.#calibration || calibration === this.#userCalibration;
     return known ? calibration : this.#copyChecked(calibration);
@@ -361,7 +361,7 @@ export class BodySolver {
     return this.#hasStandIn && sameCalibration(standIn, this.#calibration);
   }
 
-  /** Changes who moves the body from this frame on: a stand-in, or the user (null). */
+  /** Sets the person that moves the body from this frame on: a stand-in, or the user (null). */
   #changeDriver(standIn: Calibration | null): void {
     this.#hasStandIn = standIn !== null;
     this.discontinuity();

@@ -10,7 +10,7 @@ export interface EstimatorSelectorOptions {
   /** The estimator to start with; no callback is called before the constructor has returned. */
   readonly estimator: EstimatorName;
   readonly calibration: Calibration;
-  create(name: EstimatorName, calibration: Calibration, regressor?: PoseRegressor): PoseEstimator;
+  create(name: EstimatorName, calibration: Calibration, regressor: PoseRegressor | null): PoseEstimator;
   /** Loads a network; rejects with a sentence that names the file and its fault. */
   load(name: NetworkName): Promise<PoseRegressor>;
   /** Called when another estimator is in use, or when one has become unavailable. */
@@ -111,19 +111,19 @@ export class EstimatorSelector {
    */
   async warmUp(frames: Iterable<TrackingFrame>, then: (pose: AvatarPose) => void): Promise<void> {
     this.#changes += 1;
-    const begun = this.#changes;
-    const living = this.#create(this.#current.name, this.#regressor);
-    let lived: AvatarPose | null = null;
+    const changes = this.#changes;
+    const warmed = this.#create(this.#current.name, this.#regressor);
+    let last: AvatarPose | null = null;
     for (const frame of frames) {
-      const { pose, request } = living.update(frame);
+      const { pose, request } = warmed.update(frame);
       // A network that answers within its frame is not awaited: all frames are processed at once.
       if (request) await request.ask();
-      if (this.#changes !== begun) return;
-      lived = pose;
+      if (this.#changes !== changes) return;
+      last = pose;
     }
-    if (!lived) return;
-    this.#current = living;
-    then(lived);
+    if (!last) return;
+    this.#current = warmed;
+    then(last);
   }
 
   /** Replaces an estimator whose network has failed in the newest frame. */
@@ -142,15 +142,14 @@ export class EstimatorSelector {
     this.#changes += 1;
     this.#current = this.#create('ik', null);
     this.#regressor = null;
-    const arrived = await Promise.allSettled(this.#loading.values());
-    const goes = arrived.map((arriving) => (arriving.status === 'fulfilled' ? arriving.value.dispose() : null));
-    await Promise.allSettled(goes);
-    await Promise.all(goes);
+    const loaded = await Promise.allSettled(this.#loading.values());
+    const disposals = loaded.map((load) => (load.status === 'fulfilled' ? load.value.dispose() : null));
+    await Promise.allSettled(disposals);
+    await Promise.all(disposals);
   }
 
   #create(name: EstimatorName, network: PoseRegressor | null): PoseEstimator {
-    const { create } = this.#options;
-    return network ? create(name, this.#calibration, network) : create(name, this.#calibration);
+    return this.#options.create(name, this.#calibration, network);
   }
 
   /** Uses this method and network from now on. If both are the same as before, the estimator keeps its state. */
@@ -179,11 +178,9 @@ export class EstimatorSelector {
   }
 
   #network(name: NetworkName): Promise<PoseRegressor> {
-    const known = this.#loading.get(name);
-    if (known) return known;
-    const started = this.#load(name);
-    this.#loading.set(name, started);
-    return started;
+    const network = this.#loading.get(name) ?? this.#load(name);
+    this.#loading.set(name, network);
+    return network;
   }
 
   /** Loads a network; exceptions become rejections. */

@@ -28,6 +28,6 @@ const exportOptions = optionNames<ExportMotionOptions>({
 export async function exportMotion(recording: Recording, options: ExportMotionOptions): Promise<MotionFile> {
   assertOptions('exportMotion', options, exportOptions);
   // Loaded on demand: pages that export nothing do not load the writers.
-  const { writeMotionFile: exportMotionBare } = await import('./motion-file');
-  return exportMotionBare(recording, { ...options, networks: options.networks ?? loadWithoutRuntime });
+  const { writeMotionFile } = await import('./write-motion-file');
+  return writeMotionFile(recording, { ...options, networks: options.networks ?? loadWithoutRuntime });
 }

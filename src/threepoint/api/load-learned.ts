@@ -25,10 +25,9 @@ export interface LoadLearnedOptions {
 export async function loadLearned(options: LoadLearnedOptions = {}): Promise<PoseRegressor> {
   assertOptions('loadLearned', options, ['modelUrl', 'onProgress']);
   const { modelUrl, onProgress } = options;
-  const progress = onProgress ? { onProgress } : {};
   if (modelUrl !== undefined) {
     const { loadPlainRegressor } = await import('../onnx/load-plain-regressor');
-    return loadPlainRegressor(String(modelUrl), progress);
+    return loadPlainRegressor(String(modelUrl), onProgress);
   }
   const own = contract as unknown as ModelContract;
   return createPlainRegressor(own, await readBundledWeights(weightsOf(own), onProgress));

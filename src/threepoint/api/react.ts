@@ -14,7 +14,8 @@ import type { Avatar } from '../avatar/avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from '../core/body/calibration';
 import type { BoneMap } from '../core/humanoid/bones';
-import { type AvatarSource, BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions, loadAvatar } from './three';
+import { type AvatarSource, loadAvatar } from './avatar-source';
+import { BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions } from './body-tracker';
 import { warnOfFallback } from './warnings';
 
 /** The prop that receives each event of a tracker. */

@@ -30,29 +30,28 @@ export function* warmUpFrames(recording: Replayable, seconds: number, time: numb
   }
 }
 
+type DrivenBody = Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
+
 /**
  * Drives a body by a replay. While the replay is paused, the body's time stands still and its state does not change.
  * After a seek in a paused replay, or a change of the estimator, the body is warmed up with the frames before the
  * position.
  */
 export class ReplayedBody {
-  readonly #body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
+  readonly #body: DrivenBody;
   readonly #replay: ReplayState;
   /** The total of the pauses since the replay started [s]. */
   #pausedSeconds = 0;
   /** The time of the newest frame, by the page's clock [s]. */
   #time = Number.NaN;
   /** The position and the estimator of the drawn pose. */
-  readonly #drawn: { recording: Replayable | null; seconds: number; method: string } = {
+  readonly #drawn: { recording: Replayable | null; seconds: number; estimator: string } = {
     recording: null,
     seconds: 0,
-    method: '',
+    estimator: '',
   };
 
-  constructor(
-    body: Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>,
-    replay: ReplayState,
-  ) {
+  constructor(body: DrivenBody, replay: ReplayState) {
     this.#body = body;
     this.#replay = replay;
   }
@@ -82,10 +81,10 @@ export class ReplayedBody {
     if (this.#drawn.recording) this.#pausedSeconds += frame.time - this.#time;
     this.#time = frame.time;
     if (!this.#updateDrawn()) return this.#body.pose;
-    const dated = this.#withBodyTime(frame);
-    this.#body.update(dated, standIn);
+    const solved = this.#withBodyTime(frame);
+    this.#body.update(solved, standIn);
     const { recording, seconds } = this.#replay;
-    if (recording) void this.#body.warmUp(warmUpFrames(recording, seconds, dated.time));
+    if (recording) void this.#body.warmUp(warmUpFrames(recording, seconds, solved.time));
     return this.#body.pose;
   }
 
@@ -102,13 +101,13 @@ export class ReplayedBody {
 
   /** Stores the replay's position and the estimator; returns whether either has changed. */
   #updateDrawn(): boolean {
-    const moment = this.#drawn;
     const { recording, seconds } = this.#replay;
     const { estimator } = this.#body;
-    if (moment.recording === recording && moment.seconds === seconds && moment.method === estimator) return false;
-    moment.recording = recording;
-    moment.seconds = seconds;
-    moment.method = estimator;
+    const drawn = this.#drawn;
+    if (drawn.recording === recording && drawn.seconds === seconds && drawn.estimator === estimator) return false;
+    drawn.recording = recording;
+    drawn.seconds = seconds;
+    drawn.estimator = estimator;
     return true;
   }
 }

@@ -49,7 +49,7 @@ export interface Avatar {
    * Bends the body to a pose, and the fingers where the pose has them. time: [s], on the clock of the tracking frames.
    */
   setPose(pose: AvatarPose, time: number): void;
-  /** Hides the own head from the wearer's eyes; mirrors and other people still see it. */
+  /** Hides the avatar's head from its user's eyes; mirrors and other people still see it. */
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
   /** Recolours the materials of the mannequin; other avatars keep theirs. Unknown names change nothing. */
@@ -82,13 +82,13 @@ export interface Avatar {
   dispose(): void;
 }
 
-/** The calibration of a body that was not fitted yet. */
+/** The measures of an avatar before `setCalibration`. */
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
-/** A pause of the page moves feet no further than this [s]. */
+/** The longest time step [s]: feet move no further after a pause of the page. */
 const longestStep = 0.25;
 const upright = recordOf(jointNames, () => identity);
 
-/** What of a body takes long to make. */
+/** The parts of an avatar that take long to create. */
 interface AvatarParts {
   readonly vrm: VRM;
   readonly object: Group;
@@ -98,7 +98,7 @@ interface AvatarParts {
   readonly meshes: readonly AvatarMesh[];
 }
 
-/** Makes a body from a file, which serves for one. */
+/** Creates an avatar from a file; a loaded file can be used once. */
 function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   const object = new Group();
   object.name = 'avatar';
@@ -210,11 +210,11 @@ class VrmAvatar implements Avatar {
       if (pose.fingers) this.setFingers(side, pose.fingers[side]);
       this.fingers[side].update(deltaSeconds);
     }
-    this.live(pose.head, deltaSeconds);
+    this.animateDetails(pose.head, deltaSeconds);
   }
 
-  /** What moves by itself under a head that is here: eyes, lids, hair, and what the file ties to bones. */
-  private live({ position, orientation }: AvatarPose['head'], deltaSeconds: number): void {
+  /** Animates what no pose contains: eyes, lids, hair, and nodes that the file constrains to bones. */
+  private animateDetails({ position, orientation }: AvatarPose['head'], deltaSeconds: number): void {
     const { vrm } = this;
     this.face.update(orientation, deltaSeconds);
     vrm.nodeConstraintManager?.update();
@@ -241,7 +241,7 @@ class VrmAvatar implements Avatar {
     this.rig.settle();
   }
 
-  /** Head and hands alone, each where it was tracked; the rest is not drawn. */
+  /** Draws head and hands alone where they were tracked. */
   private applyHands({ head, leftHand, rightHand }: AvatarPose): void {
     const headJoint = headJointOf(head, this.skeleton.eyesInHead, this.headJoint);
     const restHead = this.rig.rest('head');
@@ -249,8 +249,8 @@ class VrmAvatar implements Avatar {
       const name = jointNames[i]!;
       const rest = this.rig.rest(name);
       if (!rest || !restHead) continue;
-      // The skin of the head reaches down to the neck or, without one, the trunk: they go along as they rest. A rig
-      // faces the other way.
+      // The skin of the head reaches down to the neck or, without one, the trunk: these keep their rest pose relative
+      // to the head. A rig faces the other way.
       const from = setVec3(this.joint, restHead.x - rest.x, rest.y - restHead.y, restHead.z - rest.z);
       addScaled(headJoint, rotate(head.orientation, from, from), this.scale, from);
       this.rig.place(name, from, head.orientation, name === 'head');
@@ -270,7 +270,7 @@ class VrmAvatar implements Avatar {
       return;
     }
     const orientation = handBoneRotation(side, hand.orientation, this.handBone);
-    // The cuff of a sleeve has a share of the forearm, which goes straight on behind the hand.
+    // The cuff of a sleeve is partly skinned to the forearm, which continues straight behind the hand.
     const elbow = rotate(orientation, this.skeleton.restOffsets[name], this.joint);
     subtract(hand.position, elbow, elbow);
     this.rig.place(lowerArm, elbow, orientation, false);

@@ -70,14 +70,14 @@ class Mover {
   readonly #vrm: VRM;
   readonly #expression: VRMExpressionPresetName;
   readonly #shapes: readonly Shape[];
-  readonly there: boolean;
+  readonly isPresent: boolean;
 
   constructor(vrm: VRM, expression: VRMExpressionPresetName, shapes: (vrm: VRM) => readonly Shape[]) {
     this.#vrm = vrm;
     this.#expression = expression;
     const expressive = vrm.expressionManager?.getExpression(expression) != null;
     this.#shapes = expressive ? [] : shapes(vrm);
-    this.there = expressive || this.#shapes.length > 0;
+    this.isPresent = expressive || this.#shapes.length > 0;
   }
 
   move(weight: number): void {
@@ -162,8 +162,8 @@ export class Face {
 
   /** Advances by one frame. The head's orientation is in the floor frame and faces −Z at identity. */
   update(head: Quat, deltaSeconds: number): void {
-    if (this.#lids.there) this.#blink(deltaSeconds);
-    if (this.#mouth.there) this.#speak(deltaSeconds);
+    if (this.#lids.isPresent) this.#blink(deltaSeconds);
+    if (this.#mouth.isPresent) this.#speak(deltaSeconds);
     if (this.#gaze) this.#look(this.#gaze, head, deltaSeconds);
   }
 

@@ -20,7 +20,7 @@ import { setVrmBones } from './humanoid/write-bone-names';
 export interface LoadedAvatar {
   readonly name: string;
   readonly vrm: VRM;
-  /** Returns the index of an object's node in the file. */
+  /** The index of each object's node in the file. */
   readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
 

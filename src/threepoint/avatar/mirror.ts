@@ -3,6 +3,7 @@ import {
   type BufferGeometry,
   type Camera,
   Group,
+  Matrix4,
   Mesh,
   MeshStandardMaterial,
   type Object3D,
@@ -14,10 +15,7 @@ import {
 import { Reflector } from 'three/addons/objects/Reflector.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
-import { FramePacer } from './frame-pacer';
-import { reflectionSize } from './reflection-size';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
-import { seesRectangle } from './sees-rectangle';
 
 export interface MirrorOptions {
   /** The distance ahead of the floor's origin, along −Z [m]. */
@@ -239,4 +237,78 @@ export class Mirror {
     for (const part of parts) part.dispose();
     this.object.add(this.frame);
   }
+}
+
+/** The tolerance for frames that come a little early [s]. */
+const toleranceSeconds = 0.001;
+
+/** Selects the frames for work that runs at a lower rate than frames. */
+export class FramePacer {
+  /** The maximum rate [Hz]; null: every frame. */
+  rateHz: number | null = null;
+  #next = Number.NEGATIVE_INFINITY;
+
+  /** Makes the next frame due. */
+  restart(): void {
+    this.#next = Number.NEGATIVE_INFINITY;
+  }
+
+  /** Returns whether the work is due in the frame at this time [s]. Call it once per frame. */
+  isDue(time: number): boolean {
+    if (this.rateHz === null) return true;
+    const interval = 1 / this.rateHz;
+    const wait = this.#next - time;
+    // A wait longer than an interval shows that the clock was set back.
+    if (wait > toleranceSeconds && wait <= interval) return false;
+    this.#next = wait > -interval && wait <= toleranceSeconds ? this.#next + interval : time + interval;
+    return true;
+  }
+}
+
+/**
+ * The largest size of a reflection relative to the image that shows it [fraction of pixels]. A mirror of 1.5 × 2.15 m
+ * seen from 1.5 m fills less than a third of an eye's 96°.
+ */
+const pixelShare = 0.4;
+
+/** The size of a texture [pixels]. */
+export interface TextureSize {
+  readonly width: number;
+  readonly height: number;
+}
+
+/** The result of the newest call, reused to avoid garbage. */
+const size = { width: 0, height: 0 };
+
+/**
+ * Returns the size of the reflection in an image of this many pixels. `heightToWidth`: the aspect of the mirror;
+ * `maxWidth`: the limit [pixels]. The next call overwrites the result.
+ */
+export function reflectionSize(pixels: number, heightToWidth: number, maxWidth: number): TextureSize {
+  const width = Math.floor(Math.min(maxWidth, Math.sqrt((pixelShare * pixels) / heightToWidth)));
+  size.width = width;
+  size.height = Math.floor(width * heightToWidth);
+  return size;
+}
+
+const clipFromRectangle = new Matrix4();
+
+/**
+ * Returns whether a camera may see a rectangle [m] about the origin of its frame's xy plane: false if all corners lie
+ * beyond one plane of the view frustum. Allocates nothing, unlike three.js's Frustum. The camera's matrices must be up
+ * to date.
+ */
+export function seesRectangle(camera: Camera, floorFromRectangle: Matrix4, width: number, height: number): boolean {
+  clipFromRectangle.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(floorFromRectangle);
+  const m = clipFromRectangle.elements;
+  for (let axis = 0; axis < 3; axis++) {
+    for (let side = -1; side <= 1; side += 2) {
+      // A point is inside a plane if |clip coordinate| ≤ w: the corner farthest inside decides.
+      const x = m[3]! + side * m[axis]!;
+      const y = m[7]! + side * m[axis + 4]!;
+      const middle = m[15]! + side * m[axis + 12]!;
+      if (middle + (Math.abs(x) * width + Math.abs(y) * height) / 2 < 0) return false;
+    }
+  }
+  return true;
 }

@@ -79,7 +79,7 @@ interface Refusal {
   readonly reported: boolean;
 }
 
-/** Lets the second body draw from the first one's graphics memory: only bones and colours are its own. */
+/** Makes the second body use the geometry of the first in graphics memory: only its bones and colours are separate. */
 function shareGeometry(from: Object3D, to: Object3D): void {
   const sources = meshesOf(from);
   for (const [index, { geometry }] of meshesOf(to).entries()) {
@@ -96,10 +96,10 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
 }
 
 /**
- * The bodies of other people. Copies of one body share its graphics memory. Bodies are made when they are first needed
- * and kept for the next person who comes. Files are loaded one at a time, and whose file is on its way, or refused, has
- * the plain body on. What could not be had is asked for again: a person who was away for long names their file before
- * it is in the store again.
+ * Draws the bodies of other people. Copies of one body share its graphics memory. Bodies are created when they are
+ * first needed and reused for later people. Files are loaded one at a time; while a file loads, or if it is refused,
+ * the plain body is drawn. A load with a transient fault is repeated: a person who was away for long names their file
+ * before it is in the store again.
  */
 export class RemoteAvatars {
   readonly object = new Group();
@@ -167,23 +167,20 @@ export class RemoteAvatars {
   /** Returns the body of a person with this avatar, or the plain one; null while that is being made. */
   #bodyFor({ id }: SeenPerson, avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
     const own = this.#bodyOf(id);
-    if (own?.of === avatar) return own;
-    const wanted = this.#freeBody(avatar, people);
-    if (wanted) {
-      if (own) own.id = null;
-      return take(wanted, id);
+    const wanted = own?.of === avatar ? own : this.#freeBody(avatar, people);
+    if (!wanted && avatar !== defaultAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
+    const body = wanted ?? (own?.of === defaultAvatar ? own : this.#freeBody(defaultAvatar, people));
+    if (!body) {
+      if (this.#failed) throw this.#failed;
+      this.#make(defaultAvatar);
+      // Bodies stay unchanged until the plain one is loaded.
+      return own;
     }
-    if (avatar !== defaultAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
-    if (own?.of === defaultAvatar) return own;
-    const plain = this.#freeBody(defaultAvatar, people);
-    if (plain) {
-      if (own) own.id = null;
-      return take(plain, id);
-    }
-    if (this.#failed) throw this.#failed;
-    this.#make(defaultAvatar);
-    // Bodies stay unchanged until the plain one is loaded.
-    return own;
+    if (body === own) return own;
+    if (own) own.id = null;
+    body.id = id;
+    body.fitted = null;
+    return body;
   }
 
   #freeBody(avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
@@ -254,12 +251,6 @@ export class RemoteAvatars {
     body.shadow.geometry.dispose();
     body.shadow.material.dispose();
   }
-}
-
-function take(body: Body, id: number): Body {
-  body.id = id;
-  body.fitted = null;
-  return body;
 }
 
 function draw(body: Body, person: SeenPerson, time: number): void {

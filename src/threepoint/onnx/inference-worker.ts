@@ -1,6 +1,6 @@
 import { reasonOf } from '../core/errors/reasons';
 import { createSession, type InferenceSession } from './session';
-import type { WorkerRequest, WorkerResponse } from './worker-messages';
+import type { WorkerRequest, WorkerResponse } from './worker-session';
 
 let session: InferenceSession | null = null;
 

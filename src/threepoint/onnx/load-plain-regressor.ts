@@ -2,18 +2,14 @@ import { createPlainRegressor, weightsOf } from '../core/estimation/networks/lea
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { fetchContract, fetchEntry, withFileName } from './model-files';
 
-export interface PlainLoadOptions {
-  /** Called with the fraction [0, 1] of the weights that has loaded. */
-  readonly onProgress?: (share: number) => void;
-}
-
 /**
  * Loads the learned network without a runtime: fetches contract and weights, and verifies size and SHA-256. Rejects
- * with an Error that names the file and its fault.
+ * with an Error that names the file and its fault. `onProgress`: called with the fraction [0, 1] of the weights that
+ * has loaded.
  */
 export async function loadPlainRegressor(
   contractUrl: string,
-  { onProgress }: PlainLoadOptions = {},
+  onProgress?: (share: number) => void,
 ): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
   const weights = weightsOf(contract);

@@ -17,11 +17,11 @@ const lossPatienceMs = 1000;
 /** Resolves with the reason why the session's device is lost; null: it is not. */
 async function lossOf({ lost }: InferenceSession): Promise<string | null> {
   let timer: ReturnType<typeof setTimeout> | undefined;
-  const inVain = new Promise<null>((resolve) => {
+  const timeout = new Promise<null>((resolve) => {
     timer = setTimeout(resolve, lossPatienceMs, null);
   });
   try {
-    return await Promise.race([lost ?? null, inVain]);
+    return await Promise.race([lost ?? null, timeout]);
   } finally {
     clearTimeout(timer);
   }
@@ -47,14 +47,14 @@ export class SessionRegressor implements PoseRegressor {
   }
 
   async run(features: Float32Array): Promise<Float32Array> {
-    this.#demand();
+    this.#assertUsable();
     if (this.#next) return (await this.#next).run(features);
     const session = this.#session;
     if (session.provider === 'wasm') return session.run(features);
     try {
       return await session.run(features);
     } catch (error) {
-      this.#demand();
+      this.#assertUsable();
       this.#next ??= this.#leave(session, error);
       return (await this.#next).run(features);
     }
@@ -74,7 +74,7 @@ export class SessionRegressor implements PoseRegressor {
       throw withFileName(file, second);
     });
     if (this.#disposed) await opened.release();
-    this.#demand();
+    this.#assertUsable();
     this.#session = opened;
     void this.#reportLoss(device, error);
     return opened;
@@ -91,7 +91,7 @@ export class SessionRegressor implements PoseRegressor {
   }
 
   /** Throws where the network was released. */
-  #demand(): void {
+  #assertUsable(): void {
     if (this.#disposed) throw new Error(`${this.contract.file}: used after dispose`);
   }
 }

@@ -1,24 +1,39 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { InferenceSession, ModelTensors, WasmPaths } from './session';
-import type { WorkerRequest, WorkerResponse } from './worker-messages';
+
+/** A request of the page to the worker that runs a model: to open it, or to run it. */
+export type WorkerRequest =
+  | {
+      readonly id: number;
+      readonly model: Uint8Array;
+      readonly tensors: ModelTensors;
+      readonly wasmPaths: WasmPaths | undefined;
+    }
+  | { readonly id: number; readonly features: Float32Array };
+
+/** The answer to the request with this number. */
+export type WorkerResponse =
+  | { readonly id: number; readonly inputNames: readonly string[]; readonly outputNames: readonly string[] }
+  | { readonly id: number; readonly numbers: Float32Array }
+  | { readonly id: number; readonly broken: string };
 
 interface Waiting {
   readonly resolve: (answer: WorkerResponse) => void;
   readonly reject: (error: Error) => void;
 }
 
-/** The fault of an answer that belongs to another request. */
-const astray = 'the inference worker sent an unexpected answer';
+/** The message for an answer to another kind of request. */
+const unexpectedAnswer = 'the inference worker sent an unexpected answer';
 /** The time [ms] of silence after which a worker counts as dead, at the latest after twice as long. */
 const patienceMs = 2500;
 
 function numbersOf(answer: WorkerResponse): Float32Array {
-  if (!('numbers' in answer)) throw new Error(astray);
+  if (!('numbers' in answer)) throw new Error(unexpectedAnswer);
   return answer.numbers;
 }
 
 function namesOf(answer: WorkerResponse): Pick<InferenceSession, 'inputNames' | 'outputNames'> {
-  if (!('inputNames' in answer)) throw new Error(astray);
+  if (!('inputNames' in answer)) throw new Error(unexpectedAnswer);
   return answer;
 }
 
@@ -37,7 +52,7 @@ export async function createWorkerSession(
   let broken: Error | null = null;
   // Opening takes as long as its download.
   let opened = false;
-  let asked = 0;
+  let nextId = 0;
   let suspect: number | undefined;
   const watch = setInterval(() => {
     const [oldest] = waiting.keys();
@@ -53,7 +68,7 @@ export async function createWorkerSession(
     waiting.clear();
   }
 
-  function ask(question: WorkerRequest): Promise<WorkerResponse> {
+  function send(question: WorkerRequest): Promise<WorkerResponse> {
     if (broken) return Promise.reject(broken);
     return new Promise<WorkerResponse>((resolve, reject) => {
       waiting.set(question.id, { resolve, reject });
@@ -62,15 +77,15 @@ export async function createWorkerSession(
   }
 
   worker.addEventListener('message', ({ data: answer }: MessageEvent<WorkerResponse>) => {
-    const asker = waiting.get(answer.id);
+    const pending = waiting.get(answer.id);
     waiting.delete(answer.id);
-    if ('broken' in answer) asker?.reject(new Error(answer.broken));
-    else asker?.resolve(answer);
+    if ('broken' in answer) pending?.reject(new Error(answer.broken));
+    else pending?.resolve(answer);
   });
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const opening = ask({ id: asked++, model, tensors, wasmPaths }).then(namesOf);
+  const opening = send({ id: nextId++, model, tensors, wasmPaths }).then(namesOf);
   const { inputNames, outputNames } = await opening.catch((error: unknown) => {
     breakDown(reasonOf(error));
     throw error;
@@ -80,7 +95,7 @@ export async function createWorkerSession(
     provider: 'wasm',
     inputNames,
     outputNames,
-    run: (features) => ask({ id: asked++, features }).then(numbersOf),
+    run: (features) => send({ id: nextId++, features }).then(numbersOf),
     async release() {
       breakDown('already released');
     },

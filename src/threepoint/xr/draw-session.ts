@@ -1,4 +1,3 @@
-import { addFramesToEvents } from './frameless-events';
 import type { DrawingSpace } from './tracked-session';
 
 /** The part of a renderer that draws a session: `renderer.xr` of three.js. */
@@ -38,5 +37,28 @@ export async function drawSession<Prepared>(
     // A session that is not drawn would keep the headset waiting, and no other could start.
     await endSession(session);
     throw error;
+  }
+}
+
+const inputEvents = ['select', 'selectstart', 'selectend', 'squeeze', 'squeezestart', 'squeezeend'];
+
+/**
+ * Adds frames to input events that a runtime fires without one (`frame: null`), which crash three's controllers. Such
+ * an event is stopped and fired again with the next frame. Call it before other listeners are added to the session.
+ */
+export function addFramesToEvents(session: XRSession): void {
+  for (const type of inputEvents) {
+    session.addEventListener(type, (event) => {
+      const { frame, inputSource } = event as XRInputSourceEvent;
+      if (frame) return;
+      event.stopImmediatePropagation();
+      session.requestAnimationFrame((_, next) => {
+        const again = Object.defineProperties(new Event(type), {
+          frame: { value: next },
+          inputSource: { value: inputSource },
+        });
+        if (next) session.dispatchEvent(again);
+      });
+    });
   }
 }

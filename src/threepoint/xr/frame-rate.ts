@@ -9,7 +9,7 @@ const lateAfterIntervals = 1.5;
 const workShare = 0.6;
 /** Frames right after the start or a change of the rate do not count [s]. */
 const settleSeconds = 1;
-/** What was not held is tried again after this time [s], which doubles with each failure up to the second. */
+/** The time [s] after which a failed rate is tried again. It doubles with each failure, up to the second. */
 const shortestRetry = 60;
 const longestRetry = 960;
 
@@ -40,16 +40,16 @@ const allSavings = levels.length - 1;
 /** The savings while the load is unknown: all that do not affect mirrors. */
 export const defaultSavings: Savings = { foveation: 1, mirrorRateHz: null };
 
-/** How often a rate was not held with some savings, and when it may be tried again [s]. */
+/** The number of failures of a rate with some savings, and the time of the next attempt [s]. */
 interface Failures {
   readonly count: number;
   readonly retryAt: number;
 }
 
 /**
- * Judges the load of the page: a rate is held with fewer than 1 % late frames over ten seconds. As soon as a window has
- * failed, it takes savings, and with all of them the next lower rate. After windows that held it tries the next higher
- * rate if there is time to spare, then fewer savings; what failed is tried again later each time.
+ * Controls the frame rate by the load of the page: a rate is held with fewer than 1 % late frames over ten seconds.
+ * After a failed window it takes savings, and with all of them the next lower rate. After a held window it tries the
+ * next higher rate if there is time to spare, then fewer savings. A failed attempt is repeated later each time.
  */
 export class FrameRateControl {
   /** The rates that the device offers [Hz], ascending; empty: it offers no choice. */

@@ -5,24 +5,24 @@ import type { Side } from '../core/math/side';
 import { add, scale, subtract, type Vec3, vec3 } from '../core/math/vec3';
 
 /**
- * How a controller lies in the hand. WebXR's grip: origin in the middle of the fist, −Z along the handle towards the
+ * The fit of a controller in the hand. WebXR's grip: origin in the middle of the fist, −Z along the handle towards the
  * thumb, X through the back of the hand (+X right, −X left). The handle leans from upright (across the palm) towards
  * the fingers.
  */
 export interface HandleFit {
-  /** Middle of the fist from the wrist [m]: towards the knuckles, and below the back of the hand towards the palm. */
+  /** The middle of the fist from the wrist [m]: towards the knuckles, and below the back of the hand. */
   readonly ahead: number;
   readonly below: number;
-  /** Lean of the handle's thumb end towards the fingers [rad]. */
+  /** The lean of the handle's thumb end towards the fingers [rad]. */
   readonly lean: number;
 }
 
 const degrees = (value: number): number => (value * Math.PI) / 180;
 
 /**
- * By the profile names of the WebXR input profiles registry. The fist is the same for all; the leans are our estimates
- * from the angle between grip and target ray that the runtimes report (Touch: 45°) with the hand pointing along the
- * ray.
+ * The fits by the profile names of the WebXR input profiles registry. The fist is the same for all; the leans are our
+ * estimates from the angle between grip and target ray that the runtimes report (Touch: 45°) with the hand pointing
+ * along the ray.
  */
 const fits: Readonly<Record<string, HandleFit>> = {
   'meta-quest-touch-plus': { ahead: 0.08, below: 0.025, lean: degrees(45) },

@@ -85,7 +85,7 @@ export class HandReader {
   read(frame: XRFrame, hand: XRHand, space: XRReferenceSpace, time: number): TrackedPose | null {
     if (hand !== this.#hand) this.#follow(hand);
     const filled = this.#fill(frame, space);
-    const wrist = filled ? this.#filledWrist() : this.#ask(frame, hand, space);
+    const wrist = filled ? this.#filledWrist() : this.#readOneByOne(frame, hand, space);
     if (!wrist) {
       this.#seen.pinch = Number.NaN;
       this.#indexTip.x = Number.NaN;
@@ -134,7 +134,7 @@ export class HandReader {
   }
 
   /** Reads joint by joint: the device has no `fillPoses`, or sees some joints only. */
-  #ask(frame: XRFrame, hand: XRHand, space: XRReferenceSpace): TrackedPose | null {
+  #readOneByOne(frame: XRFrame, hand: XRHand, space: XRReferenceSpace): TrackedPose | null {
     const wristJoint = hand.get('wrist' as XRHandJoint);
     const found = wristJoint && frame.getJointPose?.(wristJoint, space);
     const wrist = found ? toTrackedPose(found) : null;

@@ -15,6 +15,12 @@ const pressedButtons = (gamepad: Gamepad | undefined): HandButtons => ({
   grip: gamepad?.buttons[squeezeButton]?.value ?? 0,
 });
 
+/** Returns the presses of a source. A bare hand has only its pinch, which its gamepad reports not before its end. */
+function pressesOf({ isBare, pinch }: PointingHand, { gamepad }: XRInputSource): HandButtons {
+  if (!isBare) return pressedButtons(gamepad);
+  return Number.isNaN(pinch) ? allReleased : { ...allReleased, pinch };
+}
+
 /** The fingers of a hand without joints that does not pinch. */
 const openHand = { thumb: 0, index: 0, rest: 0 };
 
@@ -25,7 +31,7 @@ const maximumOf = (a: HandButtons, b: HandButtons): HandButtons => ({
   ...((a.taken || b.taken) && { taken: true }),
 });
 
-/** How a side is tracked. */
+/** The input that tracks a side. */
 export type InputKind = 'controller' | 'hand' | 'none';
 
 const hasJoints = ({ hand }: XRInputSource): boolean => hand?.get('wrist') !== undefined;
@@ -44,9 +50,9 @@ function kindOf(source: XRInputSource): InputKind {
  * their sides.
  */
 export class InputReader {
-  /** How each side was tracked in the newest frame. */
+  /** The input that tracked each side in the newest frame. */
   readonly kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
-  /** How far the buttons of each side were pressed in the newest frame; a bare hand has a pinch and nothing else. */
+  /** The button presses of each side in the newest frame; a bare hand has only a pinch. */
   readonly buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
   /** The finger bends of the newest frame, in memory that the next one overwrites. */
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
@@ -129,14 +135,16 @@ export class InputReader {
     if (pose) this.#choices[side].offer({ source, pose, isHand: kind === 'hand' });
     if (kinds[side] === 'none') kinds[side] = kind;
     const device = buttons[side].device ?? this.#deviceOf(source);
-    const pressed = this.#pressedBy(source, side);
     const hand = this.#hand;
     hand.wrist = pose;
     hand.isBare = kind === 'hand';
     hand.pinch = hand.isBare ? this.#pinchOf(source, side) : 0;
     hand.tip = hasJoints(source) && pose ? this.#handReaders[side].indexTip : null;
     const taken = pointing?.readHand(source, now, hand);
-    buttons[side] = { ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressed), device };
+    buttons[side] = {
+      ...maximumOf(buttons[side], taken ? { ...allReleased, taken } : pressesOf(hand, source)),
+      device,
+    };
   }
 
   /**
@@ -159,16 +167,6 @@ export class InputReader {
     if (!grip) return null;
     const tracked = toTrackedPose(grip);
     return tracked && { ...wristFromGrip(tracked, side, fitOf(source)), tracking: tracked.tracking };
-  }
-
-  /**
-   * Returns the buttons of a source that was just read; a bare hand has its pinch, which its gamepad reports only at
-   * its end.
-   */
-  #pressedBy(source: XRInputSource, side: Side): HandButtons {
-    if (kindOf(source) !== 'hand') return pressedButtons(source.gamepad);
-    const pinch = this.#pinchOf(source, side);
-    return Number.isNaN(pinch) ? allReleased : { ...allReleased, pinch };
   }
 
   /** Returns the pinch of a bare hand, 0 to 1; NaN: its fingers are not seen. */

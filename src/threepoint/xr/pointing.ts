@@ -18,7 +18,7 @@ export interface InputFrame {
 
 /** The hand of an input source in a frame; the next source may overwrite it. */
 export interface PointingHand {
-  /** Null: not seen. */
+  /** The wrist, floor frame; null: not seen. */
   wrist: Pose<'floor'> | null;
   /** Whether it is a hand without a controller. */
   isBare: boolean;

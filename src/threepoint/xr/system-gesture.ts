@@ -6,21 +6,21 @@ import { dot, down, normalise, subtract, vec3 } from '../core/math/vec3';
 /** A palm faces the eyes when their direction is within 35° of its normal. */
 const facing = Math.cos((35 * Math.PI) / 180);
 
-/** What a frame reports of a bare hand. */
+/** A bare hand in one frame. */
 export interface SeenHand {
   readonly wrist: Pose<'floor'>;
   /** 0 to 1; NaN: the fingers are not seen. */
   readonly pinch: number;
-  /** The browser reports where the hand points. */
+  /** Whether the browser reports a pointing direction for the hand. */
   readonly hasRay: boolean;
-  /** The browser reports the pinch as the device's menu button. */
+  /** Whether the browser reports the pinch as the device's menu button. */
   readonly menu: boolean;
 }
 
 /**
- * Decides when a bare hand belongs to the device. WebXR has no signal of its own for it (webxr-hand-input 117):
- * browsers take the ray of such a hand away, report a menu button, or report nothing. Hence a pinch that begins with
- * the palm towards the eyes, which opens the menus of Quest and Vision Pro, is the device's until it opens.
+ * Decides when a bare hand belongs to the device. WebXR has no signal for it (webxr-hand-input 117): browsers remove
+ * the ray of such a hand, report a menu button, or report nothing. Hence a pinch that begins with the palm towards the
+ * eyes, which opens the menus of Quest and Vision Pro, belongs to the device until it is released.
  */
 export class SystemGesture {
   #hadRay = false;

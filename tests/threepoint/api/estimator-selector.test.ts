@@ -13,7 +13,7 @@ const head = {
 } as const;
 
 /** A stand-in that draws nothing; its network is at fault when the regressor's provider says so. */
-function estimatorOf(name: EstimatorName, _: unknown, network?: PoseRegressor): PoseEstimator {
+function estimatorOf(name: EstimatorName, _: unknown, network: PoseRegressor | null): PoseEstimator {
   if (!estimatorNames.includes(name)) return createEstimator(name, defaultCalibration);
   return {
     name,

@@ -1,5 +1,4 @@
-import { FramePacer } from 'threepoint/avatar/frame-pacer';
-import { reflectionSize } from 'threepoint/avatar/reflection-size';
+import { FramePacer, reflectionSize } from 'threepoint/avatar/mirror';
 import { describe, expect, test } from 'vitest';
 
 /** Height to width of the page's mirror. */

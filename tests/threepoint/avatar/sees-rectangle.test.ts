@@ -1,5 +1,5 @@
 import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from 'three';
-import { seesRectangle } from 'threepoint/avatar/sees-rectangle';
+import { seesRectangle } from 'threepoint/avatar/mirror';
 import { nextRandom } from 'threepoint/core/math/random';
 import { expect, test } from 'vitest';
 

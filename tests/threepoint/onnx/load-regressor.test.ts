@@ -65,7 +65,7 @@ describe('the learned network without a runtime', () => {
   test('loads, and answers at once', async () => {
     const shares: number[] = [];
     const url = serveWeights(model('learned.bin'));
-    const regressor = await loadPlainRegressor(url, { onProgress: (share) => shares.push(share) });
+    const regressor = await loadPlainRegressor(url, (share) => shares.push(share));
     expect(regressor.provider).toBe('plain');
     expect(shares.at(-1)).toBe(1);
     const output = regressor.runNow?.(new Float32Array(regressor.contract.inputs[0]!.shape.at(-1)!));

@@ -1,5 +1,5 @@
 import { startRegressor } from 'threepoint/onnx/load-regressor';
-import type { WorkerRequest, WorkerResponse } from 'threepoint/onnx/worker-messages';
+import type { WorkerRequest, WorkerResponse } from 'threepoint/onnx/worker-session';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import { readShipped } from '../core/estimation/shipped-models';
 

@@ -1,5 +1,5 @@
 import { WebXRController } from 'three/src/renderers/webxr/WebXRController.js';
-import { addFramesToEvents } from 'threepoint/xr/frameless-events';
+import { addFramesToEvents } from 'threepoint/xr/draw-session';
 import { expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 

@@ -1,6 +1,5 @@
 import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
-import type { MotionWriter } from 'threepoint/api/motion-file';
-import type { MotionFormat } from 'threepoint/api/motion-formats';
+import type { MotionFormat, MotionWriter } from 'threepoint/api/motion-file';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { offerDownload } from 'threepoint-ui/downloads';
@@ -54,8 +53,8 @@ export class MotionExport {
     const { signal } = this.#cancellation;
     this.#setState({ name: stem, method: label, fraction: 0, secondsLeft: null });
     try {
-      const { writeMotionFile: exportMotionBare } = await import('threepoint/api/motion-file');
-      const { extension, type, parts } = await exportMotionBare(recording, {
+      const { writeMotionFile } = await import('threepoint/api/write-motion-file');
+      const { extension, type, parts } = await writeMotionFile(recording, {
         format: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
         estimator,

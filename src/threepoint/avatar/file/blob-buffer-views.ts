@@ -42,8 +42,7 @@ export const blobBufferViews =
         const to = from + view.byteLength;
         if (!pictures.has(index)) return Promise.resolve(binary.slice(from, to).buffer);
         const part = file.slice(binary.byteOffset + from, binary.byteOffset + to);
-        // reason: a picture's view goes into a new Blob, which takes a blob as it takes bytes; the types know of
-        // bytes alone.
+        // reason: GLTFLoader passes a picture's view to a new Blob, which accepts a Blob; the types allow bytes only.
         return Promise.resolve(part as unknown as ArrayBuffer);
       },
     };

@@ -79,6 +79,10 @@ function urisIn(json: unknown): string[] {
   return uris;
 }
 
+type Gltf = v.InferOutput<typeof gltf>;
+/** Throws an Error that names the file if a measure exceeds its limit, or is not a number. */
+type Limit = (what: string, has: number, may: number) => void;
+
 /**
  * Throws an Error that names the file and the limit if the avatar exceeds a limit or refers to another file. Reads
  * headers alone: nothing is decoded, allocated or fetched. `unpacked`: the supported extensions of compression. Returns
@@ -90,7 +94,7 @@ export function inspectAvatar(
   unpacked: readonly string[] = [],
   limits: AvatarLimits = avatarLimits,
 ): readonly string[] {
-  const limit = (what: string, has: number, may: number) => {
+  const limit: Limit = (what, has, may) => {
     if (!(has <= may))
       throw new Error(`${name}: ${shownNumber(has)} ${what}; an avatar may have ${shownNumber(may)} at most`);
   };
@@ -98,10 +102,24 @@ export function inspectAvatar(
   const chunks = readGlbChunks(bytes);
   if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
   limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * maxJsonFraction);
+  const description = parseDescription(chunks.json, name);
+  if (description.meshes.length === 0) {
+    if (description.animations.length > 0) throw new MotionOnlyError(name);
+    throw new Error(`${name}: holds nothing that could be seen: it has no meshes`);
+  }
+  const { extensionsRequired, extensionsUsed } = description;
+  assertReadable(extensionsRequired, name, unpacked);
+  limitScene(description, limit, limits);
+  limitImages(description, chunks.binary, name, limit, limits);
+  return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
+}
+
+/** Parses the JSON of a file. Throws an Error that names the file if it is no glTF, or refers to another file. */
+function parseDescription(text: string, name: string): Gltf {
   let json: unknown;
   let uris: readonly string[];
   try {
-    json = JSON.parse(chunks.json);
+    json = JSON.parse(text);
     uris = urisIn(json);
   } catch (error) {
     throw new Error(`${name}: not a VRM or GLB file (${reasonOf(error)})`);
@@ -111,26 +129,27 @@ export function inspectAvatar(
     throw new Error(`${name}: refers to something outside the file (${shown}); an avatar must hold everything itself`);
   }
   const parsed = v.safeParse(gltf, json);
-  if (!parsed.success) {
-    const [issue] = parsed.issues;
-    throw new Error(`${name}: not a VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
-  }
-  const { extensionsRequired, extensionsUsed, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
-  if (meshes.length === 0) {
-    if (parsed.output.animations.length > 0) throw new MotionOnlyError(name);
-    throw new Error(`${name}: holds nothing that could be seen: it has no meshes`);
-  }
-  const foreign = extensionsRequired.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
+  if (parsed.success) return parsed.output;
+  const [issue] = parsed.issues;
+  throw new Error(`${name}: not a VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
+}
+
+/** Throws an Error that names the file if it requires an extension that this page does not read. */
+function assertReadable(required: readonly string[], name: string, unpacked: readonly string[]): void {
+  const foreign = required.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
+  if (foreign === undefined) return;
   if (foreign === 'KHR_texture_basisu') throw new Error(`${name}: ${ktx2Advice}`);
-  if (foreign !== undefined)
-    throw new Error(
-      compression.test(foreign)
-        ? `${name}: is compressed (${foreign}); this page reads avatars that are saved without compression`
-        : `${name}: needs ${foreign.slice(0, 60)}, which this page does not read`,
-    );
+  throw new Error(
+    compression.test(foreign)
+      ? `${name}: is compressed (${foreign}); this page reads avatars that are saved without compression`
+      : `${name}: needs ${foreign.slice(0, 60)}, which this page does not read`,
+  );
+}
+
+/** Limits the nodes, bones and meshes of a file, and the memory of their numbers. */
+function limitScene({ nodes, meshes, accessors, skins, bufferViews }: Gltf, limit: Limit, limits: AvatarLimits): void {
   limit('nodes', nodes.length, limits.nodes);
   limit('bones', new Set(skins.flatMap(({ joints }) => joints)).size, limits.bones);
-
   const primitives = meshes.flatMap((mesh) => mesh.primitives);
   const targets = primitives.reduce((sum, { targets }) => sum + targets.length, 0);
   limit('morph targets', targets, limits.morphTargets);
@@ -151,13 +170,22 @@ export function inspectAvatar(
   // A mesh is drawn once for each node that refers to it.
   const triangles = nodes.reduce((sum, { mesh }) => sum + (mesh === undefined ? 0 : corners(mesh)), 0);
   limit('triangles', triangles, limits.triangles);
+}
 
+/** Limits the images of a file by their headers. Throws an Error that names the file if one cannot be shown. */
+function limitImages(
+  { images, bufferViews }: Gltf,
+  binary: Uint8Array,
+  name: string,
+  limit: Limit,
+  limits: AvatarLimits,
+): void {
   limit('textures', images.length, limits.textures);
   let pixels = 0;
   images.forEach(({ bufferView }, i) => {
     const where = bufferView === undefined ? undefined : bufferViews[bufferView];
     const start = where?.byteOffset ?? 0;
-    const picture = where && chunks.binary.subarray(start, start + where.byteLength);
+    const picture = where && binary.subarray(start, start + where.byteLength);
     if (picture && isKtx2(picture)) throw new Error(`${name}: ${ktx2Advice}`);
     const size = picture && imageSize(picture);
     if (!size) throw new Error(`${name}: picture ${i} is no PNG, JPEG or WebP`);
@@ -165,7 +193,6 @@ export function inspectAvatar(
     pixels += size.width * size.height;
   });
   limit('million pixels', pixels / 1e6, limits.millionPixels);
-  return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
 }
 
 const shownNumber = (value: number): string =>

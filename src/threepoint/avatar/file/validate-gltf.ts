@@ -5,7 +5,7 @@ import { validateBytes } from 'gltf-validator';
  * bounds that are rounded otherwise, normals and weights that are slightly off their length, and a stride where none is
  * needed, which three.js reads correctly. Extensions that the validator does not know, such as VRM's, are accepted too.
  */
-const pardoned = [
+const acceptedFaults = [
   'ACCESSOR_MIN_MISMATCH',
   'ACCESSOR_MAX_MISMATCH',
   'ACCESSOR_VECTOR3_NON_UNIT',
@@ -29,7 +29,7 @@ export async function gltfFaults(bytes: Uint8Array): Promise<readonly string[]> 
   const { issues } = await validateBytes(bytes, {
     format: 'glb',
     writeTimestamp: false,
-    severityOverrides: Object.fromEntries(pardoned.map((code) => [code, information])),
+    severityOverrides: Object.fromEntries(acceptedFaults.map((code) => [code, information])),
     maxIssues: 2000,
   });
   return issues.messages

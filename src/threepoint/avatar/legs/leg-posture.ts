@@ -68,9 +68,9 @@ interface MutableLegPose extends LegPose {
   readonly foot: MutableQuat;
 }
 
-/** The smallest bend of a leg [share of its length]: a knee that snaps straight is visible. */
+/** The largest distance of hip and ankle [fraction of the leg's length]: a knee that snaps straight is visible. */
 const longestReach = 0.999;
-/** The largest way of the hips in one frame [leg lengths]. */
+/** The largest displacement of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
 /**
  * The fastest turn about the vertical of both head and hips [rad/s], and the largest between two frames that lie far
@@ -90,7 +90,7 @@ const makeLeg = (): MutableLegPose => ({
   foot: quat(0, 0, 0, 1),
 });
 
-// Scratch of one call; nothing of it is kept.
+// Scratch variables of one call.
 const level = quat(0, 0, 0, 1);
 const levelForward = vec3(0, 0, 0);
 const footTurn = quat(0, 0, 0, 1);
@@ -107,14 +107,17 @@ const axisZ = vec3(0, 0, 0);
 const kneeCircle = makeElbowCircle();
 const fallbacks: readonly [Vec3, Vec3] = [levelForward, up];
 
-/** The rotation that takes a leg hanging down, toes to −Z, along `direction` with its hinge along `hinge`, unit. */
+/**
+ * Returns the rotation of a bone of a leg from hanging down, toes to −Z, to pointing along `direction`. `hinge`: the
+ * unit axis of the knee.
+ */
 function aimDown(direction: Vec3, hinge: Vec3, target: MutableQuat): Quat {
   normalise(scale(direction, -1, axisY), up, axisY);
   return fromAxes(hinge, axisY, cross(hinge, axisY, axisZ), target);
 }
 
 /**
- * Two legs under a pelvis: feet stand and step as a gait network expects them to, or are where trackers pin them; knees
+ * Poses two legs under a pelvis: feet stand and step as a gait network expects, or are where trackers pin them; knees
  * follow.
  */
 export class LegPosture {
@@ -131,7 +134,7 @@ export class LegPosture {
   private lastHeadYaw = 0;
   private seconds = 0;
 
-  /** eyeHeight [m]: the person's, whose proportions are the unit of the gait. */
+  /** `eyeHeight`: that of the person [m], the unit of length of the gait network. */
   constructor(
     private proportions: LegProportions,
     private eyeHeight: number,
@@ -169,7 +172,7 @@ export class LegPosture {
   }
 
   /**
-   * Returns whether the body jumped since the frame before, because the device or the wearer moved or turned it: the
+   * Returns whether the body jumped since the frame before, because the device or the user moved or turned it: the
    * feet follow at once.
    */
   private wasCarried({ hips, head }: GaitPoints, hipsYaw: number, deltaSeconds: number): boolean {
@@ -207,8 +210,8 @@ export class LegPosture {
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);
     copyQuat(foot, estimated.orientation);
-    const trust = tracked ? trustBeyond(distance(tracked.position, hip) - upper - lower) : 0;
-    const weight = followPin(pin, estimated, tracked, trust, pinStep);
+    const confidence = tracked ? trustBeyond(distance(tracked.position, hip) - upper - lower) : 0;
+    const weight = followPin(pin, estimated, tracked, confidence, pinStep);
     if (weight === 0) return 0;
     lerp(ankle, pin.target.position, weight, ankle);
     slerp(foot, pin.target.orientation, weight, foot);

@@ -1,10 +1,11 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
 import type { GaitPoints } from '../../core/estimation/gait/gait-features';
+import { type Quat, quat, slerp } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
 import { vec3 } from '../../core/math/vec3';
-import { LegHelperJoints } from '../rig/leg-helpers';
-import { type AvatarJoint, legJoints, type Rig } from '../rig/rig';
-import type { SpreadLimb } from '../rig/spread-limb-weights';
+import { recordOf } from '../../core/records';
+import { type AvatarJoint, type HelperJoint, legJoints, type Rig } from '../rig/rig';
+import { type SpreadLimb, spreadLimbOf } from '../rig/spread-limb-weights';
 import { LegPosture, type LegProportions } from './leg-posture';
 
 const bonesOf = {
@@ -40,19 +41,37 @@ export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number)
   };
 }
 
+/**
+ * The joints that are added to one leg. Each rotates half as far as the bone that begins there, so that hip, knee and
+ * ankle bend in two steps and keep their girth.
+ */
+interface LegHelpers {
+  readonly hip: HelperJoint;
+  readonly knee: HelperJoint;
+  readonly ankle: HelperJoint;
+}
+
+const half = quat(0, 0, 0, 1);
+const halfway = (before: Quat, after: Quat): Quat => slerp(before, after, 0.5, half);
+
 /** The legs of an avatar: a leg posture on the bones of its rig. */
 export class Legs {
   private readonly posture = new LegPosture(averageLegs, averageEyeHeight);
   /** null: the rig lacks a bone of a leg. */
-  private readonly helpers: LegHelperJoints | null;
+  private readonly helpers: Readonly<Record<Side, LegHelpers>> | null;
 
   constructor(private readonly rig: Rig) {
-    this.helpers = legJoints.every((name) => rig.bones.has(name)) ? new LegHelperJoints(rig) : null;
+    const helpersOf = (side: Side): LegHelpers => ({
+      hip: rig.addHelper(`${side}UpperLeg`, 'half'),
+      knee: rig.addHelper(`${side}LowerLeg`, 'half'),
+      ankle: rig.addHelper(`${side}Foot`, 'half'),
+    });
+    this.helpers = legJoints.every((name) => rig.bones.has(name)) ? recordOf(sides, helpersOf) : null;
   }
 
   /** Returns the joints among which the skin of the legs is to be shared. */
   limbs(): readonly SpreadLimb[] {
-    return this.helpers?.limbs() ?? [];
+    return Object.values(this.helpers ?? {}).map(({ hip, knee, ankle }) => spreadLimbOf([hip, knee, ankle]));
   }
 
   /**
@@ -67,16 +86,18 @@ export class Legs {
 
   /** Advances by one frame under the hips of a body, floor frame. feet: the ankles that trackers pin. */
   apply(points: GaitPoints, deltaSeconds: number, feet?: TrackedFeet): void {
-    if (!this.helpers) return;
-    this.posture.update(points, deltaSeconds, feet);
+    const { rig, posture, helpers } = this;
+    if (!helpers) return;
+    posture.update(points, deltaSeconds, feet);
     for (const side of sides) {
-      const leg = this.posture.legs[side];
-      const { hip, knee, ankle, thigh, shank, foot } = leg;
+      const { hip, knee, ankle, thigh, shank, foot } = posture.legs[side];
       const bones = bonesOf[side];
-      this.rig.place(bones.thigh, hip, thigh);
-      this.rig.place(bones.shank, knee, shank);
-      this.rig.place(bones.foot, ankle, foot);
-      this.helpers.place(side, points.hips, leg);
+      rig.place(bones.thigh, hip, thigh);
+      rig.place(bones.shank, knee, shank);
+      rig.place(bones.foot, ankle, foot);
+      rig.placeHelper(helpers[side].hip, hip, halfway(points.hips.orientation, thigh));
+      rig.placeHelper(helpers[side].knee, knee, halfway(thigh, shank));
+      rig.placeHelper(helpers[side].ankle, ankle, halfway(shank, foot));
     }
   }
 }

@@ -15,20 +15,20 @@ import { type Side, sides } from '../../core/math/side';
 import type { HelperJoint, Rig } from './rig';
 import { type SpreadLimb, spreadLimbOf } from './spread-limb-weights';
 
-/** One arm's joints that its file lacks. */
+/** The joints that are added to one arm. */
 interface ArmHelpers {
   readonly side: Side;
-  /** At the shoulder, elbow and wrist: half of the way from the bone before to the bone after. */
+  /** The joints that rotate half as far as the bone that begins there. */
   readonly shoulder: HelperJoint;
   readonly elbow: HelperJoint;
   readonly wrist: HelperJoint;
-  /** From the shoulder on, in equal steps of the upper arm's twist: the first has none of it, the bone itself all. */
+  /** The joints along the upper arm, in equal steps of its twist: the first has none of it, the bone itself all. */
   readonly upper: readonly HelperJoint[];
-  /** From the elbow on, in equal steps of the hand's twist: the bone itself has none of it, the last all. */
+  /** The joints along the forearm, in equal steps of the hand's twist: the bone itself has none of it, the last all. */
   readonly lower: readonly HelperJoint[];
-  /** Unwrapped angle [rad] by which the upper arm is turned about itself against the clavicle. */
+  /** The unwrapped twist of the upper arm relative to the clavicle [rad]. */
   upperTwist: number;
-  /** By which the hand is turned about the forearm. */
+  /** The unwrapped twist of the hand relative to the forearm [rad]. */
   lowerTwist: number;
 }
 
@@ -42,16 +42,16 @@ const turned = quat(0, 0, 0, 1);
 const step = quat(0, 0, 0, 1);
 const begin = quat(0, 0, 0, 1);
 
-/** The angle [rad] by which `to` is turned against `from` about an axis of both. */
+/** Returns the twist of `to` relative to `from` about an axis of both [rad]. */
 function angleAbout(from: Quat, to: Quat, along: (typeof alongArm)[Side]): number {
   multiply(conjugate(from, inverse), to, against);
   return twistAngle(twistOf(against, along, twist), along);
 }
 
 /**
- * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads
- * over the forearm and that of the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of
- * any rig is shared among them (spread-limb-weights); twist bones of its own are taken for the bone they lie on.
+ * Adds joints to the arms of a rig, so that the skin is not wrung and no joint folds. The twist of the hand spreads
+ * over the forearm and that of the upper arm over itself; shoulder, elbow and wrist bend in two steps. The skin of any
+ * rig is shared among them (spread-limb-weights); the rig's own twist bones count as the bone they lie on.
  */
 export class ArmHelperJoints {
   readonly #rig: Rig;
@@ -69,7 +69,7 @@ export class ArmHelperJoints {
     );
   }
 
-  /** Takes the twist out of the forearms of a pose, floor frame; `place` gives it back to what lies along them. */
+  /** Removes the twist from the forearms of a pose, floor frame; `place` adds it to the joints along them. */
   untwist(joints: MutableJointPoses): void {
     for (let i = 0; i < this.#arms.length; i++) {
       const arm = this.#arms[i]!;
@@ -87,7 +87,7 @@ export class ArmHelperJoints {
     }
   }
 
-  /** Puts the joints between where the bones of the pose are, which were placed before. */
+  /** Places the added joints for a pose whose bones were placed before. */
   place(joints: MutableJointPoses): void {
     for (let i = 0; i < this.#arms.length; i++) {
       const arm = this.#arms[i]!;
@@ -114,7 +114,7 @@ export class ArmHelperJoints {
     }
   }
 
-  /** Straight on with the bones they lie on: of arms that are not seen. */
+  /** Aligns the added joints with their bones, for arms that are not drawn. */
   straighten(): void {
     for (const { shoulder, elbow, wrist, upper, lower } of this.#arms) {
       for (const joint of [shoulder, elbow, wrist]) this.#rig.straighten(joint);

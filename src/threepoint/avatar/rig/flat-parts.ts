@@ -16,7 +16,7 @@ import { skinnedMeshesOf } from '../scene-meshes';
 
 type FlatMesh = SkinnedMesh<BufferGeometry, MeshStandardMaterial>;
 
-/** Whether a mesh's look is that of three's default material but for colour, roughness and metalness. */
+/** Returns whether a mesh's material differs from three's default only in colour, roughness and metalness. */
 function isFlat(mesh: SkinnedMesh): mesh is FlatMesh {
   const { material } = mesh;
   if (Array.isArray(material) || material.type !== 'MeshStandardMaterial') return false;
@@ -28,7 +28,7 @@ function isFlat(mesh: SkinnedMesh): mesh is FlatMesh {
 /** Attributes that `prepare` writes for every part. */
 const written = ['uv', 'color'];
 
-/** What primitives must share to be one mesh. */
+/** Returns a key that is equal for primitives that can be merged. */
 function kindOf({ parent, skeleton, geometry, material }: FlatMesh): string {
   const attributes = Object.entries(geometry.attributes)
     .filter(([name]) => !written.includes(name))
@@ -38,7 +38,7 @@ function kindOf({ parent, skeleton, geometry, material }: FlatMesh): string {
   return [parent?.id, skeleton.uuid, material.side, material.flatShading, ...attributes, ...shapes].join(' ');
 }
 
-/** The values of several materials in the texels of a row, so that their meshes can be one draw call. */
+/** A material with the values of several others in a row of texels, so that their meshes can be one draw call. */
 export class FlatPartsMaterial extends MeshStandardMaterial {
   /** The names and colours of the materials, in the order of their texels. */
   readonly parts: readonly { readonly name: string; readonly color: Color }[];

@@ -17,7 +17,7 @@ import { mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js';
 import { packGlb } from '../../../core/motion/gltf';
 import { imageSize } from '../image-size';
 
-/** What of a scene is kept: the meshes of a body, or the clips of its bones. */
+/** The parts of a scene to keep: the meshes of a body, or the clips of its bones. */
 export type SceneParts = 'body' | 'motion';
 
 type Picture = Uint8Array<ArrayBuffer>;
@@ -34,15 +34,15 @@ interface Description {
 const floatType = 5126;
 const shortType = 5123;
 const wideType = 5125;
-/** Vertices that are closer than this are one [share of the size of their mesh, at most as much in its unit]. */
+/** The distance below which vertices are merged [fraction of their mesh's size], and its maximum in the file's unit. */
 const sameVertex = 1e-6;
 const maxVertexDistance = 1e-4;
-/** Skin and cloth, where the file has no such measure. */
+/** The roughness of skin and cloth, which FBX does not state. */
 const roughness = 0.8;
 
-/** FBXLoader's number of a node in the file. */
+/** Returns the number that FBXLoader gives a node of the file. */
 const idOf = (node: Object3D): unknown => (node as { ID?: unknown }).ID;
-/** FBXLoader gives each further skin that has a bone a copy of it, below the bone and at its place. */
+/** Returns whether a node is a copy of its parent: FBXLoader adds one to a bone for each further skin. */
 const isCopy = (node: Object3D): boolean =>
   idOf(node) !== undefined && node.parent !== null && idOf(node) === idOf(node.parent);
 const original = (node: Object3D): Object3D => (isCopy(node) ? original(node.parent!) : node);
@@ -51,12 +51,12 @@ const nameOf = (node: Object3D): string => {
   return typeof originalName === 'string' ? originalName : node.name;
 };
 
-/** Puts a scene of three.js into the parts of a GLB file. */
+/** Writes a three.js scene as the parts of a GLB file. */
 class GlbWriter {
   readonly #parts: Uint8Array<ArrayBuffer>[] = [];
   readonly #json: Description = { nodes: [], bufferViews: [], accessors: [] };
   readonly #nodes = new Map<Object3D, number>();
-  /** By material, with and without pictures. */
+  /** The indices of written materials, with and without pictures. */
   readonly #materials = { painted: new Map<unknown, number>(), plain: new Map<unknown, number>() };
   readonly #pictures = new Map<string, number | null>();
   #length = 0;
@@ -90,7 +90,7 @@ class GlbWriter {
     return this.#accessor(array as Float32Array, `VEC${itemSize}`, itemSize, bounds);
   }
 
-  /** Writes a node and what hangs from it; returns its index. */
+  /** Writes a node and its descendants; returns its index. */
   async node(object: Object3D, parts: SceneParts): Promise<number> {
     const node: Record<string, unknown> = {
       name: nameOf(object),
@@ -110,7 +110,7 @@ class GlbWriter {
     return index;
   }
 
-  /** Binds the meshes to their bones; all nodes were written before. */
+  /** Binds the meshes to their bones. All nodes must have been written. */
   skins(scene: Object3D, parts: SceneParts): void {
     scene.traverse((object) => {
       if (!('isSkinnedMesh' in object)) return;
@@ -161,7 +161,7 @@ class GlbWriter {
     return primitives;
   }
 
-  /** `kind`: a mesh without places for pictures has none. */
+  /** Writes a material and returns its index. `kind`: 'plain' for a mesh without texture coordinates. */
   async #material(material: MeshPhongMaterial, kind: 'painted' | 'plain'): Promise<number> {
     const known = this.#materials[kind].get(material);
     if (known !== undefined) return known;
@@ -170,7 +170,7 @@ class GlbWriter {
     const baseColorTexture = await texture(map);
     const normalTexture = await texture(normalMap);
     const emissiveTexture = await texture(emissiveMap);
-    // A picture replaces the colour, which programs leave at any value beside it.
+    // A picture replaces the colour: programs export any colour with it.
     const tint = baseColorTexture || !color ? [1, 1, 1] : color.toArray().map(unit);
     const glow = emissive ? emissive.toArray().map((value) => unit(value * emissiveIntensity)) : [0, 0, 0];
     const index =
@@ -277,19 +277,19 @@ function boundsOf(attribute: BufferAttribute): object {
   return { min: min.toArray(), max: max.toArray() };
 }
 
-/** FBX counts a picture's rows from the bottom, glTF from the top. */
+/** Returns texture coordinates for glTF, which counts a picture's rows from the top; FBX counts from the bottom. */
 function upsideDown(uv: BufferAttribute): Float32Array {
   const turned = Float32Array.from(uv.array);
   for (let i = 1; i < turned.length; i += 2) turned[i] = 1 - turned[i]!;
   return turned;
 }
 
-/** A joint without weight is joint 0. */
+/** Returns the joints with 0 in place of joints without weight. */
 function usedJoints(joints: BufferAttribute, weights: BufferAttribute): Uint16Array {
   return Uint16Array.from(joints.array, (joint, i) => (weights.array[i]! > 0 ? joint : 0));
 }
 
-/** The corners of the triangles of each material. */
+/** Returns the corners of the triangles of each material. */
 function cornersByMaterial({ index, groups }: BufferGeometry): ReadonlyMap<number, readonly number[]> {
   const all = [...(index?.array ?? [])];
   if (groups.length === 0) return new Map([[0, all]]);

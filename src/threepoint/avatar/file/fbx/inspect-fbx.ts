@@ -4,25 +4,25 @@ import { isBinaryFbx } from './is-fbx';
 const headerLength = 27;
 const latin = new TextDecoder('latin1');
 
-/** What an FBX file may hold; the converted body is checked again. */
+/** The limit of an FBX file's numbers; the converted body is checked again. */
 const maxNumbers = 40e6;
-/** An array takes 65 µs in all, as measured: the tables for unpacking it have 130 kB, here and in the loader. */
+/** Unpacking an array takes 65 µs (measured): its tables have 130 kB, here and in the loader. */
 const maxPackedArrays = 100_000;
 const deepestNesting = 32;
 /** The largest polygon that is cut into triangles [corners]. */
 const maxCorners = 1000;
-/** Turns of a curve by more than half a circle are subdivided by the loader, so many in all. */
+/** The limit of subdivisions of all curves: the loader subdivides turns of more than half a circle. */
 const maxSubdivisions = 2e6;
 /** The number of packed bytes that are unpacked at once: at most `maxExpansion` times as many come out. */
 const packedAtOnce = 2 ** 12;
 /** The most bytes that one packed byte of DEFLATE can hold (zlib.net, "Maximum Compression Factor"). */
 const maxExpansion = 1032;
 
-/** The reader asks a window for what these need; a body needs none of them. */
+/** The objects for which FBXLoader needs a window; a body needs none of them. */
 const unneeded = /^(Camera|Light|NurbsCurve)$/;
 const none = 'Null';
 
-/** The list that each layer of a mesh consists of, and that of places in it; some programs write layers without one. */
+/** The lists of values and of indices in each layer of a mesh; some programs write layers without one. */
 const listsOfLayer: Readonly<Record<string, { readonly values: string; readonly indices: string }>> = {
   LayerElementNormal: { values: 'Normals', indices: 'NormalsIndex' },
   LayerElementUV: { values: 'UV', indices: 'UVIndex' },
@@ -32,7 +32,7 @@ const listsOfLayer: Readonly<Record<string, { readonly values: string; readonly 
 const byIndex = 'IndexToDirect';
 const direct = 'Direct';
 
-/** A name that every object has already would be overwritten in all of them. */
+/** Throws for a name of Object.prototype, which the loader would overwrite. */
 const demandPlainName = (name: string): void => {
   if (name in {}) throw new Error(`a node is called “${name}”`);
 };
@@ -47,7 +47,7 @@ class ArrayChecks {
     if (this.#numbers > maxNumbers) throw new Error(`holds more than ${maxNumbers / 1e6} million numbers`);
   }
 
-  /** Whether the values of a node must be looked at. */
+  /** Returns whether the values of a node must be checked. */
   needs(name: string): boolean {
     return name === 'PolygonVertexIndex' || name === 'KeyValueFloat';
   }
@@ -57,7 +57,7 @@ class ArrayChecks {
     else this.#checkCurve(values);
   }
 
-  /** A corner that is the last of its polygon is negative. */
+  /** Limits the corners of each polygon; the last corner of a polygon is negative. */
   #checkPolygons(corners: Iterable<number>): void {
     let count = 0;
     for (const corner of corners) {
@@ -78,7 +78,7 @@ class ArrayChecks {
   }
 }
 
-/** Returns an array of an FBX file as it is unpacked. Throws where it is not as long as the file says. */
+/** Unpacks an array of an FBX file; returns null without `keep`. Throws if its length is not the stated one. */
 function unpack(packed: Uint8Array, length: number, keep: boolean): Uint8Array | null {
   if (length > maxExpansion * packed.length) throw new Error('has an array that is shorter than it says');
   const kept = keep ? new Uint8Array(length) : null;
@@ -95,7 +95,7 @@ function unpack(packed: Uint8Array, length: number, keep: boolean): Uint8Array |
   return kept;
 }
 
-/** An array of a file that must be unpacked or looked at. */
+/** An array of a file that must be unpacked or checked. */
 interface StoredArray {
   readonly name: string;
   readonly type: string;
@@ -108,7 +108,7 @@ interface StoredArray {
 const arrayTypes: Readonly<Record<string, number>> = { b: 1, c: 1, i: 4, f: 4, l: 8, d: 8 };
 const plainTypes: Readonly<Record<string, number>> = { C: 1, Y: 2, I: 4, F: 4, L: 8, D: 8 };
 
-/** Walks through the nodes of a binary file and overwrites what its reader cannot read. */
+/** Walks through the nodes of a binary file and overwrites the parts that FBXLoader cannot read. */
 class BinaryWalk {
   readonly #bytes: Uint8Array;
   readonly #view: DataView;
@@ -116,7 +116,7 @@ class BinaryWalk {
   readonly #checks = new ArrayChecks();
   readonly #arrays: StoredArray[] = [];
   #at = headerLength;
-  /** The text of the newest layer that says that its values have a list of indices. */
+  /** The bytes of the text in the newest layer by which its values have a list of indices; null: none. */
   #reference: Uint8Array | null = null;
 
   constructor(bytes: Uint8Array) {
@@ -125,7 +125,7 @@ class BinaryWalk {
     this.#wide = this.#view.getUint32(23, true) >= 7500;
   }
 
-  /** Returns where the last node ends. */
+  /** Returns the end of the last node. */
   walk(): number {
     let end = this.#at;
     while (this.#at < this.#bytes.length && this.#node(this.#bytes.length, 0) !== null) end = this.#at;
@@ -164,7 +164,7 @@ class BinaryWalk {
     if (lists) this.#reference = null;
     const below = new Set<string | null>();
     while (this.#at < end) below.add(this.#node(end, depth + 1));
-    // Its reader does not look for a layer of another name.
+    // FBXLoader ignores layers with other names.
     if (lists && !below.has(lists.values)) this.#bytes.fill(0x5f, nameAt, nameAt + nameLength);
     else if (lists && !below.has(lists.indices)) this.#overwrite(this.#reference, direct);
     return name;
@@ -218,7 +218,7 @@ class BinaryWalk {
   }
 }
 
-/** Returns a binary file without what its reader cannot read, and without what follows its last node. */
+/** Returns a binary file without the parts that FBXLoader cannot read and without the bytes after its last node. */
 function plainBinary(bytes: Uint8Array): ArrayBuffer {
   const version = bytes.length < headerLength ? 0 : new DataView(bytes.buffer, bytes.byteOffset).getUint32(23, true);
   if (version < 6400)
@@ -234,7 +234,7 @@ function plainBinary(bytes: Uint8Array): ArrayBuffer {
 
 const numberLists = /\b(PolygonVertexIndex|KeyValueFloat):\s*\*\d+\s*\{\s*a:\s*([^}]*)\}/g;
 
-/** Returns FBX as text without what its reader cannot read. */
+/** Returns FBX as text without the parts that FBXLoader cannot read. */
 function plainText(bytes: Uint8Array): ArrayBuffer {
   const text = new TextDecoder().decode(bytes);
   const version = Number(/FBXVersion: (\d+)/.exec(text)?.[1] ?? 0);
@@ -249,8 +249,8 @@ function plainText(bytes: Uint8Array): ArrayBuffer {
 }
 
 /**
- * Returns an FBX file that three.js's loader can read without a window, in bounded time. Throws the rest of a sentence
- * about the file where its parts do not fit together or would cost too much.
+ * Returns an FBX file that three.js's loader can read without a window, in bounded time. Throws the end of a sentence
+ * about the file if its parts do not fit together or a limit is exceeded.
  */
 export const plainFbx = (bytes: Uint8Array): ArrayBuffer =>
   isBinaryFbx(bytes) ? plainBinary(bytes) : plainText(bytes);

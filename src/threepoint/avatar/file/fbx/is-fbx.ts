@@ -1,9 +1,9 @@
 const latin = new TextDecoder('latin1');
 const magic = 'Kaydara FBX Binary  \0';
 
-/** Whether a file is FBX of the binary kind. */
+/** Returns whether a file is binary FBX. */
 export const isBinaryFbx = (bytes: Uint8Array): boolean => latin.decode(bytes.subarray(0, magic.length)) === magic;
 
-/** Whether a file is FBX. FBX as text begins with any words, and a converted file keeps its name. */
+/** Returns whether a file is FBX. FBX as text has no signature, and a converted file keeps its name. */
 export const isFbx = (bytes: Uint8Array, name: string): boolean =>
   isBinaryFbx(bytes) || (/\.fbx$/i.test(name) && latin.decode(bytes.subarray(0, 4)) !== 'glTF');

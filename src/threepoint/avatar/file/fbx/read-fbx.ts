@@ -4,7 +4,7 @@ import { reasonOf } from '../../../core/errors/reasons';
 import { glbOfScene, type SceneParts } from './glb-of-scene';
 import { plainFbx } from './inspect-fbx';
 
-/** A loader that only notes where a picture is: decoding is for the reader of the converted file. */
+/** Stores the URL of each picture instead of decoding it; the reader of the converted file decodes. */
 class PictureAddresses extends Loader<Texture> {
   override load(url: string): Texture {
     const texture = new Texture();
@@ -29,14 +29,14 @@ function sceneOf(bytes: Uint8Array): Group & { readonly animations: readonly Ani
 }
 
 /**
- * Converts FBX into a GLB file. Rejects with a sentence that names the file. `parts`: what of the scene is kept, a body
- * or its motion.
+ * Converts FBX into a GLB file. Rejects with a sentence that names the file. `parts`: the parts to keep, a body or its
+ * motion.
  */
 export async function glbOfFbx(bytes: Uint8Array, name: string, parts: SceneParts): Promise<ArrayBuffer> {
   try {
     return await glbOfScene(sceneOf(bytes), parts, embeddedPicture);
   } catch (error) {
-    // The loader expects every node that another one names.
+    // The loader reads references between nodes without a check.
     const reason = error instanceof TypeError ? 'its parts do not fit together' : reasonOf(error);
     throw new Error(`${name}: cannot be read as FBX (${reason})`);
   }

@@ -1,0 +1,324 @@
+import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
+import type { Avatar } from '../avatar/avatar';
+import type { AvatarPose } from '../core/body/avatar-pose';
+import type { Calibration } from '../core/body/calibration';
+import type { EstimatorName } from '../core/estimation/pose-estimator';
+import type { TrackerMismatch } from '../core/estimation/tracker-watch';
+import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
+import { DeviceBodyReader } from '../xr/device-body-reader';
+import { TrackedSession } from '../xr/tracked-session';
+import { assertOptions } from './assert-options';
+import { Body, type BodyOptions } from './body';
+import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
+import { loadLearned } from './load-learned';
+import { warnAfterDispose, warnOfFallback } from './warnings';
+
+export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
+  /**
+   * The avatar, from `loadAvatar`; the tracker owns it and disposes of it. Add `tracker.object` to the scene, or to the
+   * group that moves the cameras.
+   */
+  readonly avatar: Avatar;
+  /**
+   * Whether to read the body that the device tracks (WebXR Body Tracking), which the estimator 'device' uses. The page
+   * must request the session with the feature 'body-tracking'. Default: false.
+   */
+  readonly deviceBody?: boolean;
+  /**
+   * Returns the trackers beyond head and hands in each frame of a session, floor frame [m], for trackers that another
+   * program sends; null: none is seen. They need `trackerOffsets` in the calibration, and the option `pinning`.
+   */
+  readonly trackers?: () => BodyTrackers | null;
+  /** The URL of another contract (.json) of the learned network, next to its weights. */
+  readonly modelUrl?: string | URL;
+}
+
+/** The events of a `BodyTracker` with their data; `BodyEvents` describes each. */
+export interface BodyTrackerEvents {
+  readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
+  readonly heightmismatch: { readonly difference: number };
+  readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
+  readonly estimatorchange: object;
+  readonly discontinuity: object;
+  readonly trackinglost: { readonly point: TrackedPoint };
+  readonly trackingfound: { readonly point: TrackedPoint };
+  readonly trackermismatch: TrackerMismatch;
+  readonly sessionstart: object;
+  readonly sessionend: object;
+}
+
+const trackerOptions = [
+  'avatar',
+  'deviceBody',
+  'trackers',
+  'modelUrl',
+  ...solverOptions.filter((name) => name !== 'events'),
+];
+
+/** The avatars that belong to a tracker, or were disposed of by one. */
+const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
+
+function assertRenderer(renderer: WebGLRenderer | undefined): void {
+  if (renderer) return;
+  throw new TypeError('renderer is missing. Pass the one that draws: new BodyTracker(renderer, { avatar }).');
+}
+
+/** Throws an Error if `avatar` is no avatar, or belongs to another tracker. */
+function assertAvatar(avatar: unknown): asserts avatar is Avatar {
+  const load = "avatar: await loadAvatar('/avatars/me.vrm')";
+  if (avatar === undefined || avatar === null) throw new TypeError(`avatar is missing. Load one: ${load}.`);
+  if (typeof avatar === 'string' || avatar instanceof URL) {
+    throw new TypeError(`avatar is an address. Load it first: ${load}.`);
+  }
+  if (typeof (avatar as PromiseLike<unknown>).then === 'function') {
+    throw new TypeError(`avatar is a promise. Await it: ${load}.`);
+  }
+  if (typeof (avatar as Avatar).setPose !== 'function') {
+    throw new TypeError(`avatar is not from loadAvatar. Load one: ${load}.`);
+  }
+  const owned = ownedAvatars.get(avatar as Avatar);
+  if (owned === 'drawn') {
+    throw new Error('This avatar belongs to another BodyTracker. Load one for each tracker: await loadAvatar(source).');
+  }
+  if (owned === 'disposed') {
+    throw new Error('This avatar was disposed of with its BodyTracker. Load it again: await loadAvatar(source).');
+  }
+}
+
+/**
+ * Draws the user's body in a three.js page: reads head and hands of the renderer's session, estimates the body and
+ * poses the avatar. Call `update` in each animation frame before drawing.
+ *
+ * @example
+ * const tracker = new BodyTracker(renderer, { avatar: await loadAvatar('/avatars/me.vrm') });
+ * scene.add(tracker.object);
+ * renderer.setAnimationLoop((timeMs, frame) => {
+ *   tracker.update(timeMs, frame);
+ *   renderer.render(scene, camera);
+ * });
+ */
+export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
+  readonly avatar: Avatar;
+  /**
+   * The object to add to the scene. Its origin is that of the renderer's reference space; it is visible while there is
+   * a pose. `avatar.object` inside it is placed on the floor, also where the page has moved its user.
+   */
+  readonly object: Object3D = new Group();
+  /** The solver of this tracker: the selected and the unavailable estimators, and the network's backend. */
+  readonly body: Body;
+  readonly #renderer: WebGLRenderer;
+  readonly #deviceBody: boolean;
+  readonly #trackers: (() => BodyTrackers | null) | undefined;
+  /** The renderer's session and its tracking; null: there is none. */
+  #session: XRSession | null = null;
+  #tracked: TrackedSession | null = null;
+  /** Whether the avatar's head is hidden from the user's eyes. */
+  #firstPerson = false;
+  #disposed = false;
+  /** The page's listeners to `fallback`; without one a failed network is reported on the console. */
+  readonly #fallbackListeners = new Set<unknown>();
+
+  /**
+   * Throws a RangeError for a calibration that no person has or an unknown estimator; a TypeError for a missing avatar,
+   * an unknown option or `trackers` without `pinning`; an Error for an avatar of another tracker.
+   */
+  constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
+    super();
+    assertOptions('BodyTracker', options, trackerOptions);
+    const { avatar, modelUrl, deviceBody = false, trackers, ...bodyOptions } = options;
+    assertRenderer(renderer);
+    assertAvatar(avatar);
+    assertPinning(trackers, bodyOptions.pinning);
+    this.avatar = avatar;
+    this.#deviceBody = deviceBody;
+    this.#trackers = trackers;
+    this.#renderer = renderer;
+    const networks =
+      modelUrl === undefined
+        ? {}
+        : {
+            networks: (name: string) =>
+              name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noRuntimeError),
+          };
+    const passes = (type: 'estimatorchange' | 'discontinuity' | 'sessionstart' | 'sessionend') => () =>
+      this.dispatchEvent({ type });
+    this.body = new Body({
+      ...networks,
+      ...bodyOptions,
+      events: {
+        calibrated: (calibration, source) => {
+          avatar.setCalibration(calibration);
+          this.dispatchEvent({ type: 'calibrated', calibration, source });
+        },
+        heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
+        estimatorchange: passes('estimatorchange'),
+        discontinuity: passes('discontinuity'),
+        fallback: (estimator, reason) => {
+          if (this.#fallbackListeners.size > 0) this.dispatchEvent({ type: 'fallback', estimator, reason });
+          else warnOfFallback(estimator, reason);
+        },
+        trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
+        trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
+        trackermismatch: (mismatch) => this.dispatchEvent({ type: 'trackermismatch', ...mismatch }),
+        sessionstart: passes('sessionstart'),
+        sessionend: passes('sessionend'),
+      },
+    });
+    ownedAvatars.set(avatar, 'drawn');
+    avatar.setCalibration(this.body.calibration);
+    this.object.name = 'body';
+    this.object.add(avatar.object);
+    this.object.visible = false;
+  }
+
+  override addEventListener<T extends keyof BodyTrackerEvents>(
+    type: T,
+    listener: EventListener<BodyTrackerEvents[T], T, this>,
+  ): void {
+    if (type === 'fallback') this.#fallbackListeners.add(listener);
+    super.addEventListener(type, listener);
+  }
+
+  override removeEventListener<T extends keyof BodyTrackerEvents>(
+    type: T,
+    listener: EventListener<BodyTrackerEvents[T], T, this>,
+  ): void {
+    if (type === 'fallback') this.#fallbackListeners.delete(listener);
+    super.removeEventListener(type, listener);
+  }
+
+  /**
+   * The pose of the newest frame, floor frame [m]; null before the first, after a session and after `dispose`. The
+   * floor is the space that the renderer requested, or where `recentre` moved it. The next frame overwrites the pose:
+   * keep it with `copyAvatarPose`.
+   */
+  get pose(): AvatarPose | null {
+    return this.body.pose;
+  }
+
+  get calibration(): Calibration {
+    return this.body.calibration;
+  }
+
+  /** The estimator in use: 'ik' while a network loads, and after it failed. */
+  get estimator(): EstimatorName {
+    return this.body.estimator;
+  }
+
+  /** Selects the estimator. Resolves when it is in use, or after the event `fallback` because it is unavailable. */
+  setEstimator(estimator: EstimatorName): Promise<void> {
+    return this.body.setEstimator(estimator);
+  }
+
+  /** Sets the user's measures [m]; 'auto' estimates them. Throws a RangeError for measures that no person has. */
+  calibrate(calibration: Calibration | 'auto'): void {
+    this.body.calibrate(calibration);
+  }
+
+  /**
+   * Solves and draws one animation frame; takes the arguments of the `setAnimationLoop` callback. Without a session the
+   * avatar is hidden. Call it before the first await of the callback, or it throws an InvalidStateError.
+   */
+  update(timeMs: number, frame: XRFrame | null | undefined): void {
+    if (this.#isDisposed()) return;
+    const time = this.body.tick(timeMs);
+    this.#followSession();
+    const session = this.#tracked;
+    // The renderer may still have the space of the session before: the first frame starts the tracking.
+    if (!session || !frame || !session.start()) return;
+    const tracked = session.read(frame, time);
+    const { position, orientation } = session.floorPose;
+    this.avatar.object.position.copy(position);
+    this.avatar.object.quaternion.copy(orientation);
+    const trackers = this.#trackers?.();
+    this.#draw(tracked && trackers ? { ...tracked, trackers } : tracked, null);
+  }
+
+  /**
+   * Solves and draws a tracking frame that the page supplies, floor frame [m, s]. `standIn`: the measures of another
+   * person who moves the body, such as an actor or a recording.
+   */
+  updateFromFrame(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
+    if (this.#isDisposed()) return;
+    this.#followSession();
+    this.#draw(frame, standIn);
+  }
+
+  /**
+   * Moves the floor's origin under the user, with −Z in the direction of view. The renderer's reference space moves
+   * with it.
+   */
+  recentre(): void {
+    if (this.#disposed) return;
+    if (this.#tracked) this.#tracked.recentre();
+    else this.body.discontinuity();
+  }
+
+  /**
+   * Removes the listeners and disposes of the avatar. Later calls of `update` have no effect, and the first one warns.
+   * Resolves when every network that was loaded for this body is released.
+   */
+  dispose(): Promise<void> {
+    this.#disposed = true;
+    this.#endTracking();
+    this.object.removeFromParent();
+    this.avatar.dispose();
+    ownedAvatars.set(this.avatar, 'disposed');
+    return this.body.dispose();
+  }
+
+  /** Returns whether the tracker was disposed of; warns once if so. */
+  #isDisposed(): boolean {
+    if (this.#disposed) warnAfterDispose(this, 'BodyTracker');
+    return this.#disposed;
+  }
+
+  #draw(tracked: TrackingFrame | null, standIn: Calibration | null): void {
+    const pose = this.body.update(tracked, standIn);
+    this.#setFirstPerson(this.#session !== null && standIn === null);
+    if (!tracked || !pose) return;
+    this.avatar.setPose(pose, tracked.time);
+    this.object.visible = true;
+  }
+
+  /** Starts tracking when the renderer has another session, and ends that of the previous one. */
+  #followSession(): void {
+    const session = this.#renderer.xr.getSession();
+    if (session === this.#session) return;
+    this.#endTracking();
+    this.#session = session;
+    this.#tracked =
+      session &&
+      new TrackedSession({
+        session,
+        drawing: this.#renderer.xr,
+        bodyReader: this.#deviceBody ? new DeviceBodyReader() : null,
+        onStart: () => this.body.startSession(),
+        onDiscontinuity: () => this.body.discontinuity(),
+        onEnd: () => this.#endTracking(),
+      });
+  }
+
+  #endTracking(): void {
+    if (!this.#session) return;
+    this.#tracked?.dispose();
+    this.#tracked = null;
+    this.#session = null;
+    this.#setFirstPerson(false);
+    this.avatar.object.position.set(0, 0, 0);
+    this.avatar.object.quaternion.identity();
+    this.object.visible = false;
+    this.body.endSession();
+  }
+
+  /** Sets the first-person view only when it changes, because the page may set it as well. */
+  #setFirstPerson(on: boolean): void {
+    if (on === this.#firstPerson) return;
+    this.#firstPerson = on;
+    this.avatar.setFirstPerson(on);
+  }
+}
+
+const noRuntimeError = new Error(
+  'modelUrl: only the learned network runs without a runtime. Pass networks: onnxNetworks() of threepoint/onnx for the others.',
+);
