@@ -24,7 +24,7 @@ import { Pointers } from './frame/pointers';
 import { TrackingSource } from './frame/tracking-source';
 import { FrameTiming } from './frame-timing';
 import { Headset } from './headset';
-import { PageMocap } from './page-mocap';
+import { LazyMocap } from './lazy-mocap';
 import { handleLostGraphics } from './lost-graphics';
 import { createPageBody } from './page-body';
 import type { PageContext } from './page-context';
@@ -119,7 +119,7 @@ function createPlay(base: ReturnType<typeof createBase>) {
 function createInterface(play: ReturnType<typeof createPlay>) {
   const { headset } = play;
   const difference = new DeviceDifference();
-  const mocap = new PageMocap(play);
+  const mocap = new LazyMocap(play);
   const controls = new Controls({ ...play, mocap, difference });
   const passthrough = new PassthroughHost({
     ...play,

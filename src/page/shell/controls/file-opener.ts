@@ -5,7 +5,7 @@ import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
-import type { PageMocap } from '../page-mocap';
+import type { LazyMocap } from '../lazy-mocap';
 import type { UserAvatar } from '../user-avatar';
 
 /** Twice the size of the longest recording that the recorder stores. */
@@ -16,7 +16,7 @@ export interface FileOpenerOptions {
   readonly recorder: Pick<Recorder, 'nextRequest' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
-  readonly mocap: Pick<PageMocap, 'open'>;
+  readonly mocap: Pick<LazyMocap, 'open'>;
   onChange(): void;
 }
 
