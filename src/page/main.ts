@@ -1,14 +1,30 @@
+import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { pageElement } from 'threepoint-ui/element';
 import { createEnterButton, type EnterButton } from 'threepoint-ui/enter-button';
-import { createNotices } from 'threepoint-ui/notices';
+import { createNotices, type Notices } from 'threepoint-ui/notices';
 import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
 import { createPage, type Page } from './shell/create-page';
 import { createFrameLoop } from './shell/frame/frame-loop';
 import type { Headset } from './shell/headset';
 import { readPageContext } from './shell/page-context';
-import { reportFaults, showStartFailure } from './shell/page-faults';
 import { PageLoading } from './shell/page-loading';
 import { joinStudy } from './shell/study/join-study';
+
+/** Shows uncaught errors as notices. */
+function reportFaults(notices: Notices): void {
+  const wentWrong = (text: string) => notices.show('error', `Something went wrong: ${firstLine(text)}`);
+  window.addEventListener('error', ({ message }) => wentWrong(message));
+  window.addEventListener('unhandledrejection', ({ reason }) => wentWrong(reasonOf(reason)));
+}
+
+/** Replaces a page that cannot start by its error. */
+function showStartFailure(error: unknown): void {
+  const text = document.createElement('p');
+  text.className = 'fault';
+  text.setAttribute('role', 'alert');
+  text.textContent = `threepoint cannot start: ${firstLine(reasonOf(error))}`;
+  document.body.replaceChildren(text);
+}
 
 /** Prepares the headset, and enables the button for a real or an emulated session. */
 async function offerSessions(headset: Headset, button: EnterButton, study: boolean): Promise<void> {

@@ -7,7 +7,6 @@ import { type CheckStep, openingSteps, remainingSteps } from './check-steps';
 import type { CheckWorlds } from './check-worlds';
 import { type HeadsetReport, reportFormat, reportVersion } from './headset-report';
 import { Measurements } from './measurements';
-import { Speaker } from './speaker';
 import { StepCaption } from './step-caption';
 import { StepSequence } from './step-sequence';
 
@@ -29,6 +28,25 @@ export interface HeadsetCheckOptions {
   /** A step begins; `steps` may have grown. */
   onStep(step: CheckStep, steps: readonly CheckStep[]): void;
   onReport(report: HeadsetReport): void;
+}
+
+/** Speaks sentences where the browser can. Captions show them in any case. */
+class Speaker {
+  readonly #synthesis: SpeechSynthesis | null = 'speechSynthesis' in window ? window.speechSynthesis : null;
+
+  /** Speaks a sentence in place of the one before. */
+  say(sentence: string): void {
+    const synthesis = this.#synthesis;
+    if (!synthesis) return;
+    synthesis.cancel();
+    const utterance = new SpeechSynthesisUtterance(sentence);
+    utterance.lang = 'en';
+    synthesis.speak(utterance);
+  }
+
+  stop(): void {
+    this.#synthesis?.cancel();
+  }
 }
 
 /** One check, from entering the session to its report. */

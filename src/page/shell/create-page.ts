@@ -18,18 +18,17 @@ import { BoneMapStore } from './bone-map-store';
 import { Controls } from './controls/controls';
 import { Emitter } from './emitter';
 import { DeviceDifference } from './frame/device-difference';
-import { createMousePointer } from './frame/mouse-pointer';
+import { createMousePointer, pressSheetsByMouse } from './frame/mouse-pointer';
 import { PageFrame } from './frame/page-frame';
 import { Pointers } from './frame/pointers';
-import { pressSheetsByMouse } from './frame/sheet-pointing';
 import { TrackingSource } from './frame/tracking-source';
 import { FrameTiming } from './frame-timing';
 import { Headset } from './headset';
+import { LazyMocap } from './lazy-mocap';
 import { handleLostGraphics } from './lost-graphics';
 import { createPageBody } from './page-body';
 import type { PageContext } from './page-context';
 import type { PageLoading } from './page-loading';
-import { PageMocap } from './page-mocap';
 import { exposeProbe, readProbe } from './probe';
 import { PassthroughHost } from './session/passthrough-host';
 import { SessionChanges } from './session/session-changes';
@@ -120,7 +119,7 @@ function createPlay(base: ReturnType<typeof createBase>) {
 function createInterface(play: ReturnType<typeof createPlay>) {
   const { headset } = play;
   const difference = new DeviceDifference();
-  const mocap = new PageMocap(play);
+  const mocap = new LazyMocap(play);
   const controls = new Controls({ ...play, mocap, difference });
   const passthrough = new PassthroughHost({
     ...play,

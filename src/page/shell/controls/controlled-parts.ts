@@ -7,7 +7,7 @@ import type { DeviceDifference } from '../frame/device-difference';
 import type { Pointers } from '../frame/pointers';
 import type { FrameTiming } from '../frame-timing';
 import type { Headset } from '../headset';
-import type { PageMocap } from '../page-mocap';
+import type { LazyMocap } from '../lazy-mocap';
 import type { PreferenceStore } from '../preferences';
 import type { Settings, SettingsWriter } from '../settings';
 import type { Stage } from '../stage';
@@ -37,7 +37,7 @@ export interface ControlledParts {
   readonly study: Pick<PageStudy, 'run'>;
   readonly server: ServerPresence;
   readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;
-  readonly mocap: Pick<PageMocap, 'open' | 'show'>;
+  readonly mocap: Pick<LazyMocap, 'open' | 'show'>;
   /** Something changed that is on the screen. */
   onChange(): void;
 }

@@ -1,5 +1,4 @@
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { acceptDroppedFiles } from 'threepoint-ui/dropped-files';
 import { pageElement } from 'threepoint-ui/element';
 import { createFrameTimesOverlay, type FrameReport } from 'threepoint-ui/frame-times-overlay';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
@@ -9,7 +8,7 @@ import { stageNames } from '../frame-timing';
 import { CalibrationControl } from './calibration-control';
 import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
-import { FileOpener } from './file-opener';
+import { acceptDroppedFiles, FileOpener } from './file-opener';
 import { HeadsetControls } from './headset-controls';
 import { MotionExport } from './motion-export';
 import { createPanelActions } from './panel-actions';

@@ -5,7 +5,7 @@ import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Recorder } from '../../studio/recorder';
-import type { PageMocap } from '../page-mocap';
+import type { LazyMocap } from '../lazy-mocap';
 import type { UserAvatar } from '../user-avatar';
 
 /** Twice the size of the longest recording that the recorder stores. */
@@ -16,7 +16,7 @@ export interface FileOpenerOptions {
   readonly recorder: Pick<Recorder, 'nextRequest' | 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
-  readonly mocap: Pick<PageMocap, 'open'>;
+  readonly mocap: Pick<LazyMocap, 'open'>;
   onChange(): void;
 }
 
@@ -107,4 +107,22 @@ export class FileOpener {
     body.discontinuity();
     onChange();
   }
+}
+
+/** Takes files dropped anywhere on the page, and shows where they may be dropped while one is dragged. */
+export function acceptDroppedFiles(onFiles: (files: readonly File[]) => void): void {
+  let depth = 0;
+  const hover = (by: number) => {
+    depth = Math.max(0, depth + by);
+    document.body.classList.toggle('dragging', depth > 0);
+  };
+  window.addEventListener('dragenter', () => hover(1));
+  window.addEventListener('dragleave', () => hover(-1));
+  window.addEventListener('dragover', (event) => event.preventDefault());
+  window.addEventListener('drop', (event) => {
+    event.preventDefault();
+    depth = 0;
+    hover(0);
+    onFiles([...(event.dataTransfer?.files ?? [])]);
+  });
 }

@@ -1,6 +1,9 @@
 import { MutablePointer, type Pointer } from 'threepoint/core/input/pointer';
 import type { MouseAim } from 'threepoint-ui/mouse-aim';
 import type { DesktopView } from '../../scene/desktop-view';
+import type { Activities } from '../activities/activities';
+import type { Headset } from '../headset';
+import type { PageStudy } from '../study/page-study';
 
 /** Returns the mouse, pen or finger in the window as a pointer into the scene, as of now. */
 export function createMousePointer(mouse: MouseAim, view: Pick<DesktopView, 'rayThrough'>): () => Pointer {
@@ -13,4 +16,32 @@ export function createMousePointer(mouse: MouseAim, view: Pick<DesktopView, 'ray
     pointer.cancelled = mouse.cancelled;
     return pointer;
   };
+}
+
+export interface SheetPointingOptions {
+  readonly canvas: HTMLCanvasElement;
+  readonly view: Pick<DesktopView, 'rayThrough'>;
+  readonly headset: Pick<Headset, 'worn'>;
+  readonly study: Pick<PageStudy, 'run'>;
+  readonly activities: Pick<Activities, 'current'>;
+}
+
+/** The mouse presses what the sheets of a game offer. A study's participant plays with the headset alone. */
+export function pressSheetsByMouse({ canvas, view, headset, study, activities }: SheetPointingOptions): void {
+  /** Whether the mouse is on a button of a sheet. */
+  function pointAt({ clientX, clientY }: MouseEvent, press: boolean): boolean {
+    if (headset.worn || study.run) return false;
+    const { width, height } = canvas.getBoundingClientRect();
+    const ray = view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height);
+    return Boolean(activities.current?.point?.(ray, press));
+  }
+
+  /** Whether the mouse button went down on a sheet: a sheet that came under a throw is not meant. */
+  let pressing = false;
+  canvas.addEventListener('pointerdown', (event) => {
+    pressing = pointAt(event, false);
+  });
+  canvas.addEventListener('click', (event) => {
+    if (pressing) pointAt(event, true);
+  });
 }

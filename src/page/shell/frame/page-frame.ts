@@ -15,7 +15,7 @@ import type { Activities } from '../activities/activities';
 import type { Controls } from '../controls/controls';
 import type { FrameTiming } from '../frame-timing';
 import type { Headset } from '../headset';
-import type { PageMocap } from '../page-mocap';
+import type { LazyMocap } from '../lazy-mocap';
 import type { PassthroughHost } from '../session/passthrough-host';
 import type { Settings } from '../settings';
 import type { Picture, Stage } from '../stage';
@@ -41,7 +41,7 @@ export interface PageFrameOptions {
   readonly controls: Pick<Controls, 'observe' | 'point'>;
   readonly study: Pick<PageStudy, 'run'>;
   readonly stage: Pick<Stage, 'look' | 'draw' | 'vignette'>;
-  readonly mocap: Pick<PageMocap, 'frame' | 'aside'>;
+  readonly mocap: Pick<LazyMocap, 'frame' | 'aside'>;
   readonly passthrough: Pick<PassthroughHost, 'update'>;
 }
 

@@ -118,3 +118,6 @@ export interface PanelPage {
   readonly content: readonly Node[];
   show(state: PanelState): void;
 }
+
+/** Returns what the button says that ends a session; `passthrough`: the session shows the room around the user. */
+export const exitLabel = (passthrough: boolean): string => (passthrough ? 'Exit AR' : 'Exit VR');

@@ -1,9 +1,14 @@
 import { button, element } from 'threepoint-ui/element';
-import { createTabs } from 'threepoint-ui/tabs';
-import { exitLabel } from '../session/exit-label';
 import { createAvatarPage, type PaletteChoice } from './avatar-page';
 import { createBodyPage, type MeasureRanges } from './body-page';
-import type { AvatarActions, BodyActions, PanelState, RecordingActions, ViewActions } from './panel-state';
+import {
+  type AvatarActions,
+  type BodyActions,
+  exitLabel,
+  type PanelState,
+  type RecordingActions,
+  type ViewActions,
+} from './panel-state';
 import { createRecordingPage } from './recording-page';
 import { createViewPage } from './view-page';
 
@@ -16,6 +21,43 @@ export interface PanelOptions extends MeasureRanges {
   readonly palettes: readonly PaletteChoice[];
 }
 
+/** Creates tabs after the ARIA pattern: one tab is in the tab order, and arrow keys move between them. */
+function createTabs(pages: readonly { readonly name: string; readonly content: readonly Node[] }[]): HTMLElement[] {
+  const list = element('div', { role: 'tablist', 'aria-label': 'Controls' });
+  const tabs = pages.map(({ name }) =>
+    element('button', { type: 'button', role: 'tab', id: `tab-${name}`, 'aria-controls': `page-${name}` }, name),
+  );
+  const panels = pages.map(({ name, content }) =>
+    element(
+      'div',
+      { role: 'tabpanel', id: `page-${name}`, 'aria-labelledby': `tab-${name}`, class: 'page' },
+      ...content,
+    ),
+  );
+  const select = (chosen: number) => {
+    for (const [index, tab] of tabs.entries()) {
+      tab.setAttribute('aria-selected', String(index === chosen));
+      tab.tabIndex = index === chosen ? 0 : -1;
+      const panel = panels[index];
+      if (panel) panel.hidden = index !== chosen;
+    }
+  };
+  for (const [index, tab] of tabs.entries()) {
+    tab.addEventListener('click', () => select(index));
+    tab.addEventListener('keydown', (event) => {
+      const step = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+      if (step === 0) return;
+      event.preventDefault();
+      const next = (index + step + tabs.length) % tabs.length;
+      select(next);
+      tabs[next]?.focus();
+    });
+  }
+  list.append(...tabs);
+  select(0);
+  return [list, ...panels];
+}
+
 /** The controls of the desktop page, a page behind each tab. */
 export function createPanel(region: HTMLElement, options: PanelOptions, actions: PanelActions) {
   const pages = [
@@ -24,7 +66,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     createRecordingPage(actions),
     createViewPage(actions),
   ];
-  const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs('Controls', pages));
+  const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs(pages));
   const recentre = button('Recentre', () => actions.recentre(), { class: 'quiet' });
   const exit = button(exitLabel(false), () => actions.exitVr(), { class: 'quiet' });
   const opener = button('Controls', () => toggle(), {

@@ -20,7 +20,7 @@ import {
 } from '../../activity/activity-menu';
 import { home } from '../activity-registry';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
-import { exitLabel } from '../session/exit-label';
+import { exitLabel } from '../panel/panel-state';
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {

@@ -5,9 +5,8 @@ import type { FrameReport } from 'threepoint-ui/frame-times-overlay';
 import { createVrPanel } from 'threepoint-ui/vr-panel';
 import { createPanelTouch } from 'threepoint-ui/vr-touch';
 import { type MenuButton, menuHeight, menuWidth } from '../../activity/activity-menu';
-import { drawFrameTimes, frameTimesHeight, frameTimesWidth } from './frame-times-drawing';
 import { menuButtons, type VrMenuActions, type VrMenuState } from './menu-buttons';
-import { drawMenu } from './menu-drawing';
+import { drawFrameTimes, drawMenu, frameTimesHeight, frameTimesWidth } from './menu-drawing';
 
 const pixelsPerMetre = 1000;
 

@@ -17,7 +17,7 @@ import { estimatorTexts } from './estimator-texts';
 import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
 
-export interface PageMocapOptions {
+export interface LazyMocapOptions {
   readonly scene: Object3D;
   readonly recorder: Recorder;
   readonly settings: Pick<Settings, 'builtInBody' | 'palette'>;
@@ -34,11 +34,11 @@ export interface PageMocapOptions {
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
 
 /** Motion capture on this page; the code for it comes with the first file. */
-export class PageMocap {
-  readonly #options: PageMocapOptions;
+export class LazyMocap {
+  readonly #options: LazyMocapOptions;
   #view: MocapView | null = null;
 
-  constructor(options: PageMocapOptions) {
+  constructor(options: LazyMocapOptions) {
     this.#options = options;
   }
 
