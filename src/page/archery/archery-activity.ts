@@ -17,7 +17,7 @@ import type { CameraScene } from '../scene/desktop-view';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
 import { ArcheryPlay, type ArcheryProbe, probeOf, roundOf } from './archery-play';
 import { type ArcheryView, createArcheryView } from './archery-view';
-import { statusLine } from './boards/scoreboard-drawing';
+import { statusLine } from './boards/scoreboard';
 import { eventHaptics } from './sound/archery-haptics';
 
 /** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
