@@ -90,7 +90,7 @@ export class BallActivity implements OpenActivity {
         ...(switches.spectate && { spectate: true }),
       },
       bots: () => settings.bots && place === null,
-      acting: () => this.#input.isSimulated,
+      acting: () => this.#input.isActor,
       steering: () => this.#input.steering(),
       seed: layout.seed,
     });

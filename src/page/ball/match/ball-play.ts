@@ -29,7 +29,7 @@ export interface BallPlayOptions {
   readonly visitor: Visitor;
   /** Whether bots take free seats; read in every frame. */
   bots(): boolean;
-  /** Whether a simulated player has the user's seat. It is ready without being asked. */
+  /** Whether a simulated player moves the user's body. It is ready without being asked. */
   acting(): boolean;
   /** The mouse's target, floor frame of the user; null or absent: a simulated player plays. */
   steering?(): BallSteering | null;
@@ -232,8 +232,7 @@ export class BallPlay {
       return;
     }
     if (this.waitingSince?.phase !== match.phase) this.waitingSince = { phase: match.phase, at: time };
-    // A person uses the mouse, and decides when to be ready.
-    if (!options.acting() || options.steering?.() || match.players[seen.mySeat]?.ready) return;
+    if (!options.acting() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - this.waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {
       this.connection?.setReady(true);
