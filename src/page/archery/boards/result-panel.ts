@@ -69,7 +69,7 @@ function paintResult(context: CanvasRenderingContext2D, state: ArcheryState, hov
     context.roundRect(left, 366, card, 176, 20);
     context.fill();
     context.stroke();
-    const number = { font: '700 32px', color: ink.soft, align: 'center', most: card - 12 } as const;
+    const number = { font: '700 32px', color: ink.soft, align: 'center', maxWidth: card - 12 } as const;
     drawText(context, `Arrow ${i + 1}`, [left + card / 2, 418], number);
     const look = scored ? { font: '800 84px', color: ink.text } : { font: '600 40px', color: ink.soft };
     drawText(context, result, [left + card / 2, scored ? 510 : 490], { ...look, align: 'center', maxWidth: card - 16 });
