@@ -2,8 +2,6 @@ import { createAvatar } from 'threepoint/avatar/avatar';
 import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { identity } from 'threepoint/core/math/quat';
-import { zero } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { defaultSavings } from 'threepoint/xr/frame-rate';
@@ -130,7 +128,6 @@ async function countArchery(counted: CountedStage): Promise<WorldCounts> {
   );
   const view = createArcheryView({
     quality: 'high',
-    floorFromArena: { position: zero, orientation: identity },
     distances: play.targets.map(({ distance }) => distance),
     onCaption: () => undefined,
   });
