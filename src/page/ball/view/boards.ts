@@ -41,7 +41,8 @@ function paintBoard(context: CanvasRenderingContext2D, match: DisplayedMatch, li
 }
 
 /**
- * Creates two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder; arena frame.
+ * Creates two equal boards: one behind the holder, for the throwers, and one behind the throwers, for the holder;
+ * arena frame.
  */
 export function createBoards(quality: Quality) {
   const object = new Group();
