@@ -1,12 +1,11 @@
 import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { length, type Vec3 } from 'threepoint/core/math/vec3';
-import type { BallConnection } from 'threepoint-games/ball/ball-client';
+import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallPlace } from 'threepoint-games/ball/ball-state';
 import { ballsLeft, catchesOf } from 'threepoint-games/ball/state-selectors';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { PlayerProbe } from '../../activity/activity';
 import type { BallFrame } from './ball-frame';
-import type { BallPlay } from './ball-play';
 
 /** Returns the state of a match as plain data, for tests and tools. */
 export function probeOf(
@@ -59,7 +58,7 @@ const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, 
 
 /** Returns the other players as they are drawn now. */
 export function playerProbes(
-  { newest, room }: Pick<BallPlay, 'newest' | 'room'>,
+  { newest, room }: { readonly newest: BallFrame | null; readonly room: BallRoomView | null },
   others: Pick<RoomBodies, 'jointsOf' | 'drawnAs'>,
 ): readonly PlayerProbe[] {
   return (newest?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
