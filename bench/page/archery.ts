@@ -1,7 +1,5 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { identity } from 'threepoint/core/math/quat';
-import { zero } from 'threepoint/core/math/vec3';
 import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { createArcheryView } from 'threepoint-page/archery/archery-view';
 import { type FrameTimes, frameTimes, timeFrame } from './frame-times';
@@ -33,7 +31,6 @@ export async function measureArchery(stage: BenchStage): Promise<Record<Estimato
   });
   const view = createArcheryView({
     quality: 'low',
-    floorFromArena: { position: zero, orientation: identity },
     distances: (rounds[0]?.play.targets ?? []).map(({ distance }) => distance),
     onCaption: () => undefined,
   });

@@ -1,7 +1,5 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { identity } from 'threepoint/core/math/quat';
-import { zero } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { defaultSavings } from 'threepoint/xr/frame-rate';
@@ -112,7 +110,6 @@ async function countArchery({ stage, count }: CountedStage): Promise<WorldCounts
   );
   const view = createArcheryView({
     quality: 'high',
-    floorFromArena: { position: zero, orientation: identity },
     distances: play.targets.map(({ distance }) => distance),
     onCaption: () => undefined,
   });

@@ -17,6 +17,12 @@ export const ballSecondsLeft = (state: BallState): number =>
     ? state.options.seconds
     : Math.max(0, state.options.seconds - (ballMatchTime(state) - state.startedAt));
 
+/** Returns the seconds that clocks show: until the bell; after a match the shown ones (`before`), or 0 at the bell. */
+export function displayedSeconds(state: BallState, before: number): number {
+  if (state.phase !== 'over') return ballSecondsLeft(state);
+  return state.end === 'time' ? 0 : before;
+}
+
 /** Returns the number of balls that may still be caught. */
 export function ballsLeft({ balls }: BallState): number {
   let count = 0;

@@ -4,10 +4,10 @@ import { type Buttons, nothingPressed } from 'threepoint/core/input/button-press
 import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { PointerTarget } from 'threepoint/core/input/pointer';
 import type { Pose } from 'threepoint/core/math/pose';
-import { identity, rotate } from 'threepoint/core/math/quat';
+import { rotate } from 'threepoint/core/math/quat';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
-import { copyVec3, up, vec3, zero } from 'threepoint/core/math/vec3';
+import { copyVec3, up, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
@@ -17,11 +17,8 @@ import type { CameraScene } from '../scene/desktop-view';
 import { type ArcheryRound, type ArcheryRules, createArcheryPanel } from './archery-panel';
 import { ArcheryPlay, type ArcheryProbe, probeOf, roundOf } from './archery-play';
 import { type ArcheryView, createArcheryView } from './archery-view';
-import { statusLine } from './boards/scoreboard-drawing';
+import { statusLine } from './boards/scoreboard';
 import { eventHaptics } from './sound/archery-haptics';
-
-/** The floor frame of the user is the arena frame of the range: the zone lies around the origin, the targets ahead. */
-const floorFromArena = { position: zero, orientation: identity };
 
 /** The view past the archer to the targets. */
 export const rangeScene: CameraScene = {
@@ -53,7 +50,7 @@ export class ArcheryActivity implements OpenActivity {
       () => layout.seed,
     );
     const distances = this.play.targets.map(({ distance }) => distance);
-    this.#view = createArcheryView({ quality, floorFromArena, distances, onCaption });
+    this.#view = createArcheryView({ quality, distances, onCaption });
     stage.studio.setSurroundings(this.#view.range);
     stage.studio.scene.add(this.#view.bow);
   }

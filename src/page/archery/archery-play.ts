@@ -8,7 +8,7 @@ import { add, subtract, type Vec3, zero } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { aimOf } from 'threepoint-games/archery/aim-point';
 import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
-import { ArcheryGestures, type BowCue, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
+import { ArcheryGestures, type BowCue } from 'threepoint-games/archery/gestures';
 import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
 import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/archery/simulated-archer';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
@@ -75,13 +75,14 @@ function movedTo(place: Vec3, { frame, buttons }: PlayerInput): PlayerInput {
 
 /** A round and its player, without the view. */
 export class ArcheryPlay {
+  /** The newest frame; null before the first. */
+  newest: ArcheryFrame | null = null;
   readonly #settings: () => ArcherySettings;
   readonly #seed: () => number;
   readonly #gestures: ArcheryGestures;
   #match!: Match<ArcheryState, ArcheryAction, ArcheryEvent>;
   #archer!: SimulatedArcher;
   #steered!: SteeredArcher;
-  #newest: ArcheryFrame | null = null;
   /** The time of the newest frame on the page's clock [s]. */
   #followedAt = Number.NaN;
   /** The target at which a pointer drew last; null: none, or the arrow was put back. */
@@ -96,7 +97,6 @@ export class ArcheryPlay {
     this.#settings = settings;
     this.#seed = seed;
     this.#gestures = new ArcheryGestures(() => ({
-      ...defaultArcheryGestureSettings,
       bowSide: settings().bowSide,
       oneHanded: settings().oneHanded,
       armed: isArmed(this.#match.state),
@@ -109,11 +109,6 @@ export class ArcheryPlay {
     return this.#match.state.targets;
   }
 
-  /** The newest frame; null before the first. */
-  get newest(): ArcheryFrame | null {
-    return this.#newest;
-  }
-
   /** Advances the round by a tracked frame and its buttons. */
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame {
     const followed = this.#handsReplaced ? { ...frame, suspended: true as const } : frame;
@@ -124,12 +119,12 @@ export class ArcheryPlay {
     const match = this.#match;
     const events = match.advance(frame.time, [...signals, ...actions]);
     const { state } = match;
-    const before = state.phase === 'over' ? this.#newest : null;
+    const before = state.phase === 'over' ? this.newest : null;
     const since = Math.max(0, frame.time - this.#followedAt);
     const time = before ? before.time + since : matchTime(state) + match.lead;
     this.#followedAt = frame.time;
-    this.#newest = { state, time: Math.max(0, time), bow, events, cues, haptics };
-    return this.#newest;
+    this.newest = { state, time: Math.max(0, time), bow, events, cues, haptics };
+    return this.newest;
   }
 
   /** Returns the input of the simulated archer at a time [s]. */
@@ -175,7 +170,7 @@ export class ArcheryPlay {
     const body = { bowSide, eyeHeight, armLength: chestSpaceBody(person).arm };
     this.#archer = createSimulatedArcher(body);
     this.#steered = createSteeredArcher(body);
-    this.#newest = null;
+    this.newest = null;
     this.#signalled = false;
   }
 

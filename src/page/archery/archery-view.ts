@@ -1,6 +1,5 @@
-import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import { addScaled, vec3 } from 'threepoint/core/math/vec3';
+import type { Pose } from 'threepoint/core/math/pose';
+import { addScaled, copyVec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
 import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
@@ -19,28 +18,27 @@ import { ArcherySounds } from './sound/archery-sounds';
 
 export interface ArcheryViewOptions {
   readonly quality: Quality;
-  /** Puts the range into the room; must be level. */
-  readonly floorFromArena: Transform<'floor', 'arena'>;
   /** The distances of the targets along the floor [m], for the signs. */
   readonly distances: readonly number[];
   /** Every sound in words, with its direction. */
   readonly onCaption: (text: string) => void;
 }
 
-/** Creates the view of archery: range, targets, arrows, bow, boards and sounds. */
-export function createArcheryView({ quality, floorFromArena, distances, onCaption }: ArcheryViewOptions) {
-  const arenaFromFloor = invertTransform(floorFromArena);
-  const range = createRange(quality, floorFromArena, distances);
+/**
+ * Creates the view of archery: range, targets, arrows, bow, boards and sounds. The arena frame of the range is the
+ * floor frame of the user: the zone lies around the origin, the targets ahead.
+ */
+export function createArcheryView({ quality, distances, onCaption }: ArcheryViewOptions) {
+  const range = createRange(quality, distances);
   const stands = new TargetStands(quality);
   const arrows = createArrows(arrowLength);
   const trails = createTrails(arrowLength);
   const scoreboard = createScoreboard(quality);
   const pops = new ScorePopups(quality);
   const result = createResultPanel(quality);
-  const sounds = new ArcherySounds({ floorFromArena, onCaption });
+  const sounds = new ArcherySounds(onCaption);
   let shown: ArcheryState | null = null;
   const onString = makeArrowPose();
-  const eyes = vec3(0, 0, 0);
   const bow = createBow(quality, braceHeight);
   range.object.add(stands.object, arrows.object, trails.object, scoreboard.object, pops.object, result.object);
   return {
@@ -58,11 +56,10 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       sounds.setListener(head);
       const nocked = bowView?.arrow;
       if (nocked) {
-        const { tip, direction } = onString;
-        rotate(arenaFromFloor.orientation, nocked.direction, direction);
-        addScaled(transformPoint(arenaFromFloor, nocked.nock, tip), direction, arrowLength, tip);
+        copyVec3(nocked.direction, onString.direction);
+        addScaled(nocked.nock, nocked.direction, arrowLength, onString.tip);
       }
-      transformPoint(arenaFromFloor, head.position, eyes);
+      const eyes = head.position;
       stands.show(state, matchTime);
       arrows.show(state.arrows, matchTime, nocked ? onString : null);
       trails.show(state.arrows, matchTime, eyes);
@@ -79,7 +76,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
     showScoreboard(visible: boolean): void {
       scoreboard.object.visible = visible;
     },
-    /** Plays and captions the events since the last frame. Cues of the bow are in the floor frame. */
+    /** Plays and captions the events and cues since the last frame. */
     playEvents(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
       if (shown) sounds.playEvents(shown, events, cues);
     },

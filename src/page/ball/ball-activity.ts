@@ -26,17 +26,14 @@ import { CourtInput } from './court-input';
 import { assignedSeat, type BallPlace, connectionsFor } from './match/ball-connections';
 import type { BallFrame } from './match/ball-frame';
 import { BallPlay } from './match/ball-play';
-import type { BallProbe } from './match/ball-probe';
-import { createDisplayedClock } from './match/displayed-clock';
-import { playerProbes } from './match/player-probe';
+import { type BallProbe, playerProbes } from './match/ball-probe';
 import { BallMenu } from './menu/ball-menu';
 import { createBallPanel } from './panel/ball-panel';
 import { type BallRound, ballRound } from './panel/ball-round';
 import { seatLooks } from './seat-looks';
 import { eventHaptics } from './sound/ball-haptics';
 import { ownName } from './view/displayed-match';
-import type { LobbyButton } from './view/lobby-drawing';
-import { seatOfButton } from './view/lobby-drawing';
+import { type LobbyButton, seatOfButton } from './view/lobby-sheet';
 import { BlockList } from './voices/block-list';
 import { Voices, type VoicesProbe } from './voices/voices';
 
@@ -65,7 +62,6 @@ export class BallActivity implements OpenActivity {
   readonly #avatars: RoomBodies;
   readonly #menu: BallMenu;
   readonly #input: CourtInput;
-  readonly #clock = createDisplayedClock();
   /** The width up to which the bar lies over the picture. */
   readonly #phone = matchMedia('(max-width: 480px)');
   /** The user joined without a name, and reads “You” instead of the one that others see. */
@@ -94,7 +90,7 @@ export class BallActivity implements OpenActivity {
         ...(switches.spectate && { spectate: true }),
       },
       bots: () => settings.bots && place === null,
-      acting: () => this.#input.isSimulated,
+      acting: () => this.#input.isActor,
       steering: () => this.#input.steering(),
       seed: layout.seed,
     });
@@ -180,7 +176,6 @@ export class BallActivity implements OpenActivity {
     this.#view.show({
       ...newest,
       attendants: this.#named(newest.players),
-      secondsLeft: this.#clock.secondsLeft,
       head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
       pageTime: time,
       inRoom: !this.#ended,
@@ -238,12 +233,12 @@ export class BallActivity implements OpenActivity {
     if (!frame) return null;
     const { play, voices, acting } = this;
     const players = this.#named(frame.players);
-    return ballRound({ play, frame, players, secondsLeft: this.#clock.secondsLeft, acting, voices });
+    return ballRound({ play, frame, players, acting, voices });
   }
 
   probe(): BallActivityProbe | null {
     const probe = this.play.probe();
-    return probe && { ...probe, secondsLeft: this.#clock.secondsLeft, voices: this.voices.probe() };
+    return probe && { ...probe, voices: this.voices.probe() };
   }
 
   players(): readonly PlayerProbe[] {
@@ -290,7 +285,6 @@ export class BallActivity implements OpenActivity {
   #follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly HapticPulse[] {
     const newest = this.play.follow(time, frame, buttons);
     if (!newest) return [];
-    this.#clock.follow(newest.state);
     const { me, role, events, haptics } = newest;
     if (me === null || role === null || events.length === 0) return haptics;
     return [...haptics, ...eventHaptics(events, me, role)];

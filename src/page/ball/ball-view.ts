@@ -26,11 +26,10 @@ import type { SeatVoices } from './voices/seat-voices';
 export type DrawnPlayer = DisplayedPlayer & Pick<PlayerFrame, 'head' | 'palms' | 'opacity'>;
 
 /** One frame of a match as it is drawn. */
-export interface BallScene extends Pick<BallFrame, 'state' | 'time' | 'me' | 'rotate' | 'opening' | 'aim' | 'paused'> {
+export interface BallScene
+  extends Pick<BallFrame, 'state' | 'time' | 'secondsLeft' | 'me' | 'rotate' | 'opening' | 'aim' | 'paused'> {
   /** By player; null: the seat is free. */
   readonly attendants: readonly (DrawnPlayer | null)[];
-  /** Seconds until the bell; after a match what was left at its end. */
-  readonly secondsLeft: number;
   /** The page's time [s], and whether it is still in the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;

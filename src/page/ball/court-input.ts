@@ -1,6 +1,8 @@
 import type { Pointer } from 'threepoint/core/input/pointer';
 import { transformPoint } from 'threepoint/core/math/pose';
-import { addScaled, distance, dot, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { Ray } from 'threepoint/core/math/ray';
+import { addScaled, distance, dot, forward, subtract, type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
+import type { Mutable } from 'threepoint/core/records';
 import { landsIn } from 'threepoint-games/ball/basket';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import type { ActivityContext } from '../activity/activity-context';
@@ -17,11 +19,15 @@ const dwellSeconds = 2.5;
 /** The middle of the basket's opening, arena frame [m]. */
 const basketOf = ({ opening, state }: BallFrame): Vec3 => opening?.position ?? state.basket.position;
 
+/** The ray before the first pointer. */
+const noRay: Ray = { origin: zero, direction: forward };
+
 /** The source that moves the user's body at the court: a person in a headset, a pointer, or a simulated player. */
 export class CourtInput {
   readonly #context: Pick<ActivityContext, 'place' | 'settings' | 'headset' | 'pointer'>;
   readonly #play: () => Pick<BallPlay, 'newest' | 'floorFromArena'> | null;
   readonly #basket = vec3(0, 0, 0);
+  readonly #steering: Mutable<BallSteering> = { ray: noRay, pressed: false, cancelled: false };
 
   /** `play`: the match; null before there is one. */
   constructor(
@@ -32,29 +38,26 @@ export class CourtInput {
     this.#play = play;
   }
 
-  /** No person wears the headset that moves the user's body. */
-  get isSimulated(): boolean {
-    const { place, settings, headset } = this.#context;
-    return place === null && settings.actor && (!headset.worn || headset.emulator !== null);
-  }
-
-  /** A simulated player moves the user's body, no pointer does: no person can be asked. */
+  /** A simulated player moves the user's body; no person in a headset and no pointer does. */
   get isActor(): boolean {
-    return this.isSimulated && this.steering() === null;
+    const { place, settings, headset, pointer } = this.#context;
+    return place === null && settings.actor && (!headset.worn || headset.emulator !== null) && pointer() === null;
   }
 
-  /** Returns what the pointer asks of the user's player, floor frame of the user; null: no pointer plays. */
+  /**
+   * Returns what the pointer asks of the user's player, floor frame of the user; null: no pointer plays. The next call
+   * overwrites the result.
+   */
   steering(): BallSteering | null {
     const pointer = this.#context.pointer();
     if (!pointer) return null;
     this.#pointAtBasket(pointer);
-    const held = pointer.isHeldFor(owner);
-    return {
-      ray: { origin: pointer.origin, direction: pointer.direction },
-      // A throw that its user cannot end leaves when it would land in the basket.
-      pressed: held && (pointer.releases || !this.#isOnTarget()),
-      cancelled: pointer.cancelled,
-    };
+    const steering = this.#steering;
+    steering.ray = pointer;
+    // A throw that its user cannot end leaves when it would land in the basket.
+    steering.pressed = pointer.isHeldFor(owner) && (pointer.releases || !this.#isOnTarget());
+    steering.cancelled = pointer.cancelled;
+    return steering;
   }
 
   /** Reports that the pointer aims at the basket, for a player with a ball in the hand. */

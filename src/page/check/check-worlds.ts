@@ -7,8 +7,6 @@ import { createEstimator } from 'threepoint/core/estimation/estimators';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import { nothingPressed } from 'threepoint/core/input/button-presses';
 import { composeTransforms, invertTransform } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import { zero } from 'threepoint/core/math/vec3';
 import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
@@ -65,7 +63,6 @@ export class CheckWorlds {
     );
     this.#archery = createArcheryView({
       quality,
-      floorFromArena: { position: zero, orientation: identity },
       distances: this.#archeryPlay.targets.map(({ distance }) => distance),
       onCaption: silent,
     });

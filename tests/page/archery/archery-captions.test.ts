@@ -66,13 +66,12 @@ describe('captions', () => {
 describe('sounds before the browser allows any', () => {
   it('are captions all the same, a creaking bow only once in a draw', () => {
     const captions: string[] = [];
-    const sounds = new ArcherySounds({
-      floorFromArena: { position: vec3(0, 0, 0), orientation: identity },
-      onCaption: (text) => captions.push(text),
-      createContext: () => {
+    const sounds = new ArcherySounds(
+      (text) => captions.push(text),
+      () => {
         throw new Error('the audio was never unlocked');
       },
-    });
+    );
     const state = archeryRules.start([], 1);
     const cue = (type: 'creak' | 'nocked') =>
       ({ type, side: 'left', position: vec3(0, 1.4, -0.6), draw: 0.2 }) as const;
@@ -81,14 +80,11 @@ describe('sounds before the browser allows any', () => {
     expect(captions).toEqual(['Arrow nocked', 'The bow creaks', 'The clock runs: 70 seconds']);
   });
 
-  it('are heard from the floor even when the range is turned in the room: directions are for the head in it', () => {
+  it('have the direction from the head of the newest frame', () => {
     const captions: string[] = [];
-    const sounds = new ArcherySounds({
-      floorFromArena: { position: vec3(2, 0, 0), orientation: fromAxisAngle(up, Math.PI / 2) },
-      onCaption: (text) => captions.push(text),
-    });
-    // One metre behind the deck of a range that runs along the floor's −X.
-    sounds.setListener({ position: vec3(3, 1.6, 0), orientation: fromAxisAngle(up, Math.PI / 2) });
+    const sounds = new ArcherySounds((text) => captions.push(text));
+    // One metre to the right of the deck, turned to it.
+    sounds.setListener({ position: vec3(1, 1.6, 0), orientation: fromAxisAngle(up, Math.PI / 2) });
     sounds.playEvents(archeryRules.start([], 1), [{ type: 'left-zone' }], []);
     expect(captions).toEqual(['You left the deck: it is ahead']);
   });

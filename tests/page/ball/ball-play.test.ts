@@ -36,7 +36,7 @@ function page(options: {
       ...(options.spectate && { spectate: true }),
     },
     bots: () => bots,
-    acting: () => acting,
+    acting: () => acting && !options.steering?.(),
     ...(options.steering && { steering: options.steering }),
     seed: 7,
   });

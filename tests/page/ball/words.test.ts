@@ -2,13 +2,12 @@ import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
 import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
 import { ballRules } from 'threepoint-games/ball/rules';
-import { catchesOf } from 'threepoint-games/ball/state-selectors';
-import { createDisplayedClock } from 'threepoint-page/ball/match/displayed-clock';
+import { catchesOf, displayedSeconds } from 'threepoint-games/ball/state-selectors';
 import { cueCaption, eventCaption } from 'threepoint-page/ball/sound/ball-captions';
 import { eventHaptics } from 'threepoint-page/ball/sound/ball-haptics';
 import type { DisplayedMatch, DisplayedPlayer } from 'threepoint-page/ball/view/displayed-match';
 import { displayName } from 'threepoint-page/ball/view/displayed-match';
-import { lobbyButtons, seatOfButton } from 'threepoint-page/ball/view/lobby-drawing';
+import { lobbyButtons, seatOfButton } from 'threepoint-page/ball/view/lobby-sheet';
 import { eventLine, waitingLine, waitingSentence } from 'threepoint-page/ball/view/match-texts';
 import { labelScale } from 'threepoint-page/ball/view/name-labels';
 import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
@@ -151,16 +150,12 @@ describe('names over heads', () => {
 
 describe('the clock of a match', () => {
   it('stands after its end, however long the result is read, and is whole again before the next', () => {
-    const clock = createDisplayedClock();
-    const at = (tick: number, more: Partial<BallState>) => clock.follow({ ...fresh, tick, startedAt: 0, ...more });
-    at(60 * 30, { phase: 'running' });
-    expect(clock.secondsLeft).toBeCloseTo(60, 6);
-    at(60 * 50, { phase: 'over', end: 'balls' });
-    expect(clock.secondsLeft).toBeCloseTo(60, 6);
-    at(60 * 90, { phase: 'over', end: 'time' });
-    expect(clock.secondsLeft).toBe(0);
-    clock.follow({ ...fresh, startedAt: null });
-    expect(clock.secondsLeft).toBe(90);
+    const at = (tick: number, more: Partial<BallState>) => ({ ...fresh, tick, startedAt: 0, ...more });
+    const running = displayedSeconds(at(60 * 30, { phase: 'running' }), 0);
+    expect(running).toBeCloseTo(60, 6);
+    expect(displayedSeconds(at(60 * 50, { phase: 'over', end: 'balls' }), running)).toBe(running);
+    expect(displayedSeconds(at(60 * 90, { phase: 'over', end: 'time' }), running)).toBe(0);
+    expect(displayedSeconds({ ...fresh, startedAt: null }, 0)).toBe(90);
   });
 });
 

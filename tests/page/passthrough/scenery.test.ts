@@ -5,8 +5,6 @@ import { scenery } from 'threepoint-page/passthrough/passthrough-room';
 import { expect, test } from 'vitest';
 import { drawNowhere } from '../shell/drawing-in-node';
 
-const origin = { position: { x: 0, y: 0, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
-
 /** Returns the furthest that anything of a place reaches to the side in a user's room [m]. */
 function widthInRoom(place: Object3D): number {
   for (const child of place.children) if (scenery.includes(child.name)) child.visible = false;
@@ -21,6 +19,6 @@ drawNowhere();
 
 test('trees, nets, ground and sky of the games stay outside the room of their user', () => {
   // The signs beside the range, and the pennants beside the court, are the widest that come into the room.
-  expect(widthInRoom(createRange('high', origin, [5, 10]).object)).toBeLessThan(5);
+  expect(widthInRoom(createRange('high', [5, 10]).object)).toBeLessThan(5);
   expect(widthInRoom(createCourt('high', 20).object)).toBeLessThan(5);
 });

@@ -1,5 +1,5 @@
 import { Group, Vector3 } from 'three';
-import type { Transform } from 'threepoint/core/math/pose';
+import { makeTransform } from 'threepoint/core/math/pose';
 import { mergeMeshes } from '../../scene/merge-meshes';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';
@@ -18,18 +18,11 @@ import { createZone } from './zone';
 const towardsSun = new Vector3(8.5, 11, 7.5);
 
 /**
- * Builds the place where archery is played, instead of the studio. Its object is in the arena frame; floorFromArena
- * puts its zone and its direction into the room. Signs stand at these distances [m].
+ * Builds the place where archery is played, instead of the studio; arena frame. Signs stand at these distances [m].
  */
-export function createRange(
-  quality: Quality,
-  floorFromArena: Transform<'floor', 'arena'>,
-  distances: readonly number[],
-) {
+export function createRange(quality: Quality, distances: readonly number[]) {
   const object = new Group();
   object.name = 'archery range';
-  object.position.copy(floorFromArena.position);
-  object.quaternion.copy(floorFromArena.orientation);
   const noise = createNoiseTexture(quality);
   const zone = createZone();
   // Passthrough hides this group: the user's own room takes its place.
@@ -56,7 +49,7 @@ export function createRange(
         groundColor: '#6f7f45',
         shadows: { middle: new Vector3(0, 0, -5), halfSize: 7.4 },
       },
-      floorFromArena,
+      makeTransform<'floor', 'arena'>(),
     ),
     setZoneWarning: zone.setWarning,
     /** Updates animations to a time [s]. */

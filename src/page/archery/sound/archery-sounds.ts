@@ -1,6 +1,6 @@
 import { clamp } from 'threepoint/core/math/damper';
-import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from 'threepoint/core/math/pose';
-import { length, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { Pose } from 'threepoint/core/math/pose';
+import { length, lerp, vec3 } from 'threepoint/core/math/vec3';
 import type { ArcheryEvent, ArcheryState, Arrow } from 'threepoint-games/archery/archery-state';
 import { maximumDraw } from 'threepoint-games/archery/bow';
 import type { BowCue } from 'threepoint-games/archery/gestures';
@@ -15,13 +15,6 @@ import {
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import { cueCaption, eventCaption } from './archery-captions';
 import { creak, earth, rattle, thud, twang } from './archery-synthesis';
-
-export interface ArcherySoundsOptions {
-  readonly floorFromArena: Transform<'floor', 'arena'>;
-  readonly onCaption: (text: string) => void;
-  /** Made at the first `unlock`; default: the browser's own. */
-  readonly createContext?: () => AudioContext;
-}
 
 /** Steps of the draw for which creak and twang are rendered. */
 const drawSteps = 8;
@@ -55,10 +48,8 @@ function playCue({ type, position, draw }: BowCue, { play }: SoundPlayer): void 
   else if (type === 'lost') play('warning', position);
 }
 
-/** Plays the sounds of archery from where they happen, with captions. */
+/** Plays the sounds of archery from where they happen, with captions. The arena frame is the user's floor frame. */
 export class ArcherySounds {
-  readonly #floorFromArena: Transform<'floor', 'arena'>;
-  readonly #arenaFromFloor: Transform<'arena', 'floor'>;
   readonly #onCaption: (text: string) => void;
   /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: SoundStage;
@@ -68,14 +59,12 @@ export class ArcherySounds {
   /** The creaking of the bow was captioned in this draw. */
   #creaked = false;
 
-  constructor({ floorFromArena, onCaption, createContext }: ArcherySoundsOptions) {
-    this.#floorFromArena = floorFromArena;
-    this.#arenaFromFloor = invertTransform(floorFromArena);
+  constructor(onCaption: (text: string) => void, createContext?: () => AudioContext) {
     this.#onCaption = onCaption;
     this.stage = createSoundStage(recipes, createContext);
   }
 
-  /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
+  /** Plays and captions what happened in this frame. */
   playEvents({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
     const playing = this.stage.player;
     for (const cue of cues) {
@@ -83,7 +72,8 @@ export class ArcherySounds {
       if (playing) playCue(cue, playing);
     }
     if (events.length === 0) return;
-    const head = transformPose(this.#arenaFromFloor, this.#head);
+    const { position, orientation } = this.#head;
+    const head: Pose<'arena'> = { position, orientation };
     for (const event of events) {
       this.#onCaption(eventCaption(event, { targets, seconds: options.seconds, head }));
       if (playing) this.#playEvent(event, playing);
@@ -100,10 +90,6 @@ export class ArcherySounds {
     this.stage.dispose();
   }
 
-  #inFloor(point: Vec3): Vec3 {
-    return transformPoint(this.#floorFromArena, point);
-  }
-
   /** Captions a cue. A bow creaks many times in a draw; one caption is enough. */
   #captionCue(cue: BowCue): void {
     if (cue.type === 'creak' && this.#creaked) return;
@@ -116,25 +102,24 @@ export class ArcherySounds {
   #playEvent(event: ArcheryEvent, playing: SoundPlayer): void {
     if (event.type === 'released') this.#playFlight(event.arrow, playing);
     else if (event.type === 'landed') this.#playLanding(event, playing);
-    else if (event.type === 'ended') playing.play('bell', this.#inFloor(vec3(-2, 2.4, -4)), 0.35);
-    else if (event.type === 'left-zone') playing.play('warning', this.#inFloor(vec3(0, 0.3, 0)));
+    else if (event.type === 'ended') playing.play('bell', vec3(-2, 2.4, -4), 0.35);
+    else if (event.type === 'left-zone') playing.play('warning', vec3(0, 0.3, 0));
   }
 
   /** Plays a whoosh that moves with the arrow. */
   #playFlight({ id, release }: Arrow, { playAlong }: SoundPlayer): void {
     const seconds = Math.min(0.7, 14 / length(release.velocity));
-    const source = playAlong('whoosh', seconds, (after) => this.#inFloor(positionAt(release, after)));
+    const source = playAlong('whoosh', seconds, (after) => positionAt(release, after));
     this.#flying.set(id, source);
     source.addEventListener('ended', () => this.#flying.delete(id));
   }
 
   #playLanding({ arrow, landing }: Landed, { play }: SoundPlayer): void {
     this.#flying.get(arrow.id)?.stop();
-    const at = this.#inFloor(landing.position);
-    if (landing.on === 'target') play('thud', at);
-    else if (landing.on === 'ground') play('earth', at);
-    else play('rattle', at);
+    if (landing.on === 'target') play('thud', landing.position);
+    else if (landing.on === 'ground') play('earth', landing.position);
+    else play('rattle', landing.position);
     // The chime is feedback for the archer: it sounds halfway to the head.
-    if (landing.points > 0) play(chimeName(landing.points), lerp(at, this.#head.position, 0.5), 0.12);
+    if (landing.points > 0) play(chimeName(landing.points), lerp(landing.position, this.#head.position, 0.5), 0.12);
   }
 }

@@ -41,6 +41,8 @@ export interface BallFrame {
   readonly connection: ConnectionStatus['phase'];
   /** Seconds of the match. */
   readonly time: number;
+  /** Seconds until the bell; after a match, the seconds that were left at its end. */
+  readonly secondsLeft: number;
   readonly me: number | null;
   readonly role: BallRole | null;
   readonly rotate: boolean;

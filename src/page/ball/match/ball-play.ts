@@ -10,6 +10,7 @@ import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-cl
 import type { BallGame } from 'threepoint-games/ball/ball-policy';
 import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
+import { displayedSeconds } from 'threepoint-games/ball/state-selectors';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
 import type { PlayerInput } from 'threepoint-games/player-input';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
@@ -28,7 +29,7 @@ export interface BallPlayOptions {
   readonly visitor: Visitor;
   /** Whether bots take free seats; read in every frame. */
   bots(): boolean;
-  /** Whether a simulated player has the user's seat. It is ready without being asked. */
+  /** Whether a simulated player moves the user's body. It is ready without being asked. */
   acting(): boolean;
   /** The mouse's target, floor frame of the user; null or absent: a simulated player plays. */
   steering?(): BallSteering | null;
@@ -53,6 +54,7 @@ export class BallPlay {
   private events: readonly BallEvent[] = none;
   private gestures: BallGestures | null = null;
   private resumed = false;
+  private secondsLeft = 0;
   /** Since when the match has been waiting in this phase for a player to be ready [s]. */
   private waitingSince: { readonly phase: string; readonly at: number } | null = null;
   private begunAt: number | null = null;
@@ -131,12 +133,14 @@ export class BallPlay {
     this.people.update(connection, seen, frame, this.client.people);
     const { players, bodies, opening } = this.people;
     this.sight.opening = opening;
+    this.secondsLeft = displayedSeconds(state, this.secondsLeft);
     const missed = this.simulated.takeMissed();
     this.newest = {
       state,
       epoch: before.epoch,
       connection: connection.status.phase,
       time: time + before.matchClockOffset,
+      secondsLeft: this.secondsLeft,
       me,
       role: me === null ? null : (state.players[me]?.role ?? null),
       rotate: before.rotate,
@@ -228,8 +232,7 @@ export class BallPlay {
       return;
     }
     if (this.waitingSince?.phase !== match.phase) this.waitingSince = { phase: match.phase, at: time };
-    // A person uses the mouse, and decides when to be ready.
-    if (!options.acting() || options.steering?.() || match.players[seen.mySeat]?.ready) return;
+    if (!options.acting() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - this.waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {
       this.connection?.setReady(true);

@@ -1,12 +1,15 @@
-import { length } from 'threepoint/core/math/vec3';
-import type { BallConnection } from 'threepoint-games/ball/ball-client';
+import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
+import { length, type Vec3 } from 'threepoint/core/math/vec3';
+import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
 import type { BallPlace } from 'threepoint-games/ball/ball-state';
-import { ballSecondsLeft, ballsLeft, catchesOf } from 'threepoint-games/ball/state-selectors';
+import { ballsLeft, catchesOf } from 'threepoint-games/ball/state-selectors';
+import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
+import type { PlayerProbe } from '../../activity/activity';
 import type { BallFrame } from './ball-frame';
 
 /** Returns the state of a match as plain data, for tests and tools. */
 export function probeOf(
-  { state, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
+  { state, secondsLeft, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
   connection: BallConnection,
 ) {
   const count = (on: BallPlace['on']) => state.balls.filter((place) => place.on === on).length;
@@ -17,7 +20,7 @@ export function probeOf(
     end: state.end,
     score: state.score,
     ballsLeft: ballsLeft(state),
-    secondsLeft: ballSecondsLeft(state),
+    secondsLeft,
     /** Own seat; null: a spectator. */
     seat: me,
     role,
@@ -50,3 +53,21 @@ export function probeOf(
 }
 
 export type BallProbe = ReturnType<typeof probeOf>;
+
+const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
+
+/** Returns the other players as they are drawn now. */
+export function playerProbes(
+  { newest, room }: { readonly newest: BallFrame | null; readonly room: BallRoomView | null },
+  others: Pick<RoomBodies, 'jointsOf' | 'drawnAs'>,
+): readonly PlayerProbe[] {
+  return (newest?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
+    const player = newest?.players[id];
+    if (!player) return [];
+    const { name, bot, presence } = player;
+    const drawn = Object.entries(others.jointsOf(id) ?? {});
+    const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
+    const { avatar = defaultAvatar } = room?.seats[id] ?? {};
+    return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: others.drawnAs(id), joints }];
+  });
+}

@@ -45,7 +45,6 @@ export interface BallRoundParts {
   readonly frame: BallFrame;
   /** The players with the names that this page shows. */
   readonly players: BallFrame['players'];
-  readonly secondsLeft: number;
   /** A simulated player has the user's seat. */
   readonly acting: boolean;
   readonly voices: { readonly state: VoicesState; readonly seats: { voiceOf(seat: number): PersonVoice } };
@@ -54,8 +53,8 @@ export interface BallRoundParts {
 const roleOf = (state: BallState, player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
 
 /** Summarises a frame of a match. */
-export function ballRound({ play, frame, players, secondsLeft, acting, voices }: BallRoundParts): BallRound {
-  const { state, me, rotate, spectators, paused } = frame;
+export function ballRound({ play, frame, players, acting, voices }: BallRoundParts): BallRound {
+  const { state, secondsLeft, me, rotate, spectators, paused } = frame;
   const ended = play.status.phase === 'ended';
   const own = me === null ? null : state.players[me];
   const standing = { state, seconds: Math.ceil(secondsLeft), players, me, rotate, acting };

@@ -51,7 +51,7 @@ export class SeatVoices {
   applyBlocks(): void {
     for (let seat = 0; seat < this.#sessions.length; seat++) {
       const session = this.#sessions[seat];
-      if (session) this.#call?.setSilent(session, this.#blocked.mutes(seat));
+      if (session) this.#call?.sound.setSilent(session, this.#blocked.mutes(seat));
     }
   }
 
@@ -62,7 +62,7 @@ export class SeatVoices {
     for (let i = 0; i < bodies.length; i++) {
       const { id, placement, pose } = bodies[i]!;
       const session = this.#sessions[id];
-      if (session) this.#call.place(session, transformPoint(placement, pose.head.position, this.#head));
+      if (session) this.#call.sound.place(session, transformPoint(placement, pose.head.position, this.#head));
     }
   }
 
@@ -70,7 +70,7 @@ export class SeatVoices {
   voiceOf(seat: number): PersonVoice {
     const voice = this.#room()?.seats[seat]?.voice ?? null;
     const session = this.#sessions[seat];
-    const state = session ? (this.#call?.stateOf(session) ?? null) : null;
+    const state = session ? (this.#call?.mesh.stateOf(session) ?? null) : null;
     return {
       voice: voice === null ? 'none' : voice.muted ? 'muted' : 'open',
       link: state === null ? 'none' : linkOf(state),
@@ -118,8 +118,8 @@ export class SeatVoices {
     for (let seat = 0; seat < this.#levels.length; seat++) {
       const session = this.#sessions[seat];
       let level = 0;
-      if (call && seat === this.#mySeat) level = call.ownLevel();
-      else if (call && session && this.markOf(seat) === 'open') level = call.level(session);
+      if (call && seat === this.#mySeat) level = call.sound.ownLevel();
+      else if (call && session && this.markOf(seat) === 'open') level = call.sound.level(session);
       this.#levels[seat] = level;
     }
   }

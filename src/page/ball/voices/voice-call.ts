@@ -1,4 +1,3 @@
-import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
 import { VoiceMesh } from 'threepoint-rooms/voices/voice-mesh';
 import { VoiceSound } from '../../scene/sound/voice-sound';
@@ -26,8 +25,8 @@ const newSession = (): string => {
  */
 export class VoiceCall {
   readonly #options: VoiceCallOptions;
-  readonly #mesh: VoiceMesh;
-  readonly #sound: VoiceSound;
+  readonly mesh: VoiceMesh;
+  readonly sound: VoiceSound;
   /** The sessions that this page is connected to. */
   readonly #linked = new Set<string>();
   /** The sessions that this page has disconnected from. */
@@ -37,8 +36,8 @@ export class VoiceCall {
   constructor(options: VoiceCallOptions) {
     const { context, configuration, signal } = options;
     this.#options = options;
-    this.#sound = new VoiceSound(context);
-    this.#mesh = new VoiceMesh({ configuration, signal, onStream: (session, stream) => this.#play(session, stream) });
+    this.sound = new VoiceSound(context);
+    this.mesh = new VoiceMesh({ configuration, signal, onStream: (session, stream) => this.#play(session, stream) });
   }
 
   /** The name of this page among the voices. Both pages of a connection need a new one to reconnect. */
@@ -55,7 +54,7 @@ export class VoiceCall {
     // The other page may have kept its half of a connection that was closed here. A new session makes it close that
     // too.
     if (seated && (moved || others.some((session) => this.#dropped.has(session)))) {
-      this.#mesh.close();
+      this.mesh.close();
       this.#linked.clear();
       this.#dropped.clear();
       this.#session = newSession();
@@ -64,71 +63,40 @@ export class VoiceCall {
     for (const session of this.#linked) if (!others.includes(session)) this.#dropped.add(session);
     this.#linked.clear();
     for (const session of others) this.#linked.add(session);
-    this.#mesh.connectTo(seated ? this.#session : null, others);
-  }
-
-  configure(configuration: RTCConfiguration): void {
-    this.#mesh.configure(configuration);
-  }
-
-  receive(from: string, body: SignalBody): void {
-    this.#mesh.receive(from, body);
+    this.mesh.connectTo(seated ? this.#session : null, others);
   }
 
   /** Sends this track to the others; null: sends nothing. */
   setTrack(track: MediaStreamTrack | null): void {
-    this.#mesh.setTrack(track);
-    this.#sound.setOwn(track);
-  }
-
-  /** Places the voice of a session, floor frame. */
-  place(session: string, position: Vec3): void {
-    this.#sound.place(session, position);
-  }
-
-  setSilent(session: string, silent: boolean): void {
-    this.#sound.setSilent(session, silent);
-  }
-
-  /** The level of a voice before distance, from 0 to 1. */
-  level(session: string): number {
-    return this.#sound.level(session);
-  }
-
-  ownLevel(): number {
-    return this.#sound.ownLevel();
+    this.mesh.setTrack(track);
+    this.sound.setOwn(track);
   }
 
   /** All voices at the user's ears, and before distance and direction change them [dB of full scale]; −120: silence. */
   loudness(): { readonly loudness: number; readonly spokenLoudness: number } {
-    return { loudness: this.#sound.loudness(), spokenLoudness: this.#sound.spokenLoudness() };
-  }
-
-  /** The connection to the page of this session; null: there is none. */
-  stateOf(session: string): RTCPeerConnectionState | null {
-    return this.#mesh.stateOf(session);
+    return { loudness: this.sound.loudness(), spokenLoudness: this.sound.spokenLoudness() };
   }
 
   /** Repairs connections and sound. Call it twice a second. `joined`: this page is connected to the room. */
   watch(joined: boolean): void {
     const { context } = this.#options;
-    this.#mesh.restartLost(performance.now() / 1000, joined);
+    this.mesh.restartLost(performance.now() / 1000, joined);
     // A headset's sleep suspends audio too.
     if (context.state === 'suspended' && document.visibilityState === 'visible') void context.resume();
-    this.#sound.restartFailed();
+    this.sound.restartFailed();
   }
 
   dispose(): void {
-    this.#mesh.close();
-    this.#sound.dispose();
+    this.mesh.close();
+    this.sound.dispose();
   }
 
   #play(session: string, stream: MediaStream | null): void {
     if (!stream) {
-      this.#sound.remove(session);
+      this.sound.remove(session);
       return;
     }
-    this.#sound.add(session, stream);
+    this.sound.add(session, stream);
     this.#options.onVoice(session);
   }
 }

@@ -73,7 +73,7 @@ export class Voices {
       this.#channel = play.voices;
       this.#channel?.setListener({
         onSeatsChanged: () => this.seats.update(),
-        onSignal: (from, body) => this.#call?.receive(from, body),
+        onSignal: (from, body) => this.#call?.mesh.receive(from, body),
       });
       this.seats.update();
     }
@@ -206,7 +206,7 @@ export class Voices {
     this.#call?.watch(this.#options.play.status.phase === 'joined');
     void this.#terms
       ?.refreshIfDue()
-      .then((renewed) => renewed && this.#call?.configure(this.#configurationOf(renewed)));
+      .then((renewed) => renewed && this.#call?.mesh.configure(this.#configurationOf(renewed)));
   }
 }
 
