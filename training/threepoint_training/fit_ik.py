@@ -25,12 +25,12 @@ PRIOR: dict[str, Any] = {
     "lower": {"forward": [-0.05, 0.15, 0.8, 0.05, 0, 0], "sideways": [0.1, 0.05, 0]},
     "neck": 0.5,
     "clavicle": [[0, 0, 0, 0], [0, 0, 0.03, 0], [0, 0, 0, 0.03]],
-    "untoldPole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
+    "untiltedPole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
     "pole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
 }
 
 
-_MATRICES = ("clavicle", "untoldPole", "pole")
+_MATRICES = ("clavicle", "untiltedPole", "pole")
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ import {
 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import limits from './kinematic-limits.json';
-import { followPin, handOverSeconds, makePin, type Pin, trustBeyond } from './pin';
+import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from './pin';
 import type { TrackedJoints } from './tracked-joints';
 import { placeShoulder, type TorsoBones, type TorsoPose } from './trunk/fit-torso';
 
@@ -135,15 +135,15 @@ export function pinTrunk(
   copyTrunk(torso, fitted);
   const { headJoint } = frame;
   const chestReach = bones.neckLength + bones.thoraxLength;
-  const chestTrust = trustOf(tracked.chest, headJoint, chestReach);
-  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), tracked.chest, chestTrust, step);
+  const chestConfidence = confidenceOf(tracked.chest, headJoint, chestReach);
+  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), tracked.chest, chestConfidence, step);
   if (chestWeight > 0) {
     copyTrunk(torso, before);
     moveChest(torso, state.chest, headJoint, bones, seconds);
     mixTrunk(torso, headJoint, bones, chestWeight);
   }
-  const hipsTrust = trustOf(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
-  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), tracked.hips, hipsTrust, step);
+  const hipsConfidence = confidenceOf(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
+  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), tracked.hips, hipsConfidence, step);
   if (hipsWeight > 0) {
     copyTrunk(torso, before);
     moveHips(torso, state.hips, headJoint, bones, seconds);
@@ -164,8 +164,8 @@ export function resetPinTrunk(state: PinTrunkState): void {
   }
 }
 
-const trustOf = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): number =>
-  joint ? trustBeyond(distance(joint.position, headJoint) - reach) : 0;
+const confidenceOf = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): number =>
+  joint ? confidenceBeyond(distance(joint.position, headJoint) - reach) : 0;
 
 function copyTrunk({ neck, chest, hips, rotations }: TrunkBefore, target: TrunkBefore): void {
   copyVec3(neck, target.neck);

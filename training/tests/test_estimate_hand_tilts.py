@@ -8,7 +8,7 @@ from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.kinematic_limits import HAND_TILTS, LIMB
-from threepoint_training.notice_hand_tilts import (
+from threepoint_training.estimate_hand_tilts import (
     NO_CALIBRATED_TILTS,
     CalibratedTilts,
     noticed,
