@@ -14,7 +14,7 @@ import {
   type Vec3,
   zero,
 } from '../math/vec3';
-import { createJointPoses, type FileMotion } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
 import { recordOf } from '../records';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
@@ -86,7 +86,7 @@ export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turne
 }
 
 /** The direction of the trunk. */
-export const trunkWay = (positions: readonly Vec3[], { hips, neck }: StandingJoints): Vec3 =>
+export const trunkDirection = (positions: readonly Vec3[], { hips, neck }: StandingJoints): Vec3 =>
   normalise(subtract(positions[neck]!, positions[hips]!), zero);
 
 /** Yields some frames of a clip, evenly. */
@@ -105,8 +105,8 @@ interface Stance {
   readonly lowest: Readonly<Record<FileAxis, number>>;
 }
 
-function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance {
-  const poses = createJointPoses(file.names.length);
+function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): Stance {
+  const poses = createSkeletonPose(file.names.length);
   const shares = recordOf(axisNames, () => 0);
   const lows = recordOf(axisNames, (): number[] => []);
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
@@ -139,7 +139,7 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
  * frames and would stand by this axis. null: up is up. A body that lies on the floor, whose feet are not on the other
  * one, lies.
  */
-export function otherUp(file: FileMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
+export function otherUp(file: ImportedMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
   const { shares, lowest, upright } = stanceOf(file, floor, joints);
   const best = axisNames.reduce((a, b) => (shares[b] > shares[a] ? b : a));
   // Who stands at times is a person who lies down.
@@ -159,10 +159,10 @@ export function turnBetween(from: FileAxis, to: FileAxis): Quat {
 }
 
 /** Whether toes point back in most frames: left and right are exchanged. null: no toes show it. */
-export function facesBack(file: FileMotion, joints: StandingJoints): boolean | null {
+export function facesBack(file: ImportedMotion, joints: StandingJoints): boolean | null {
   const [leftHip, rightHip] = joints.upperLegs;
   if ([leftHip, rightHip, ...joints.feet, ...joints.toes].some((i) => i < 0)) return null;
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   let [back, clear] = [0, 0];
   for (const frame of sampledFrames(file.frameCount, 100)) {
     const { positions } = file.pose(frame, poses);
@@ -187,7 +187,7 @@ export const outward = (floor: Quat, side: 'left' | 'right'): Vec3 =>
 export const downward = (floor: Quat): Vec3 => rotate(conjugate(floor), down);
 
 /** The rotation to the floor frame of a file with +Y up whose people face +Z. */
-export const usualFloor = floorFromAxes(directions['+y'], directions['+z']);
+export const defaultFloor = floorFromAxes(directions['+y'], directions['+z']);
 
 /** The rotation from a file's axes to the floor where another axis of the rest's floor points up. */
 export const floorOfMotion = (floor: Quat, axis: FileAxis | null): Quat =>

@@ -3,8 +3,8 @@ import type { BvhJoint } from '../motion/read-bvh';
 import { cmuconvert } from './mocap-rules.json';
 
 /** What hung on the thorax whose bone is lost, and the joints by which files of cmuconvert are known. */
-const hungOnThorax = ['Neck', 'LeftShoulder', 'RightShoulder'];
-const trunk = ['LowerBack', 'Spine', 'Spine1', ...hungOnThorax];
+const thoraxChildren = ['Neck', 'LeftShoulder', 'RightShoulder'];
+const trunk = ['LowerBack', 'Spine', 'Spine1', ...thoraxChildren];
 const sides = ['Left', 'Right'] as const;
 
 const lost = (offset: Vec3, beside: Vec3): boolean => length(offset) < 0.01 * length(beside);
@@ -18,7 +18,7 @@ const eachAxis = ([x, y, z]: readonly number[], v: Vec3): Vec3 => vec3(x! * v.x,
  * bone is half as long as the radius and lies along it at rest. Other skeletons stay as they are. `notes`: what was
  * done, a sentence each.
  */
-export function putBackLostBones(joints: readonly BvhJoint[]): {
+export function restoreLostBones(joints: readonly BvhJoint[]): {
   readonly joints: readonly BvhJoint[];
   readonly notes: readonly string[];
 } {
@@ -27,10 +27,10 @@ export function putBackLostBones(joints: readonly BvhJoint[]): {
   const placed = new Map<string, Vec3>();
   if (trunk.every((name) => offsets.has(name))) {
     const upper = offsets.get('Spine1')!;
-    if (hungOnThorax.every((name) => lost(offsets.get(name)!, upper))) {
+    if (thoraxChildren.every((name) => lost(offsets.get(name)!, upper))) {
       const { thoraxFromLowerBack, thoraxFromUpperBack } = cmuconvert;
       const thorax = add(eachAxis(thoraxFromLowerBack, offsets.get('Spine')!), eachAxis(thoraxFromUpperBack, upper));
-      for (const name of hungOnThorax) placed.set(name, thorax);
+      for (const name of thoraxChildren) placed.set(name, thorax);
       notes.push(
         'cmuconvert lost the thorax bone; it is put back, estimated from the two below (0.4 cm off on average)',
       );

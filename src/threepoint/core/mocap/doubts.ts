@@ -2,8 +2,8 @@ import { sides } from '../math/side';
 import { median } from '../math/statistics';
 import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, zero } from '../math/vec3';
 import { sampledFrames } from './body-axes';
-import { type OurMotion, positionAt } from './our-joints';
 import type { TruthJoint } from './skeleton-map';
+import { positionAt, type TruthMotion } from './truth-motion';
 
 /** A pelvis is further than this [m] off the middle of the feet in no motion for long. */
 const furthestPelvis = 0.5;
@@ -20,7 +20,7 @@ export const doubtOfErrors = (means: readonly number[]): string | null =>
     : null;
 
 /** What cannot be right of a motion, a sentence each: figures that are measured on it are worth little. */
-export function doubtsOf(motion: OurMotion): readonly string[] {
+export function doubtsOf(motion: TruthMotion): readonly string[] {
   const { rest, frameCount } = motion;
   const doubts: string[] = [];
   const pelvis: number[] = [];

@@ -1,10 +1,10 @@
 import { fromAxisAngle, multiply, type Quat, rotate, writeQuat } from '../math/quat';
 import { createNormalRandom } from '../math/random';
 import { add, length, normalise, type Vec3, vec3, writeVec3 } from '../math/vec3';
-import type { EvenClip } from './even-clip';
 import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
-import { positionAt, rotationAt } from './our-joints';
+import type { ResampledClip } from './resampled-clip';
 import { trackedJoints } from './skeleton-map';
+import { positionAt, rotationAt } from './truth-motion';
 
 /** Numbers of a frame: position [m] and rotation (xyzw) of headset, left wrist and right wrist. */
 export const trackedWidth = 7 * trackedJoints.length;
@@ -63,7 +63,7 @@ function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readon
  * What a headset and two hands would have reported of a person while the clip of this name was recorded, `trackedWidth`
  * numbers for each frame; the same as the evaluation's, which draws its errors by person and clip.
  */
-export function simulateTrackers(motion: EvenClip, person: string, clip: string): Float32Array<ArrayBuffer> {
+export function simulateTrackers(motion: ResampledClip, person: string, clip: string): Float32Array<ArrayBuffer> {
   const { offsets, turns } = drawWearer(person);
   const normal = normalOf(clip);
   const { frameCount } = motion;

@@ -2,7 +2,7 @@ import { conjugate, fromAxisAngle, multiply, type Quat, rotate, rotationBetween 
 import { type Side, sides } from '../math/side';
 import { median } from '../math/statistics';
 import { add, cross, dot, length, normalise, reject, subtract, type Vec3, zero } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
 import { downward, outward, sampledFrames } from './body-axes';
 
 /** A limb's joints by their index, from the trunk outwards; −1: the file has no such joint. */
@@ -27,13 +27,13 @@ const bentElbow = 0.35;
 
 /** Rotates joints of a pose about one of them, with all that hangs from it. */
 class Straightener {
-  readonly pose: JointPoses;
+  readonly pose: SkeletonPose;
 
   constructor(
-    readonly file: FileMotion,
+    readonly file: ImportedMotion,
     readonly parents: readonly number[],
   ) {
-    this.pose = createJointPoses(file.names.length);
+    this.pose = createSkeletonPose(file.names.length);
     for (const [i, at] of file.rest.entries()) Object.assign(this.pose.positions[i]!, at);
   }
 
@@ -70,8 +70,8 @@ class Straightener {
  * The axis about which an elbow bends, in the forearm's axes at rest; null: the elbow is straight in all frames. It
  * points down in T-pose on the left, up on the right.
  */
-function hingeOf(file: FileMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 | null {
-  const poses = createJointPoses(file.names.length);
+function hingeOf(file: ImportedMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 | null {
+  const poses = createSkeletonPose(file.names.length);
   const sum = { x: 0, y: 0, z: 0 };
   let count = 0;
   for (const frame of sampledFrames(file.frameCount)) {
@@ -106,13 +106,13 @@ function handIn(
 
 /** Turns hands that are bent at rest and not in the motion along their forearms. null: no hand is bent so. */
 export function straightHands(
-  file: FileMotion,
+  file: ImportedMotion,
   arms: Limbs['arms'],
-): { readonly pose: JointPoses; readonly notes: readonly string[] } | null {
+): { readonly pose: SkeletonPose; readonly notes: readonly string[] } | null {
   const { parents } = file;
   const body = new Straightener(file, parents);
   const notes: string[] = [];
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   for (const side of sides) {
     const rest = handIn(file.rest, parents, arms[side]);
     if (!rest || rest.cosine > bentHand) continue;
@@ -133,11 +133,11 @@ export function straightHands(
  * was assumed, a sentence each.
  */
 export function straightRest(
-  file: FileMotion,
+  file: ImportedMotion,
   parents: readonly number[],
   limbs: Limbs,
   floor: Quat,
-): { readonly pose: JointPoses; readonly notes: readonly string[] } {
+): { readonly pose: SkeletonPose; readonly notes: readonly string[] } {
   const body = new Straightener(file, parents);
   const notes = ['its bones at rest are no T-pose; the T-pose was built from its straight limbs'];
   for (const side of sides) {

@@ -28,7 +28,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from './imported-motion';
 
 /** A clip of glTF has no rate of its own: it is read at this one [Hz]. */
 const rateHz = 60;
@@ -238,7 +238,7 @@ class Scene {
     }
   }
 
-  write(bones: readonly number[], target: JointPoses): JointPoses {
+  write(bones: readonly number[], target: SkeletonPose): SkeletonPose {
     for (const [i, node] of bones.entries()) {
       copyVec3(this.#places[node]!, target.positions[i]!);
       copyQuat(this.#turns[node]!, target.rotations[i]!);
@@ -267,9 +267,9 @@ export class GltfClip {
   }
 
   /** Writes nodes as the file shows them without its animation. */
-  rest(nodes: readonly number[]): JointPoses {
+  rest(nodes: readonly number[]): SkeletonPose {
     this.#scene.pose(null);
-    return this.#scene.write(nodes, createJointPoses(nodes.length));
+    return this.#scene.write(nodes, createSkeletonPose(nodes.length));
   }
 
   /** Returns for each of these nodes which of them is the nearest above it; −1: none. */
@@ -286,9 +286,9 @@ export class GltfClip {
   /** Returns the motion of nodes, counted from this rest, whose origin is the joint `root`. */
   motion(
     { names, nodes }: { readonly names: readonly string[]; readonly nodes: readonly number[] },
-    { positions, rotations }: JointPoses,
+    { positions, rotations }: SkeletonPose,
     root: number,
-  ): FileMotion {
+  ): ImportedMotion {
     const scene = this.#scene;
     const back = rotations.map((rotation) => conjugate(rotation));
     return {

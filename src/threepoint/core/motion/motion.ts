@@ -1,7 +1,7 @@
 import { type MutableQuat, multiply, quat, readQuat, rotate, setQuat, slerp, writeQuat } from '../math/quat';
 import { add, lerp, type MutableVec3, readVec3, vec3, writeVec3 } from '../math/vec3';
-import type { JointPoses } from './file-motion';
-import type { MotionBone } from './skeleton';
+import type { SkeletonPose } from './imported-motion';
+import type { MotionBone } from './motion-bones';
 
 /** A body over a while, in the clip frame (skeleton.ts): what every file of motion is written from. */
 export interface Motion {
@@ -33,7 +33,7 @@ export const hipsAt = ({ hips }: Motion, frame: number, target: MutableVec3): Mu
   readVec3(hips, 3 * frame, target);
 
 /** Writes position [m] and rotation from T-pose of every bone in one frame, clip frame. */
-export function poseBones(motion: Motion, frame: number, target: JointPoses): JointPoses {
+export function poseBones(motion: Motion, frame: number, target: SkeletonPose): SkeletonPose {
   const { positions, rotations } = target;
   const { bones } = motion;
   for (let i = 0; i < bones.length; i++) {

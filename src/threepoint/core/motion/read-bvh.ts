@@ -1,6 +1,6 @@
 import { fromAxisAngle, multiply, quat, rotate, setQuat } from '../math/quat';
 import { add, backward, copyVec3, right, up, type Vec3, vec3, zero } from '../math/vec3';
-import type { FileMotion, JointPoses } from './file-motion';
+import type { ImportedMotion, SkeletonPose } from './imported-motion';
 import { Lines, Rows, shown, type Word } from './lines';
 
 type Axis = 'x' | 'y' | 'z';
@@ -238,7 +238,7 @@ const turn = quat(0, 0, 0, 1);
 const local = vec3(0, 0, 0);
 
 /** Every joint in one frame. A position that a file states takes the place of the joint's offset. */
-export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: JointPoses): JointPoses {
+export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: SkeletonPose): SkeletonPose {
   let column = frame * width;
   for (const [i, { parent, offset, channels }] of joints.entries()) {
     const position = target.positions[i]!;
@@ -264,7 +264,7 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
  * A BVH file as any file of motion: at rest all its angles are zero. `joints`: those of the file, or what was put right
  * of them.
  */
-export function bvhFileMotion(motion: BvhMotion, joints = motion.joints, notes = motion.notes): FileMotion {
+export function importedBvhMotion(motion: BvhMotion, joints = motion.joints, notes = motion.notes): ImportedMotion {
   const rest: Vec3[] = [];
   for (const { parent, offset } of joints) rest.push(parent < 0 ? zero : add(rest[parent]!, offset));
   const { frameCount, frameSeconds } = motion;

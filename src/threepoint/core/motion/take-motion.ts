@@ -23,7 +23,7 @@ import { recordOf } from '../records';
 import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { Motion } from './motion';
-import { motionSkeleton, restBend, turnPoint, turnRotation } from './skeleton';
+import { motionSkeleton, restBend, turnPoint, turnRotation } from './motion-bones';
 
 /** The inverse of each finger bone's frame at rest. */
 const fromRest = recordOf(fingerNames, (finger) => {

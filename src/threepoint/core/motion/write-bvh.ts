@@ -1,7 +1,7 @@
 import { type Quat, quat, toEulerYxz } from '../math/quat';
 import { type MutableVec3, scale, setVec3, type Vec3, vec3 } from '../math/vec3';
 import { hipsAt, type Motion, resampleMotion, rotationAt } from './motion';
-import type { MotionBone } from './skeleton';
+import type { MotionBone } from './motion-bones';
 import { scaleProgress } from './work';
 
 export interface BvhOptions {

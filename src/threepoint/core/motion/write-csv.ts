@@ -1,7 +1,7 @@
 import { vec3 } from '../math/vec3';
-import { createJointPoses } from './file-motion';
+import { createSkeletonPose } from './imported-motion';
 import { type Motion, poseBones } from './motion';
-import { turnPoint } from './skeleton';
+import { turnPoint } from './motion-bones';
 
 const framesPerStep = 64;
 
@@ -15,7 +15,7 @@ export function* writeCsv(motion: Motion): Generator<number, readonly string[]> 
   const measuredBones = bones.filter(({ measured }) => measured);
   const columns = measuredBones.flatMap(({ name }) => ['x', 'y', 'z'].map((axis) => `${name}_${axis}`));
   const parts = [`${['time', 'left_hand_seen', 'right_hand_seen', ...columns].join(',')}\n`];
-  const posed = createJointPoses(bones.length);
+  const posed = createSkeletonPose(bones.length);
   const place = vec3(0, 0, 0);
   let lines = '';
   for (let frame = 0; frame < times.length; frame++) {

@@ -6,9 +6,9 @@ import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, backward, cross, normalise, right, scale, up, type Vec3, vec3, writeVec3, zero } from '../math/vec3';
-import { createJointPoses } from './file-motion';
+import { createSkeletonPose } from './imported-motion';
 import { poseBones } from './motion';
-import { type MotionBone, motionSkeleton, turnPoint } from './skeleton';
+import { type MotionBone, motionSkeleton, turnPoint } from './motion-bones';
 import { BoneRotations } from './take-motion';
 
 /** A joint of WebXR Body Tracking: which bone carries it, where on it [m, T-pose], how its axes lie there in T-pose. */
@@ -156,7 +156,7 @@ export class XRBodyPoser {
       rotations: new Float32Array(4 * measured),
       seen: new Uint8Array(1),
     };
-    this.#posed = createJointPoses(this.#bones.length);
+    this.#posed = createSkeletonPose(this.#bones.length);
     this.#poses = new Map(this.#joints.map(({ name }) => [name, makePose<'floor'>()]));
   }
 

@@ -27,9 +27,9 @@ import {
   writeVec3,
   zero,
 } from '../math/vec3';
-import { createJointPoses, type FileMotion } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
 import { armLength, cmu, eyesFromHeadJoint, units } from './mocap-rules.json';
-import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestPose } from './rest-pose';
+import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestJoints } from './rest-joints';
 import {
   type BetweenJoints,
   type MappedSkeleton,
@@ -40,8 +40,8 @@ import {
 } from './skeleton-map';
 
 /** A motion in our joints, floor frame [m], at its file's rate. */
-export interface OurMotion {
-  readonly rest: RestPose;
+export interface TruthMotion {
+  readonly rest: RestJoints;
   readonly rateHz: number;
   readonly frameCount: number;
   /** x, y, z of `truthJoints`, frame after frame; NaN: the file has no such joint. */
@@ -57,7 +57,7 @@ export const positionsWidth = 3 * truthJoints.length;
 /** See positionsWidth. */
 export const rotationsWidth = 4 * trackedJoints.length;
 
-/** Positions and rotations as `OurMotion` has them, in either precision. */
+/** Positions and rotations as `TruthMotion` has them, in either precision. */
 interface JointNumbers {
   readonly positions: ArrayLike<number>;
   readonly rotations: ArrayLike<number>;
@@ -83,7 +83,7 @@ const unitNames: Readonly<Record<string, string>> = {
 };
 
 /** What takes the rotation of a hand since rest to that of its wrist, whose −Z points to the knuckles. */
-function wristFromRest(side: 'left' | 'right', rest: RestPose): Quat {
+function wristFromRest(side: 'left' | 'right', rest: RestJoints): Quat {
   const sign = side === 'left' ? 1 : -1;
   const forearm = subtract(rest.get(`${side}Hand`)!, rest.get(`${side}LowerArm`)!);
   const turn = fromAxisAngle(up, (sign * Math.PI) / 2);
@@ -101,7 +101,7 @@ function placeBetween({ near, far, share }: BetweenJoints, at: (joint: TruthJoin
 }
 
 /** The joints at rest [m], floor frame. */
-function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number): RestPose {
+function restInMetres(file: ImportedMotion, skeleton: MappedSkeleton, unit: number): RestJoints {
   const { columns, between, floor } = skeleton;
   const rest = new Map<TruthJoint, Vec3>();
   for (const joint of truthJoints) {
@@ -120,13 +120,13 @@ function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number):
 }
 
 /** Returns why height and arm span of joints at rest [m] are no person's; null: they are, or there are no legs. */
-function bodyComplaint(rest: RestPose): string | null {
+function bodyComplaint(rest: RestJoints): string | null {
   const eyeHeight = eyeHeightAtRest(rest);
   return eyeHeight === null ? null : calibrationProblem({ eyeHeight, armSpan: armSpanAtRest(rest) });
 }
 
 /** Whether joints at rest [m] have the size of a person. */
-function isPersonSized(rest: RestPose): boolean {
+function isPersonSized(rest: RestJoints): boolean {
   const [least, most] = armLength as [number, number];
   const arm = armAtRest(rest, 'left');
   return least < arm && arm < most && bodyComplaint(rest) === null;
@@ -139,7 +139,7 @@ interface FileUnit {
 }
 
 /** Returns the scale that gives a body an average height, or average arms if it has no legs. */
-function averageUnit(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
+function averageUnit(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit {
   const rest = restInMetres(file, skeleton, 1);
   const head = headHeightAtRest(rest);
   const { eyeHeight } = defaultCalibration;
@@ -159,7 +159,7 @@ function averageUnit(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
  * Returns the map's unit, else the first known one in which the body has a person's size, else the one that gives it an
  * average size. Throws a sentence where the body is no person's then.
  */
-export function unitOf(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
+export function unitOf(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit {
   if (skeleton.scale) return { metres: skeleton.scale, note: null };
   const metres = units.find((unit) => isPersonSized(restInMetres(file, skeleton, unit)));
   if (metres === undefined) return averageUnit(file, skeleton);
@@ -171,12 +171,12 @@ export function unitOf(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
  * Brings a file's joints into ours; `unit`: its unit [m]. Yields the share [0, 1] that is done. Throws a sentence where
  * its skeleton is no person's.
  */
-export function* toOurJoints(
-  file: FileMotion,
+export function* toTruthMotion(
+  file: ImportedMotion,
   rateHz: number,
   skeleton: MappedSkeleton,
   unit: number,
-): Generator<number, OurMotion> {
+): Generator<number, TruthMotion> {
   const { columns, between, floor, motionFloor } = skeleton;
   const restFromFloor = conjugate(floor);
   const rest = restInMetres(file, skeleton, unit);
@@ -187,7 +187,7 @@ export function* toOurJoints(
   };
   const positions = new Float64Array(file.frameCount * positionsWidth).fill(Number.NaN);
   const rotations = new Float64Array(file.frameCount * rotationsWidth);
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   const places = new Map(truthJoints.map((joint) => [joint, vec3(0, 0, 0)]));
   const lacking = assumed.filter((joint) => between[joint]);
   const carriedOf = new Map(
