@@ -46,9 +46,8 @@ import type { CompletedFrame, CompletedHand } from './complete-hands';
 import limits from './kinematic-limits.json';
 import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from './pin';
 import type { TrackedJoints } from './tracked-joints';
-import { placeShoulder, type TorsoBones, type TorsoPose } from './trunk/fit-torso';
+import { makeTrunkRotations, placeShoulder, type TorsoBones, type TorsoPose, trunkBones } from './trunk/fit-torso';
 
-const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
 /**
  * The fastest turn [rad/s] of the side to which the trunk bends, and the fastest way [m/s] of a joint by it: near
  * straight, and where a trunk folds, the side is ill-defined.
@@ -86,13 +85,7 @@ const makeTrunkBefore = (): TrunkBefore => ({
   neck: vec3(0, 0, 0),
   chest: vec3(0, 0, 0),
   hips: vec3(0, 0, 0),
-  rotations: {
-    hips: quat(0, 0, 0, 1),
-    spine: quat(0, 0, 0, 1),
-    chest: quat(0, 0, 0, 1),
-    upperChest: quat(0, 0, 0, 1),
-    neck: quat(0, 0, 0, 1),
-  },
+  rotations: makeTrunkRotations(),
 });
 
 /** The trunk as it was fitted, and as the current pin found it. */
@@ -116,9 +109,10 @@ const inverse = quat(0, 0, 0, 1);
 
 /**
  * Stage 5, between trunk and arms: moves the trunk onto the joints that trackers pin. Bones keep their lengths and the
- * head its place. The chest joint is where its tracker says; the thorax turns with it and leads to a neck on its bone.
- * The hips are where their tracker says and turned like it; the lower back bends to meet the thorax. Where both cannot
- * hold, the chest's tracker gives way, then the turn of the hips, then their place. Changes nothing without trackers.
+ * head its place. The chest joint is where its tracker places it; the thorax turns with it and leads to a neck on its
+ * bone. The hips are where their tracker places them and turned like it; the lower back bends to meet the thorax. Where
+ * both cannot hold, the chest's tracker gives way, then the turn of the hips, then their place. Changes nothing without
+ * trackers.
  */
 export function pinTrunk(
   state: PinTrunkState,
@@ -154,7 +148,7 @@ export function pinTrunk(
   carryShoulder('right', torso, frame.rightHand, bones);
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the state: the next frame is the first. */
 export function resetPinTrunk(state: PinTrunkState): void {
   state.known = false;
   for (const pin of [state.hips, state.chest]) {

@@ -14,11 +14,11 @@ import { lerp } from '../math/vec3';
 /** The time [s] in which a joint passes from its estimate to its tracker, or back. */
 export const handOverSeconds = 0.3;
 
-/** How far [m] beyond the reach of its bones a tracked joint starts to count less, and counts as lost. */
+/** The distances [m] beyond the reach of its bones at which confidence in a tracked joint starts to fall, and is 0. */
 const doubtfulFrom = 0.1;
 const lostFrom = 0.3;
 
-/** Returns how much a tracked joint counts that is `beyond` [m] out of the reach of its bones: 1, less, or 0. */
+/** Returns the confidence [0, 1] in a tracked joint that is `beyond` [m] out of the reach of its bones. */
 export const confidenceBeyond = (beyond: number): number =>
   clamp((lostFrom - beyond) / (lostFrom - doubtfulFrom), 0, 1);
 
@@ -41,7 +41,7 @@ const seen = makePose<'joint'>();
 
 /**
  * Advances a pin by `step` (part of the transition) and writes its target. Returns its weight: 0 where the estimate
- * stands, 1 where the target does. pinned: the joint by its tracker; null: not seen. confidence: how much it counts, 0 to 1.
+ * stands, 1 where the target does. pinned: the joint by its tracker; null: not seen. confidence: in that joint, 0 to 1.
  */
 export function followPin(
   pin: Pin,

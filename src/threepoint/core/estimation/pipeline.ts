@@ -1,16 +1,16 @@
 import { type MutableUpperBodyPose, makeUpperBodyPose, type TrackedFeet } from '../body/avatar-pose';
 import { type Calibration, isSpanMeasured } from '../body/calibration';
 import { type Fingers, unknownFingers } from '../body/hand-shape';
+import { writeLocalRotations } from '../body/local-rotations';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
 import { invertTransform, makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
-import { vec3 } from '../math/vec3';
+import { copyVec3, vec3 } from '../math/vec3';
 import type { DeviceBody } from '../tracking/device-body';
 import { floorFromHeading } from '../tracking/heading';
 import { assertPinning, type TrackingFrame } from '../tracking/tracking-frame';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
-import { composeBody } from './compose-body';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './ik/solve-ik';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
@@ -185,7 +185,8 @@ export class Pipeline implements PoseEstimator {
     pose.rightHand = frame.rightHand;
     pose.fingers = frame.fingers ?? unknownFingers;
     pose.feet = feet;
-    composeBody(torso, arms, head.orientation, pose.body);
+    copyVec3(torso.hips, pose.body.hipsPosition);
+    writeLocalRotations(torso.rotations, head.orientation, torso.clavicles, arms, pose.body.localRotations);
     return this.#estimate;
   }
 
