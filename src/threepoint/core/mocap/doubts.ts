@@ -13,13 +13,13 @@ const behindBack = 0.1;
 /** Methods that all err by more than this [cm] on average show a file that was read wrongly. */
 const maxError = 12;
 
-/** The doubt that the mean errors [cm] of all measured methods raise; null: they raise none. */
+/** Returns the doubt that the mean errors [cm] of all measured methods raise; null: they raise none. */
 export const doubtOfErrors = (means: readonly number[]): string | null =>
   means.length > 0 && means.every((mean) => mean > maxError)
     ? `this cannot be right: the error of every method is over ${maxError} cm; look at the truth before the figures`
     : null;
 
-/** What cannot be right of a motion, a sentence each: figures that are measured on it are worth little. */
+/** Returns the implausible properties of a motion, a sentence each: figures that are measured on it are unreliable. */
 export function doubtsOf(motion: TruthMotion): readonly string[] {
   const { rest, frameCount } = motion;
   const doubts: string[] = [];

@@ -1,4 +1,4 @@
-import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { conjugate, fromAxisAngle, multiply, type Quat, rotate } from '../math/quat';
 import { subtract, up, type Vec3 } from '../math/vec3';
 import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
 import { type BvhJoint, type BvhMotion, poseBvh } from '../motion/read-bvh';
@@ -6,7 +6,7 @@ import { floorFromAxes } from './body-axes';
 import { directions } from './read-skeleton-map';
 import type { SkeletonMap } from './skeleton-map';
 
-/** What takes a file's axes to those of the floor (+Y up, people at rest face −Z). */
+/** Returns the rotation from a file's axes to those of the floor (+Y up, people at rest face −Z). */
 export const floorFromFile = ({ up: upward = '+y', forward = '+z' }: SkeletonMap): Quat =>
   floorFromAxes(directions[upward], directions[forward]);
 
@@ -25,15 +25,14 @@ export function withRestPose(file: ImportedMotion, { positions, rotations }: Ske
 }
 
 /**
- * A person in T-pose, taken from a frame or from angles, stands turned as they stood: the same motion counted from one
- * who faces forward.
+ * Returns the motion relative to a rest pose that faces forward: a T-pose from a frame or from angles may be turned.
  */
 function facingForward(file: ImportedMotion, map: SkeletonMap): ImportedMotion {
   const floor = floorFromFile(map);
   const restOf = (joint: 'leftUpperArm' | 'rightUpperArm'): Vec3 => file.rest[file.names.indexOf(map.joints[joint]!)]!;
   const across = rotate(floor, subtract(restOf('rightUpperArm'), restOf('leftUpperArm')));
   const ours = fromAxisAngle(up, -Math.atan2(-across.z, across.x));
-  const turn = multiply(conjugate(floor), multiply(ours, floor, quat(0, 0, 0, 1)));
+  const turn = multiply(conjugate(floor), multiply(ours, floor));
   const turned = createSkeletonPose(file.names.length);
   for (const [i, at] of file.rest.entries()) rotate(turn, at, turned.positions[i]!);
   for (const rotation of turned.rotations) Object.assign(rotation, turn);

@@ -23,10 +23,10 @@ import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from
 import { type Limbs, straightHands, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
-/** A joint above this share of the trunk is a chest, below it a spine. */
+/** The share of the trunk above which its only joint is a chest, and below which it is a spine. */
 const chestShare = 0.42;
 
-/** A neck lies this far up from between the shoulders to the head joint. */
+/** The height of a neck as a share of the way from between the shoulders to the head joint. */
 const neckShare = 0.25;
 
 /** A motion with the skeleton that was found in it. */
@@ -42,14 +42,14 @@ export interface MatchedMotion {
 
 type Joints = Partial<Record<TruthJoint, number>>;
 
-type Match = Pick<HumanoidMatch, 'map'>;
+type Match = HumanoidMatch['map'];
 
-/** Joints by the match, VRM's bones being those of the truth; `between` holds the joints that the file lacks. */
+/** Returns the joints of a match by their VRM names; `between`: the joints that the file lacks. */
 function jointsOf(match: Match, file: ImportedMotion) {
   const notes: string[] = [];
   const joints: Joints = {};
   for (const joint of truthJoints) {
-    const found = match.map[joint satisfies BoneName];
+    const found = match[joint satisfies BoneName];
     if (found) joints[joint] = found.joint;
   }
   const between: MappedSkeleton['between'] = {};
@@ -64,7 +64,7 @@ function jointsOf(match: Match, file: ImportedMotion) {
     });
     notes.push('it has no neck; one between shoulders and head is assumed');
   }
-  if (joints.chest === undefined && !match.map.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
+  if (joints.chest === undefined && !match.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
     joints.chest = joints.spine!;
     delete joints.spine;
     notes.push('it has one joint between hips and neck; it was taken as the chest');
@@ -77,7 +77,7 @@ function jointsOf(match: Match, file: ImportedMotion) {
   return { joints, between, notes };
 }
 
-/** How far up the trunk the spine's only joint lies. */
+/** Returns the height of the spine's only joint as a share of the trunk. */
 function shareOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperArm }: Joints): number {
   const [low, at, top] = [hips, spine, neck ?? leftUpperArm].map((joint) => rest[joint!]!) as [Vec3, Vec3, Vec3];
   const trunk = subtract(top, low);
@@ -91,7 +91,7 @@ function standingJoints(joints: Joints, match: Match): StandingJoints {
   ];
   return {
     hips: joints.hips!,
-    neck: joints.neck ?? match.map.head!.joint,
+    neck: joints.neck ?? match.head!.joint,
     ...{ upperArms: pair('UpperArm'), upperLegs: pair('UpperLeg'), feet: pair('Foot'), toes: pair('Toes') },
   };
 }
@@ -101,14 +101,14 @@ function limbsOf(joints: Joints, match: Match): Limbs {
   const each = (limb: (side: Side) => readonly number[]) => ({ left: limb('left'), right: limb('right') });
   return {
     arms: each((side) => [
-      match.map[`${side}Shoulder`]?.joint ?? -1,
+      match[`${side}Shoulder`]?.joint ?? -1,
       ...(['UpperArm', 'LowerArm', 'Hand'] as const).map((part) => at(`${side}${part}`)),
     ]),
     legs: each((side) => (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => at(`${side}${part}`))),
   };
 }
 
-/** Whether arms at rest are straight and between level and hanging, and legs point down. */
+/** Returns whether arms at rest are straight and between level and hanging, and legs point down. */
 function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: BodyAxes): boolean {
   const down = downward(turn);
   const way = (from: number, to: number): Vec3 => normalise(subtract(rest[to]!, rest[from]!), zero);
@@ -123,9 +123,9 @@ function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: B
 }
 
 /** Returns the match with left and right exchanged. */
-function exchanged({ map }: Match): Match {
+function exchanged(match: Match): Match {
   const other = (bone: string): string => bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
-  return { map: Object.fromEntries(Object.entries(map).map(([bone, found]) => [other(bone), found])) };
+  return Object.fromEntries(Object.entries(match).map(([bone, found]) => [other(bone), found]));
 }
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
@@ -169,7 +169,7 @@ export function matchSkeleton(file: ImportedMotion, map?: BoneMap): MatchedMotio
   return {
     file: based,
     notes,
-    bones: fileBones(jointsToDraw(file), match.map),
+    bones: fileBones(jointsToDraw(file), match),
     skeleton: {
       joints: Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at]!])),
       columns: joints,
@@ -188,7 +188,7 @@ const jointsAt = ({ names, parents }: ImportedMotion, positions: readonly Vec3[]
     ...(names[i]!.endsWith(':end') && { end: true }),
   }));
 
-/** The second extent of positions as a share of the greatest: a folded skeleton has little of it. */
+/** Returns the second extent of positions as a share of the greatest, which is small for a folded skeleton. */
 function spreadOf(positions: readonly Vec3[]): number {
   const extents = (['x', 'y', 'z'] as const).map((axis) => {
     const values = positions.map((position) => position[axis]);
@@ -213,7 +213,7 @@ function mappedJoints({ names }: ImportedMotion, map: BoneMap): Match {
     if (joint < 0) throw new Error(`no joint “${name}”, which the map of its bones names as ${bone}`);
     return [bone, { joint, confidence: 1, reason: 'the map names it' }];
   });
-  return { map: Object.fromEntries(matches) };
+  return Object.fromEntries(matches);
 }
 
 /** Matches joints, left and right by where the toes point. Throws UnknownBonesError where they do not match. */
@@ -229,7 +229,7 @@ function matchSides(file: ImportedMotion): { readonly match: Match; readonly not
     bone,
     { joint: file.names.indexOf(name), confidence: 1, reason: 'cmuconvert calls it so' },
   ]);
-  const match = { map: { ...found.map, ...Object.fromEntries(hands) } };
+  const match = { ...found.map, ...Object.fromEntries(hands) };
   if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes: [...found.notes] };
   const note = 'the names of left and right are exchanged: the toes point back; the motion was followed';
   return { match: exchanged(match), notes: [...found.notes, note] };
@@ -264,6 +264,6 @@ function restOf(file: ImportedMotion, joints: StandingJoints, limbs: Limbs) {
   }
   if (!axes)
     throw new Error('the rest pose is no T-pose: left and right lie on each other. Name a “restFrame” in a map');
-  const built = straightRest(file, file.parents, limbs, axes.turn);
+  const built = straightRest(file, limbs, axes.turn);
   return { file: withRestPose(file, built.pose), axes, notes: built.notes, stands: false };
 }

@@ -22,7 +22,7 @@ import { simulateTrackers } from './simulate-trackers';
 import { acclaimMap, mappedSkeleton, type SkeletonMap } from './skeleton-map';
 import { type TruthMotion, toTruthMotion, unitOf } from './truth-motion';
 
-/** The text of a file that belongs to another, with its name. */
+/** The text of a further file that a motion file needs, with its name. */
 interface NamedText {
   readonly name: string;
   readonly text: string;
@@ -37,7 +37,7 @@ export type MocapSource = {
   readonly bones?: BoneMap;
   /** The BVH or AMC file that the map's `restFrame` is of, where it is another. */
   readonly rest?: NamedText;
-  /** Frames per second, of a file that does not say its own. */
+  /** The frame rate [Hz] of a file that does not state its own. */
   readonly rateHz?: number;
 } & (
   | { readonly format: 'bvh'; readonly text: string }
@@ -49,7 +49,7 @@ export type MocapSource = {
   | { readonly format: 'gltf'; readonly description: unknown; readonly binary: Uint8Array }
 );
 
-/** A person's motion as a headset and two hands saw it, with the truth beside it; 60 frames a second. */
+/** A person's motion as tracked by a headset and two hands, with the ground truth; 60 frames a second. */
 export interface MocapClip {
   readonly name: string;
   readonly calibration: Calibration;
@@ -60,22 +60,25 @@ export interface MocapClip {
   readonly truth: Float32Array<ArrayBuffer>;
 }
 
-/** Frames per second of the files that are read: fewer are pictures of poses. */
+/** The range of frame rates [Hz] that are read; a lower one is a list of poses. */
 const lowestRateHz = 5;
 const highestRateHz = 5000;
 
-/** Frames per second of every clip. */
+/** The frame rate [Hz] of every clip. */
 export const mocapRateHz = rateHz;
 
-/** The clips of a file, and what was put right in it, a sentence each. */
+/** The clips of a file, with notes on what was corrected or assumed, a sentence each. */
 export interface PreparedMocap {
   readonly clips: readonly MocapClip[];
   readonly notes: readonly string[];
-  /** What cannot be right, a sentence each. */
+  /** The implausible properties of the motion, a sentence each. */
   readonly doubts: readonly string[];
   /** The joints of the file, and which bones they are. */
   readonly bones: FileBones;
 }
+
+/** A file's motion before it is cut into clips. */
+type ReadMocap = { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>;
 
 /** Returns the fault as a sentence that begins with the name of its file. */
 function faultIn(name: string, error: unknown): Error {
@@ -85,7 +88,7 @@ function faultIn(name: string, error: unknown): Error {
     : new Error(message, { cause: error });
 }
 
-/** What is read of a file that another needs; a fault in it begins with its own name. */
+/** Reads a further file; a fault in it begins with its own name. */
 function readNamedText<Result>({ name, text }: NamedText, read: (text: string, name: string) => Result): Result {
   try {
     return read(text, name);
@@ -94,7 +97,7 @@ function readNamedText<Result>({ name, text }: NamedText, read: (text: string, n
   }
 }
 
-/** Reads a BVH file, with its lost bones put back. */
+/** Reads a BVH file, with its lost bones restored. */
 function* readBvhFile(text: string) {
   const motion = yield* readBvh(text);
   const { joints, notes } = restoreLostBones(motion.joints);
@@ -104,7 +107,7 @@ function* readBvhFile(text: string) {
 const readAmcFile = (text: string, skeleton: NamedText): Generator<number, ImportedMotion> =>
   readAmc(text, readNamedText(skeleton, readAsf), skeleton.name);
 
-/** Reads a file and finds its skeleton: by the map that was given, by the format, or by what it looks like. */
+/** Reads a file and finds its skeleton: by the given map, by the format, or by matching. */
 function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, MatchedMotion> {
   const bvh = source.format === 'bvh' ? yield* readBvhFile(source.text) : null;
   const file = bvh?.file ?? (yield* readOther(source));
@@ -147,7 +150,7 @@ const withMap = (file: ImportedMotion, map: SkeletonMap): MatchedMotion => ({
 
 const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
 
-/** The rate [Hz] of a file that does not say it: known of the CMU database by the file's name. */
+/** Returns the rate [Hz] of a file that does not state it: that of the CMU database, by the file's name. */
 function rateOf(name: string): number {
   const found = /^0*(\d+)_0*\d+$/.exec(stemOf(name));
   if (!found)
@@ -167,9 +170,7 @@ function personOf(name: string): string {
  * Reads a file's motion in our joints. Yields the share [0, 1] that is done. `notes`: what was put right or assumed, a
  * sentence each. Throws a sentence that begins with the file's name.
  */
-export function* readTruthMotion(
-  source: MocapSource,
-): Generator<number, { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>> {
+export function* readTruthMotion(source: MocapSource): Generator<number, ReadMocap> {
   try {
     const map = source.map && readNamedText(source.map, readSkeletonMap);
     const { file, skeleton, bones, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
@@ -201,10 +202,7 @@ export function* prepareMocap(source: MocapSource): Generator<number, PreparedMo
   }
 }
 
-function* clipsOf(
-  name: string,
-  { motion, notes, doubts, bones }: { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>,
-): Generator<number, PreparedMocap> {
+function* clipsOf(name: string, { motion, notes, doubts, bones }: ReadMocap): Generator<number, PreparedMocap> {
   const { cuts, pieces } = splitAtJumps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);

@@ -37,8 +37,8 @@ const rotationBefore = quat(0, 0, 0, 1);
 const rotationAfter = quat(0, 0, 0, 1);
 
 /**
- * The piece at 60 Hz: every nth frame where that is exact, else interpolated; above a floor at this height [m], its
- * head turned back by `neutral`.
+ * Returns the piece at 60 Hz: every nth frame where that is exact, else interpolated; relative to a floor at this
+ * height [m], its head turned back by `neutral`.
  */
 export function resampleClip(motion: TruthMotion, { from, to }: Piece, floor: number, neutral: Quat): ResampledClip {
   const { positions, rateHz: rate } = motion;

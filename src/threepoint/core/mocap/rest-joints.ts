@@ -48,7 +48,7 @@ export function eyeHeightAtRest(rest: RestJoints): number | null {
 
 const direction = (v: Vec3): Vec3 => normalise(v, zero);
 
-/** A direction of a body that faces −Z, in a word. */
+/** Returns a direction of a body that faces −Z in words. */
 function shownVector({ x, y, z }: Vec3): string {
   const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
   if (ax >= ay && ax >= az) return x > 0 ? 'to the right' : 'to the left';

@@ -39,7 +39,7 @@ import {
   truthJoints,
 } from './skeleton-map';
 
-/** A motion in our joints, floor frame [m], at its file's rate. */
+/** A motion in the joints of the truth, floor frame [m], at its file's rate. */
 export interface TruthMotion {
   readonly rest: RestJoints;
   readonly rateHz: number;
@@ -52,7 +52,7 @@ export interface TruthMotion {
   readonly rotations: Float64Array;
 }
 
-/** Numbers of a frame. */
+/** The number of values of a frame. */
 export const positionsWidth = 3 * truthJoints.length;
 /** See positionsWidth. */
 export const rotationsWidth = 4 * trackedJoints.length;
@@ -82,7 +82,7 @@ const unitNames: Readonly<Record<string, string>> = {
   [cmu.metresPerUnit]: 'the CMU database (5.6 cm)',
 };
 
-/** What takes the rotation of a hand since rest to that of its wrist, whose −Z points to the knuckles. */
+/** Returns the rotation from a hand's rotation since rest to its wrist's frame, whose −Z points to the knuckles. */
 function wristFromRest(side: 'left' | 'right', rest: RestJoints): Quat {
   const sign = side === 'left' ? 1 : -1;
   const forearm = subtract(rest.get(`${side}Hand`)!, rest.get(`${side}LowerArm`)!);
@@ -90,7 +90,7 @@ function wristFromRest(side: 'left' | 'right', rest: RestJoints): Quat {
   return multiply(rotationBetween(scale(right, -sign), forearm), turn);
 }
 
-/** Joints that a file may lack, each after those that it lies between. */
+/** The joints that a file may lack, each after those between which it lies. */
 const assumed = ['neck', 'chest', 'spine'] as const;
 
 /** Writes the position of an assumed joint. */
@@ -100,7 +100,7 @@ function placeBetween({ near, far, share }: BetweenJoints, at: (joint: TruthJoin
   return lerp(middle(near), middle(far), share, target);
 }
 
-/** The joints at rest [m], floor frame. */
+/** Returns the joints at rest [m], floor frame. */
 function restInMetres(file: ImportedMotion, skeleton: MappedSkeleton, unit: number): RestJoints {
   const { columns, between, floor } = skeleton;
   const rest = new Map<TruthJoint, Vec3>();
@@ -125,14 +125,14 @@ function bodyComplaint(rest: RestJoints): string | null {
   return eyeHeight === null ? null : calibrationProblem({ eyeHeight, armSpan: armSpanAtRest(rest) });
 }
 
-/** Whether joints at rest [m] have the size of a person. */
+/** Returns whether joints at rest [m] have the size of a person. */
 function isPersonSized(rest: RestJoints): boolean {
   const [least, most] = armLength as [number, number];
   const arm = armAtRest(rest, 'left');
   return least < arm && arm < most && bodyComplaint(rest) === null;
 }
 
-/** The unit of a file, and what was assumed of it; null: metres, centimetres or the map's. */
+/** The unit of a file, and a note if it was assumed; null: metres, centimetres or the map's. */
 interface FileUnit {
   readonly metres: number;
   readonly note: string | null;
@@ -168,8 +168,8 @@ export function unitOf(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit
 }
 
 /**
- * Brings a file's joints into ours; `unit`: its unit [m]. Yields the share [0, 1] that is done. Throws a sentence where
- * its skeleton is no person's.
+ * Converts a file's motion to the joints of the truth; `unit`: its unit [m]. Yields the share [0, 1] that is done.
+ * Throws a sentence where its skeleton is no person's.
  */
 export function* toTruthMotion(
   file: ImportedMotion,

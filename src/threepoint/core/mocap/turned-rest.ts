@@ -7,12 +7,12 @@ import { type StandingJoints, sampledFrames, trunkDirection } from './body-axes'
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
-/** The hips' height differs from that at rest by less than this share where a body stands. */
+/** The largest deviation of the hips' height of a standing body from that at rest, as a share. */
 const nearHeight = 0.2;
 
 /**
- * The axis along which the root keeps the height of the hips where that is not the axis along which the body stands, at
- * rest and in its frames; null: it is, or no axis fits.
+ * Returns the axis along which the root keeps the height of the hips if that is not the axis along which the body
+ * stands, at rest and in its frames; null: it is, or no axis fits.
  */
 export function axisOfRoot(file: ImportedMotion, joints: StandingJoints, restUp: FileAxis): FileAxis | null {
   const above = directions[restUp];
@@ -40,7 +40,7 @@ export function axisOfRoot(file: ImportedMotion, joints: StandingJoints, restUp:
 
 /** Returns the motion with all offsets of its joints turned; rotations and the root's position stay. */
 export function withTurnedRest(file: ImportedMotion, turn: Quat): ImportedMotion {
-  const parents = file.parents;
+  const { parents } = file;
   const order = parentsFirst(parents);
   const before = createSkeletonPose(file.names.length);
   const back = quat(0, 0, 0, 1);

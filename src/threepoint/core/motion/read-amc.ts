@@ -5,7 +5,7 @@ import { Lines, Rows, shown } from './lines';
 import { type AsfSkeleton, fromEuler } from './read-asf';
 
 const framesPerStep = 16;
-/** What the head of a file says of its angles, in radians; without it they are in the skeleton's unit. */
+/** The units of angles [rad] by their keyword in a file's header; without one, the skeleton's unit applies. */
 const radiansPerUnit: Readonly<Record<string, number>> = { ':DEGREES': Math.PI / 180, ':RADIANS': 1 };
 
 /** The columns of a bone in a row: the first one and their number. */
@@ -14,7 +14,7 @@ interface Columns {
   readonly count: number;
 }
 
-/** Columns by bone: the root, then bones with freedom. */
+/** Returns the columns by bone: the root, then bones with degrees of freedom. */
 function columnsOf({ rootFreedoms, bones }: AsfSkeleton): {
   readonly columns: Map<string, Columns>;
   readonly width: number;
@@ -85,7 +85,10 @@ function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values 
   };
 }
 
-/** Forward kinematics: a bone's rotation in its parent is C·M·C⁻¹ with the bone's axes C and the motion's angles M. */
+/**
+ * The forward kinematics of a skeleton: a bone's rotation in its parent is C·M·C⁻¹ with the bone's axes C and the
+ * motion's angles M.
+ */
 class Player {
   readonly #skeleton: AsfSkeleton;
   readonly #radiansPerUnit: number;
@@ -98,7 +101,7 @@ class Player {
     this.#radiansPerUnit = radiansPerUnit;
   }
 
-  /** From the numbers that begin at `column`: the root, where bones start, where they end. */
+  /** Writes the root, the starts of the bones and their ends, from the numbers that begin at `column`. */
   pose(values: Float64Array, column: number, target: SkeletonPose): SkeletonPose {
     const { bones, rootFreedoms, rootAxis, rootPosition } = this.#skeleton;
     const { positions, rotations } = target;

@@ -6,9 +6,9 @@ import { turnPoint } from './motion-bones';
 const framesPerStep = 64;
 
 /**
- * A table of joints, in parts: a row per frame with its time [s], whether each hand was seen (1, 0), and where every
- * measured joint is [m, floor frame: +Y up, −Z forward]. Joints that are not measured (legs) have no columns. Yields
- * the share [0, 1] that is done.
+ * Writes a table of joints, in parts: a row per frame with its time [s], whether each hand was seen (1, 0), and the
+ * position of every measured joint [m, floor frame: +Y up, −Z forward]. Joints that are not measured (legs) have no
+ * columns. Yields the share [0, 1] that is done.
  */
 export function* writeCsv(motion: Motion): Generator<number, readonly string[]> {
   const { bones, times, seen } = motion;
