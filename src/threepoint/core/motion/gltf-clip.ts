@@ -101,13 +101,6 @@ function nodesOf(description: Json): Node[] {
   return nodes;
 }
 
-/** Returns the indices of the nodes, parents before children; throws where a node is its own ancestor. */
-function inOrder(nodes: readonly Node[]): readonly number[] {
-  const order = parentsFirst(nodes.map(({ parent }) => parent));
-  if (order.length < nodes.length) throw new Error('the nodes go in a circle: a bone is its own ancestor');
-  return order;
-}
-
 /** Returns the numbers of an accessor; normalised integers are fractions of the largest. */
 export function accessorOf(description: Json, binary: Uint8Array, index: unknown): Float32Array {
   if (!isIndex(index)) throw new Error('animations[0]: a sampler does not name its accessors');
@@ -258,7 +251,8 @@ export class GltfClip {
   /** Throws a sentence that names the field where something is wrong. `animation`: its index. */
   constructor(description: Json, binary: Uint8Array, animation = 0) {
     this.nodes = nodesOf(description);
-    this.order = inOrder(this.nodes);
+    this.order = parentsFirst(this.nodes.map(({ parent }) => parent));
+    if (this.order.length < this.nodes.length) throw new Error('the nodes go in a circle: a bone is its own ancestor');
     this.#scene = new Scene(this.nodes, this.order);
     const duration = readTracks(description, binary, this.nodes, animation);
     this.frameCount = Math.floor(duration * (1 + precision) * rateHz + 1e-6) + 1;
