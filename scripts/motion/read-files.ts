@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type MocapSource, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
+import { type MocapSource, readTruthMotion } from 'threepoint/core/mocap/prepare-mocap';
 import { readSkeletonMap } from 'threepoint/core/mocap/read-skeleton-map';
 import { finishWork } from 'threepoint/core/motion/work';
 
@@ -49,7 +49,7 @@ async function read(file: MotionPath, i: number, out: string, mapped: Pick<Mocap
   try {
     const rate = file.rateHz === null ? {} : { rateHz: file.rateHz };
     const source = { ...(await sourceOf(file)), ...mapped, ...rate };
-    const { motion, notes, doubts } = finishWork(readOurMotion(source));
+    const { motion, notes, doubts } = finishWork(readTruthMotion(source));
     writeFileSync(join(out, `${i}.positions`), motion.positions);
     writeFileSync(join(out, `${i}.rotations`), motion.rotations);
     const rest = Object.fromEntries([...motion.rest].map(([joint, { x, y, z }]) => [joint, [x, y, z]]));

@@ -34,7 +34,7 @@ function holdAlike(from: PoseEstimator, to: PoseEstimator): void {
   if (!(from instanceof Pipeline && to instanceof Pipeline)) return;
   const [known, told] = [from.state.tilts, to.state.tilts];
   for (const side of sides) {
-    copyVec3(known[side].noticed, told[side].noticed);
+    copyVec3(known[side].observed, told[side].observed);
     copyQuat(known.turns[side], told.turns[side]);
   }
 }

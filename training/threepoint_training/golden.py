@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from . import hand_tilt, notice_hand_tilts, notice_headset_rise, quaternion, solve_ik
+from . import estimate_hand_tilts, estimate_headset_rise, hand_tilt, quaternion, solve_ik
 from .arrays import Array
 from .chest_features import chest_axes
+from .estimate_hand_tilts import CalibratedTilts
 from .features import frame_features
 from .generated_motion import generate_clip
 from .golden_mocap import mocap_vectors
-from .notice_hand_tilts import CalibratedTilts
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
@@ -93,8 +93,8 @@ def feature_vectors() -> list[dict[str, Any]]:
         positions, rotations = _tracked(person.eye_height, person.arm_span, random)
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
-        metres = notice_hand_tilts.travel(positions)
-        body = notice_hand_tilts.with_noticed_hands(
+        metres = estimate_hand_tilts.travel(positions)
+        body = estimate_hand_tilts.with_noticed_hands(
             person.body(), positions, rotations, metres, calibrated=person.calibrated(), seen=seen
         )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
@@ -131,8 +131,8 @@ def headset_rise_vectors() -> dict[str, Any]:
         scale=0.15, size=(count, 2, 3)
     ) * [1, 0, 1]
     seconds, seen = random.uniform(0.5, 1.5, count), random.uniform(size=(count, 2)) > 0.15
-    followed = notice_headset_rise.hanging_reach(reach, seconds, seen=seen)
-    rises = notice_headset_rise.rise(followed, np.array(arm))
+    followed = estimate_headset_rise.hanging_reach(reach, seconds, seen=seen)
+    rises = estimate_headset_rise.rise(followed, np.array(arm))
     names = ("seconds", "reach", "seen", "hangingReach", "rise")
     frames = [dict(zip(names, each, strict=True)) for each in zip(seconds, reach, seen, followed, rises, strict=True)]
     return {"arm": arm, "frames": frames}

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import fitted_kinematics, notice_headset_rise, quaternion, splits, train_learned
+from . import estimate_headset_rise, fitted_kinematics, quaternion, splits, train_learned
 from .accuracy_tables import renew, table
 from .arrays import Array
 from .fit_ik import FitIkConfig
@@ -149,7 +149,7 @@ def _judged(
             for row, fault in zip(found[-1], FAULTS.values(), strict=True):
                 worn = _draw_worn(name, fault, 0, config)
                 reach = _hanging_reach(corpus, worn, usual, config)
-                rise = notice_headset_rise.rise(reach, _body(corpus, name, fault).arm, usual)
+                rise = estimate_headset_rise.rise(reach, _body(corpus, name, fault).arm, usual)
                 for column, each in enumerate((worn, replace(worn, rise=rise.item()))):
                     row[:, column] = _errors(corpus, each, made, config)
     return np.array(found).reshape(-1, len(FAULTS), 2, 2)
@@ -177,8 +177,8 @@ def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: No
         TrackerConfig(),
         np.random.default_rng(config.seed),
     )
-    reaches = notice_headset_rise.reaches(*tracked, _body(corpus, worn.name, worn.fault))
-    return notice_headset_rise.hanging_reach(reaches, np.full(len(frames), config.stride / corpus.rate_hz), usual)[-1]
+    reaches = estimate_headset_rise.reaches(*tracked, _body(corpus, worn.name, worn.fault))
+    return estimate_headset_rise.hanging_reach(reaches, np.full(len(frames), config.stride / corpus.rate_hz), usual)[-1]
 
 
 def _body(corpus: PreparedCorpus, name: str, fault: Fault) -> Body:

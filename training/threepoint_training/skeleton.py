@@ -42,7 +42,7 @@ class Body:
     def with_forearms(self, lengths: Array, known: NDArray[np.bool_] | bool = True) -> "Body":
         """Returns the body with measured forearms [..., 2] [m] where known, weighted as on the page."""
         measured = np.clip(lengths, LIMB["forearmShare"]["min"] * self.arm, LIMB["forearmShare"]["max"] * self.arm)
-        forearm = np.where(known, self.forearm + LIMB["forearmTrust"] * (measured - self.forearm), self.forearm)
+        forearm = np.where(known, self.forearm + LIMB["forearmWeight"] * (measured - self.forearm), self.forearm)
         return replace(self, upper_arm=self.arm - forearm, forearm=forearm)
 
     def with_hands(self, tilts: Array) -> "Body":

@@ -188,7 +188,7 @@ def _place_elbow(side: int, points: _Points, arm: tuple[Array, Array], body: Bod
     axes = (_in_thorax(thorax, hand[..., :, axis], side) for axis in (1, 2))
     columns = np.concatenate([np.ones_like(reach[:, :1]), reach, *axes], -1)
     turned = np.zeros(2, bool) if body.hands_turned is None else body.hands_turned
-    pole = np.where(turned[..., side, None], columns @ np.array(k["pole"]).T, columns @ np.array(k["untoldPole"]).T)
+    pole = np.where(turned[..., side, None], columns @ np.array(k["pole"]).T, columns @ np.array(k["untiltedPole"]).T)
     bones = body.upper_arm[..., side, None], body.forearm[..., side, None]
     return two_bone_elbow(shoulder, wrist, *bones, _apply(thorax, pole * _side_sign(side)), thorax=thorax)
 

@@ -12,15 +12,15 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from . import hand_tilt, notice_hand_tilts
+from . import estimate_hand_tilts, hand_tilt
 from .arrays import Array
 from .augment import AugmentConfig, draw_batch
 from .body_parts import BodyParts
 from .chest_features import CHEST_FEATURES
 from .differentiable_kinematics import DifferentiableKinematics
+from .estimate_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
 from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
-from .notice_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
@@ -118,8 +118,8 @@ def clip_frames(
     """
     positions, rotations = tracked
     count, start = len(positions), corpus.clip_slice(clip).start
-    turned = notice_hand_tilts.with_noticed_hands(
-        body, positions, rotations, notice_hand_tilts.travel(positions), calibrated=calibrated
+    turned = estimate_hand_tilts.with_noticed_hands(
+        body, positions, rotations, estimate_hand_tilts.travel(positions), calibrated=calibrated
     )
     vector, _ = frame_features(positions, rotations, turned)
     truth = corpus.truth(slice(start, start + count)).astype(np.float64)

@@ -1,8 +1,8 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import type { BoneName } from '../core/humanoid/bones';
-import { createJointPoses, type JointPoses } from '../core/motion/file-motion';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
+import { createSkeletonPose, type SkeletonPose } from '../core/motion/imported-motion';
 import { type Motion, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
 import { convertToGlb } from './file/convert-to-glb';
@@ -87,7 +87,7 @@ const turned = new Quaternion();
 const carried = new Quaternion();
 
 /** Returns the rotation of a driven node in a frame, in the axes of the file. */
-function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }: JointPoses): Quaternion {
+function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }: SkeletonPose): Quaternion {
   const { x, y, z, w } = rotations[bone]!;
   turned.set(x, y, z, w);
   if (above >= 0) {
@@ -128,7 +128,7 @@ function* clipTracks(motion: Motion, avatar: LoadedAvatar): Generator<number, re
   const rotations = driven.map(() => new Float32Array(4 * count));
   const hips = new Float32Array(3 * count);
   const place = hipsPlacer(avatar.vrm, motion);
-  const posed = createJointPoses(motion.bones.length);
+  const posed = createSkeletonPose(motion.bones.length);
   for (let frame = 0; frame < count; frame++) {
     poseBones(motion, frame, posed);
     const { x, y, z } = posed.positions[0]!;

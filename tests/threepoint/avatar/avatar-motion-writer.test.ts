@@ -4,7 +4,7 @@ import { validateBytes } from 'gltf-validator';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
-import { turnPoint } from 'threepoint/core/motion/skeleton';
+import { turnPoint } from 'threepoint/core/motion/motion-bones';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
 import { actingPerson, bytesOf, contortedPerson } from '../core/motion/moved-person';

@@ -3,7 +3,7 @@ import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
 import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
 import { readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import type { BoneName } from 'threepoint/core/humanoid/bones';
-import { prepareMocap, readOurMotion } from 'threepoint/core/mocap/prepare-mocap';
+import { prepareMocap, readTruthMotion } from 'threepoint/core/mocap/prepare-mocap';
 import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
 import { finishWork } from 'threepoint/core/motion/work';
 import { expect, test } from 'vitest';
@@ -42,7 +42,7 @@ function placeOf(bone: BoneName, frame: number): Vector3 {
 
 async function expectTruth(bytes: ArrayBuffer, name: string): Promise<void> {
   const source = { name, ...(await readGltfMotion(bytes, name)) };
-  const { motion } = finishWork(readOurMotion(source));
+  const { motion } = finishWork(readTruthMotion(source));
   expect(motion.rateHz).toBe(60);
   for (let frame = 0; frame < frames; frame += 7) {
     for (const bone of ['hips', 'head', 'leftHand', 'rightLowerArm', 'rightHand', 'leftFoot'] as const) {

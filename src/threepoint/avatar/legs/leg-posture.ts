@@ -3,7 +3,7 @@ import { sideSign } from '../../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
 import { Gait } from '../../core/estimation/gait/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
-import { followPin, handOverSeconds, makePin, type Pin, trustBeyond } from '../../core/estimation/pin';
+import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
 import { makePose } from '../../core/math/pose';
 import {
@@ -210,7 +210,7 @@ export class LegPosture {
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);
     copyQuat(foot, estimated.orientation);
-    const confidence = tracked ? trustBeyond(distance(tracked.position, hip) - upper - lower) : 0;
+    const confidence = tracked ? confidenceBeyond(distance(tracked.position, hip) - upper - lower) : 0;
     const weight = followPin(pin, estimated, tracked, confidence, pinStep);
     if (weight === 0) return 0;
     lerp(ankle, pin.target.position, weight, ankle);

@@ -17,9 +17,9 @@ const relaxHalfLife = 0.25;
 
 /** Keeps the fingers of one hand finite in every frame, whether they are tracked, lost or not finite. */
 export class FingerMemory {
-  /** Overwritten by the next `follow`. */
-  readonly shape: HandShape;
   readonly #shape: MutableHandShape = copyHandShape(relaxedHand, makeHandShape());
+  /** Overwritten by the next `follow`. */
+  readonly shape: HandShape = this.#shape;
   /**
    * The time since each finger was tracked [s]. The order differs from a hand's shape, whose objects would box these
    * numbers: see `Vec3`.
@@ -31,10 +31,6 @@ export class FingerMemory {
     index: heldSeconds,
     thumb: heldSeconds,
   };
-
-  constructor() {
-    this.shape = this.#shape;
-  }
 
   /**
    * Updates the shape with the tracked one (null: not tracked). A finger with a bend that is not finite counts as not

@@ -17,8 +17,9 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
+import { recordOf } from '../records';
 import proportions from './hand-geometry.json';
-import type { FingerBend, FingerName, MutableFingerBend } from './hand-shape';
+import { type FingerBend, type FingerName, fingerNames, type MutableFingerBend } from './hand-shape';
 
 /**
  * Points and directions of this file are in the frame of a left wrist: −Z towards the knuckles, +Y out of the back of
@@ -159,37 +160,28 @@ export function bendFromPoints(name: FingerName, points: FingerPoints, target: M
 
 const fingertip = 0.006;
 
-/** Creates a hand geometry finger by finger. */
-const handOf = <Finger>(
-  { thumb, index, middle, ring, little }: Readonly<Record<FingerName, Finger>>,
-  fingerOf: (finger: Finger) => FingerGeometry,
-): HandGeometry => ({
-  thumb: fingerOf(thumb),
-  index: fingerOf(index),
-  middle: fingerOf(middle),
-  ring: fingerOf(ring),
-  little: fingerOf(little),
-});
-
 /** Returns the hand of an average person with this eye height [m], which is the mannequin's. */
 export function averageHand(eyeHeight: number): HandGeometry {
   const size = eyeHeight / proportions.eyeHeight;
-  const fingerOf = ({ knuckle, lengths, radius }: (typeof proportions)['index']): FingerGeometry => ({
-    root: vec3(knuckle[0]! * size, knuckle[1]! * size, -knuckle[2]! * size),
-    lengths: [lengths[0]! * size, lengths[1]! * size, (lengths[2]! - fingertip) * size],
-    tipRadius: 0.75 * radius * size,
-    rootRadius: radius * size,
+  return recordOf(fingerNames, (name) => {
+    const { knuckle, lengths, radius } = proportions[name];
+    return {
+      root: vec3(knuckle[0]! * size, knuckle[1]! * size, -knuckle[2]! * size),
+      lengths: [lengths[0]! * size, lengths[1]! * size, (lengths[2]! - fingertip) * size] as const,
+      tipRadius: 0.75 * radius * size,
+      rootRadius: radius * size,
+    };
   });
-  return handOf(proportions, fingerOf);
 }
 
 /** Returns the hand scaled by `size`. */
-export function scaledHand(hand: HandGeometry, size: number): HandGeometry {
-  const fingerOf = ({ root, lengths, tipRadius, rootRadius }: FingerGeometry): FingerGeometry => ({
-    root: scale(root, size),
-    lengths: [lengths[0] * size, lengths[1] * size, lengths[2] * size],
-    tipRadius: tipRadius * size,
-    rootRadius: rootRadius * size,
+export const scaledHand = (hand: HandGeometry, size: number): HandGeometry =>
+  recordOf(fingerNames, (name) => {
+    const { root, lengths, tipRadius, rootRadius } = hand[name];
+    return {
+      root: scale(root, size),
+      lengths: [lengths[0] * size, lengths[1] * size, lengths[2] * size] as const,
+      tipRadius: tipRadius * size,
+      rootRadius: rootRadius * size,
+    };
   });
-  return handOf(hand, fingerOf);
-}

@@ -3,6 +3,7 @@ import type { Pose } from '../math/pose';
 import { rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import { distance, subtract, type Vec3 } from '../math/vec3';
+import { recordOf } from '../records';
 import { bendFromPoints, type FingerPoints, makeFingerPoints, mirrorPoint } from './hand-geometry';
 import { type FingerName, fingerNames, type MutableHandShape } from './hand-shape';
 
@@ -17,13 +18,7 @@ const pinchOf = (gap: number): number =>
 /** The joints of one hand in its wrist's frame, mirrored to a left hand (hand-geometry). */
 export type HandJoints = Readonly<Record<FingerName, FingerPoints>>;
 
-export const makeHandJoints = (): HandJoints => ({
-  thumb: makeFingerPoints(),
-  index: makeFingerPoints(),
-  middle: makeFingerPoints(),
-  ring: makeFingerPoints(),
-  little: makeFingerPoints(),
-});
+export const makeHandJoints = (): HandJoints => recordOf(fingerNames, makeFingerPoints);
 
 /** Writes a joint of a hand of this side [m, floor frame]: `joint` 0 to 2 are the bones' beginnings, 3 the tip. */
 export function setHandJoint(

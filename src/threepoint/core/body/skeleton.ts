@@ -5,7 +5,7 @@ import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
 import type { JointName } from './joints';
-import { forearmShare, forearmTrust, shortestArm } from './limb-limits.json';
+import { forearmShare, forearmWeight, shortestArm } from './limb-limits.json';
 import type { LimbBones } from './two-bone-ik';
 
 /**
@@ -37,13 +37,13 @@ export function armLength({ eyeHeight, armSpan }: Calibration): number {
 
 /**
  * Returns bone lengths [m] that sum to `armLength`. A calibrated forearm is clamped to `forearmShare` of the arm, then
- * blended with the average by `forearmTrust`.
+ * blended with the average by `forearmWeight`.
  */
 export function armBones(calibration: Calibration): LimbBones {
   const arm = armLength(calibration);
   const average = (1 - proportions.upperArmShare) * arm;
   const plausible = clamp(calibration.forearm ?? average, forearmShare.min * arm, forearmShare.max * arm);
-  const lower = average + forearmTrust * (plausible - average);
+  const lower = average + forearmWeight * (plausible - average);
   return { upper: arm - lower, lower };
 }
 

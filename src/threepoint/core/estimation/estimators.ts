@@ -21,7 +21,7 @@ export const needsRegressor = (name: EstimatorName): name is NetworkName => name
 export const networkOf = (name: EstimatorName): NetworkName | null =>
   needsRegressor(name) ? name : name === 'device' ? 'learned' : null;
 
-/** Creates an estimator by inverse kinematics alone: the baseline of the networks, with the same calibration. */
+/** The joints of inverse kinematics, uncorrected. */
 const ikAlone: JointSource = {
   network: null,
   calibrate: () => undefined,
@@ -31,6 +31,7 @@ const ikAlone: JointSource = {
   },
 };
 
+/** Creates an estimator by inverse kinematics alone: the baseline of the networks, with the same calibration. */
 export const createIk = (calibration: Calibration, options?: PipelineOptions): Pipeline =>
   new Pipeline('ik', calibration, ikAlone, options);
 

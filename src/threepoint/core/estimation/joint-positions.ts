@@ -1,6 +1,7 @@
 import { type EstimatedJoint, estimatedJoints } from '../body/joints';
 import { type Frame, type Transform, transformPoint } from '../math/pose';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
+import { recordOf } from '../records';
 
 /** The six joints that no device tracks [m], in the frame that the variable's name states. */
 export type JointPositions = Readonly<Record<EstimatedJoint, Vec3>>;
@@ -8,15 +9,9 @@ export type JointPositions = Readonly<Record<EstimatedJoint, Vec3>>;
 /** Six joints that their owner overwrites. */
 export type MutableJointPositions = Readonly<Record<EstimatedJoint, MutableVec3>>;
 
-/** Builds positions joint by joint; `index` is the joint's place in every tensor. */
-export function mapJoints<T>(position: (joint: EstimatedJoint, index: number) => T): Record<EstimatedJoint, T> {
-  const result = {} as Record<EstimatedJoint, T>;
-  for (let index = 0; index < estimatedJoints.length; index++) {
-    const joint = estimatedJoints[index]!;
-    result[joint] = position(joint, index);
-  }
-  return result;
-}
+/** Builds a record joint by joint; `index` is the joint's place in every tensor. */
+export const mapJoints = <T>(make: (joint: EstimatedJoint, index: number) => T): Record<EstimatedJoint, T> =>
+  recordOf(estimatedJoints, make);
 
 export const makeJoints = (): MutableJointPositions => mapJoints(() => vec3(0, 0, 0));
 

@@ -45,11 +45,10 @@ import {
 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import limits from './kinematic-limits.json';
-import { followPin, handOverSeconds, makePin, type Pin, trustBeyond } from './pin';
+import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from './pin';
 import type { TrackedJoints } from './tracked-joints';
-import { placeShoulder, type TorsoBones, type TorsoPose } from './trunk/fit-torso';
+import { makeTrunkRotations, placeShoulder, type TorsoBones, type TorsoPose, trunkBones } from './trunk/fit-torso';
 
-const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
 /**
  * The fastest turn [rad/s] of the side to which the trunk bends, and the fastest way [m/s] of a joint by it: near
  * straight, and where a trunk folds, the side is ill-defined.
@@ -87,13 +86,7 @@ const makeTrunkBefore = (): TrunkBefore => ({
   neck: vec3(0, 0, 0),
   chest: vec3(0, 0, 0),
   hips: vec3(0, 0, 0),
-  rotations: {
-    hips: quat(0, 0, 0, 1),
-    spine: quat(0, 0, 0, 1),
-    chest: quat(0, 0, 0, 1),
-    upperChest: quat(0, 0, 0, 1),
-    neck: quat(0, 0, 0, 1),
-  },
+  rotations: makeTrunkRotations(),
 });
 
 /** The trunk as it was fitted, and as the current pin found it. */
@@ -117,9 +110,10 @@ const inverse = quat(0, 0, 0, 1);
 
 /**
  * Stage 5, between trunk and arms: moves the trunk onto the joints that trackers pin. Bones keep their lengths and the
- * head its place. The chest joint is where its tracker says; the thorax turns with it and leads to a neck on its bone.
- * The hips are where their tracker says and turned like it; the lower back bends to meet the thorax. Where both cannot
- * hold, the chest's tracker gives way, then the turn of the hips, then their place. Changes nothing without trackers.
+ * head its place. The chest joint is where its tracker places it; the thorax turns with it and leads to a neck on its
+ * bone. The hips are where their tracker places them and turned like it; the lower back bends to meet the thorax. Where
+ * both cannot hold, the chest's tracker gives way, then the turn of the hips, then their place. Changes nothing without
+ * trackers.
  */
 export function pinTrunk(
   state: PinTrunkState,
@@ -136,15 +130,15 @@ export function pinTrunk(
   copyTrunk(torso, fitted);
   const { headJoint } = frame;
   const chestReach = bones.neckLength + bones.thoraxLength;
-  const chestTrust = trustOf(tracked.chest, headJoint, chestReach);
-  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), tracked.chest, chestTrust, step);
+  const chestConfidence = confidenceOf(tracked.chest, headJoint, chestReach);
+  const chestWeight = followPin(state.chest, jointOf(torso, 'chest'), tracked.chest, chestConfidence, step);
   if (chestWeight > 0) {
     copyTrunk(torso, before);
     moveChest(torso, state.chest, headJoint, bones, seconds);
     mixTrunk(torso, headJoint, bones, chestWeight);
   }
-  const hipsTrust = trustOf(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
-  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), tracked.hips, hipsTrust, step);
+  const hipsConfidence = confidenceOf(tracked.hips, headJoint, chestReach + bones.lowerBackLength);
+  const hipsWeight = followPin(state.hips, jointOf(torso, 'hips'), tracked.hips, hipsConfidence, step);
   if (hipsWeight > 0) {
     copyTrunk(torso, before);
     moveHips(torso, state.hips, headJoint, bones, seconds);
@@ -155,7 +149,7 @@ export function pinTrunk(
   carryShoulder('right', torso, frame.rightHand, bones);
 }
 
-/** Forgets the past: the next frame is the first. */
+/** Resets the state: the next frame is the first. */
 export function resetPinTrunk(state: PinTrunkState): void {
   state.known = false;
   for (const pin of [state.hips, state.chest]) {
@@ -165,8 +159,8 @@ export function resetPinTrunk(state: PinTrunkState): void {
   }
 }
 
-const trustOf = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): number =>
-  joint ? trustBeyond(distance(joint.position, headJoint) - reach) : 0;
+const confidenceOf = (joint: Pose<'floor'> | null, headJoint: Vec3, reach: number): number =>
+  joint ? confidenceBeyond(distance(joint.position, headJoint) - reach) : 0;
 
 function copyTrunk({ neck, chest, hips, rotations }: TrunkBefore, target: TrunkBefore): void {
   copyVec3(neck, target.neck);

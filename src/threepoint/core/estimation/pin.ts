@@ -14,12 +14,13 @@ import { lerp } from '../math/vec3';
 /** The time [s] in which a joint passes from its estimate to its tracker, or back. */
 export const handOverSeconds = 0.3;
 
-/** How far [m] beyond the reach of its bones a tracked joint starts to count less, and counts as lost. */
+/** The distances [m] beyond the reach of its bones at which confidence in a tracked joint starts to fall, and is 0. */
 const doubtfulFrom = 0.1;
 const lostFrom = 0.3;
 
-/** Returns how much a tracked joint counts that is `beyond` [m] out of the reach of its bones: 1, less, or 0. */
-export const trustBeyond = (beyond: number): number => clamp((lostFrom - beyond) / (lostFrom - doubtfulFrom), 0, 1);
+/** Returns the confidence [0, 1] in a tracked joint that is `beyond` [m] out of the reach of its bones. */
+export const confidenceBeyond = (beyond: number): number =>
+  clamp((lostFrom - beyond) / (lostFrom - doubtfulFrom), 0, 1);
 
 /** A joint that a tracker pins, and its way there and back. */
 export interface Pin {
@@ -40,22 +41,22 @@ const seen = makePose<'joint'>();
 
 /**
  * Advances a pin by `step` (part of the transition) and writes its target. Returns its weight: 0 where the estimate
- * stands, 1 where the target does. pinned: the joint by its tracker; null: not seen. trust: how much it counts, 0 to 1.
+ * stands, 1 where the target does. pinned: the joint by its tracker; null: not seen. confidence: in that joint, 0 to 1.
  */
 export function followPin(
   pin: Pin,
   estimated: Pose<'floor'>,
   pinned: Pose<'floor'> | null,
-  trust: number,
+  confidence: number,
   step: number,
 ): number {
   const { difference, target } = pin;
-  const counts = pinned && trust > 0 ? pinned : null;
+  const counts = pinned && confidence > 0 ? pinned : null;
   if (pin.share === 0) pin.regained = 1;
   else if (!counts) pin.regained = 0;
   const left = 1 - pin.regained;
   if (counts) pin.regained = Math.min(1, pin.regained + step);
-  pin.share += clamp((counts ? trust : 0) - pin.share, -step, step);
+  pin.share += clamp((counts ? confidence : 0) - pin.share, -step, step);
   if (pin.share === 0) return 0;
   if (counts) {
     transformPose(invertTransform<'floor', 'joint'>(estimated, jointFromFloor), counts, seen);

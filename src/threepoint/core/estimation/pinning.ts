@@ -29,7 +29,7 @@ export class Pins {
     this.#watch.calibrate(calibration);
   }
 
-  /** Forgets the past: the next frame is the first. */
+  /** Resets the state: the next frame is the first. */
   reset(): void {
     resetPinTrunk(this.#trunk);
   }

@@ -1,23 +1,27 @@
 import { type MutableUpperBodyPose, makeUpperBodyPose, type TrackedFeet } from '../body/avatar-pose';
 import { type Calibration, isSpanMeasured } from '../body/calibration';
 import { type Fingers, unknownFingers } from '../body/hand-shape';
+import { writeLocalRotations } from '../body/local-rotations';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
 import { invertTransform, makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
-import { vec3 } from '../math/vec3';
+import { copyVec3, vec3 } from '../math/vec3';
 import type { DeviceBody } from '../tracking/device-body';
 import { floorFromHeading } from '../tracking/heading';
 import { assertPinning, type TrackingFrame } from '../tracking/tracking-frame';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
-import { composeBody } from './compose-body';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './ik/solve-ik';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
+import { estimateHandTilts, makeHandTiltsState, resetHandTilts } from './online-calibration/estimate-hand-tilts';
+import {
+  estimateHeadsetRise,
+  makeHeadsetRiseState,
+  resetHeadsetRise,
+} from './online-calibration/estimate-headset-rise';
 import { HeadsetMountCorrection } from './online-calibration/headset-mount-correction';
-import { makeHandTiltsState, noticeHandTilts, resetHandTilts } from './online-calibration/notice-hand-tilts';
-import { makeHeadsetRiseState, noticeHeadsetRise, resetHeadsetRise } from './online-calibration/notice-headset-rise';
 import type { Pinning, Pins } from './pinning';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
@@ -164,9 +168,9 @@ export class Pipeline implements PoseEstimator {
     const step = this.#frameByFrame ? Number.POSITIVE_INFINITY : deltaSeconds;
     steadyTrackers(state.trackers, completed, step);
     const solved = this.#solve(frame);
-    noticeHandTilts(state.tilts, solved.ik, completed, state.trackers.travel);
+    estimateHandTilts(state.tilts, solved.ik, completed, state.trackers.travel);
     // An underestimated arm length is indistinguishable from a raised headset.
-    if (body.spanMeasured) noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
+    if (body.spanMeasured) estimateHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, step, state.joints);
     const joints = limitJoints(state.limited, state.joints, completed, step);
     const torso = fitTorso(state.torso, joints, completed, body.torso, step);
@@ -181,7 +185,8 @@ export class Pipeline implements PoseEstimator {
     pose.rightHand = frame.rightHand;
     pose.fingers = frame.fingers ?? unknownFingers;
     pose.feet = feet;
-    composeBody(torso, arms, head.orientation, pose.body);
+    copyVec3(torso.hips, pose.body.hipsPosition);
+    writeLocalRotations(torso.rotations, head.orientation, torso.clavicles, arms, pose.body.localRotations);
     return this.#estimate;
   }
 

@@ -2,10 +2,7 @@ import { fingerBoneSuffixes } from '../body/finger-bone-names';
 import { type Side, sides } from '../math/side';
 
 const centreBones = ['hips', 'spine', 'chest', 'upperChest', 'neck', 'head', 'jaw'] as const;
-const sideBones = [
-  ...['Shoulder', 'UpperArm', 'LowerArm', 'Hand', 'UpperLeg', 'LowerLeg', 'Foot', 'Toes', 'Eye'],
-] as const satisfies readonly string[];
-type SideBone = 'Shoulder' | 'UpperArm' | 'LowerArm' | 'Hand' | 'UpperLeg' | 'LowerLeg' | 'Foot' | 'Toes' | 'Eye';
+const sideBones = ['Shoulder', 'UpperArm', 'LowerArm', 'Hand', 'UpperLeg', 'LowerLeg', 'Foot', 'Toes', 'Eye'] as const;
 /** The fingers as VRM's names of bones have them, from the thumb outwards. */
 export const fingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
 type Finger = (typeof fingerNames)[number];
@@ -14,7 +11,7 @@ type Finger = (typeof fingerNames)[number];
 export type BoneName =
   | (typeof centreBones)[number]
   | `${Side}${
-      | SideBone
+      | (typeof sideBones)[number]
       | `Thumb${'Metacarpal' | 'Proximal' | 'Distal'}`
       | `${Exclude<Finger, 'Thumb'>}${'Proximal' | 'Intermediate' | 'Distal'}`}`;
 /** VRM's names of bones, and the names of their nodes in a file. */

@@ -8,7 +8,7 @@ export interface Body {
   readonly legs: LimbPair | null;
   /** Hips first, the joint that the arms leave last. */
   readonly trunk: readonly number[];
-  /** From below the arms' joint to the head and beyond. */
+  /** The joints from above the arms' joint to the head and beyond. */
   readonly above: readonly number[];
   readonly score: number;
 }
@@ -60,7 +60,7 @@ function bodyOf(tree: JointTree, arms: LimbPair, legs: LimbPair | null): Body | 
   return { arms, legs, trunk, above, score };
 }
 
-/** From the hips to the joint that the arms leave. */
+/** Returns the joints from the hips to the joint that the arms leave. */
 function trunkBetween(tree: JointTree, armAncestors: readonly number[], legs: LimbPair | null): readonly number[] {
   const down = [...armAncestors].reverse();
   const legAncestors = legs ? tree.ancestors(legs.root) : [];
@@ -79,27 +79,27 @@ function trunkBetween(tree: JointTree, armAncestors: readonly number[], legs: Li
   return hips === shared || tree.vote(shared, 'spine') < 0.5 ? down.slice(from) : [hips, ...down.slice(from)];
 }
 
-/** The direction of a limb, from its first named joint to its last. */
-const wayOf = (tree: JointTree, { chain, at }: Limb): Vec3 =>
+/** Returns the direction of a limb, from its first named joint to its last. */
+const directionOf = (tree: JointTree, { chain, at }: Limb): Vec3 =>
   normalise(subtract(tree.position(chain[at[2]]!), tree.position(chain[at[0]]!)), zero);
 
-/** How far the legs at rest point away from the trunk: 1 opposite, −1 along it. */
+/** Returns how far the legs at rest point away from the trunk: 1 opposite, −1 along it. */
 export function legsBelow(tree: JointTree, legs: LimbPair, arms: LimbPair): number {
   const trunk = subtract(tree.position(arms.root), tree.position(legs.root));
-  return legs.limbs.reduce((sum, leg) => sum - dot(wayOf(tree, leg), normalise(trunk, zero)) / 2, 0);
+  return legs.limbs.reduce((sum, leg) => sum - dot(directionOf(tree, leg), normalise(trunk, zero)) / 2, 0);
 }
 
-/** Whether a skeleton stands on four legs: arms point as legs do, across the trunk. */
+/** Returns whether a skeleton stands on four legs: arms point as legs do, across the trunk. */
 function onFourLegs(tree: JointTree, { arms, legs, trunk }: Body): boolean {
   if (!legs) return false;
   const along = normalise(subtract(tree.position(arms.root), tree.position(trunk[0]!)), zero);
   return [0, 1].every((i) => {
-    const [arm, leg] = [wayOf(tree, arms.limbs[i]!), wayOf(tree, legs.limbs[i]!)];
+    const [arm, leg] = [directionOf(tree, arms.limbs[i]!), directionOf(tree, legs.limbs[i]!)];
     return dot(arm, leg) > 0.7 && Math.abs(dot(leg, along)) < 0.6;
   });
 }
 
-/** The chain from the arms' joint to the head, without what belongs to limbs and trunk. */
+/** Returns the chain from the arms' joint to the head, without joints of limbs and trunk. */
 function chainToHead(
   tree: JointTree,
   root: number,
@@ -123,7 +123,7 @@ function chainToHead(
   return best;
 }
 
-/** From a joint to the named head, else along the main chain. */
+/** Returns the chain from a joint to the named head, else its main chain. */
 function headChain(tree: JointTree, child: number): readonly number[] {
   const below = tree.below(child);
   const head = below.reduce((a, b) => (tree.vote(b, 'head') > tree.vote(a, 'head') ? b : a), child);

@@ -78,33 +78,33 @@ export class JointTree {
     return this.joints[joint]!.position;
   }
 
-  /** How strongly the name of a joint means a part, from 0 to 1. */
+  /** Returns how strongly the name of a joint means a part, from 0 to 1. */
   vote(joint: number, part: Part): number {
     const { parts, auxiliary } = this.votes[joint]!;
     return (parts[part] ?? 0) * (auxiliary ? 0.3 : 1);
   }
 
-  /** The joint and its ancestors up to the root. */
+  /** Returns the joint and its ancestors up to the root. */
   ancestors(joint: number): readonly number[] {
     const found: number[] = [];
     for (let i = joint; this.joints[i] && found.length <= this.joints.length; i = this.parent(i)) found.push(i);
     return found;
   }
 
-  /** The joints below one, itself included, parents before children. */
+  /** Returns the joints below one, itself included, parents before children. */
   below(joint: number): readonly number[] {
     const found = [joint];
     for (let i = 0; i < found.length; i++) found.push(...this.children[found[i]!]!);
     return found;
   }
 
-  /** How much of a limb hangs from a joint: length, and parts by name. */
+  /** Returns a score of how much of a limb hangs from a joint: length, and parts by name. */
   #limbShare(joint: number): number {
     const share = (this.segments[joint]! + this.heights[joint]!) / (this.size || 1);
     return share + 0.4 * countBits(this.#parts[joint]!) - (this.auxiliary[joint] ? 0.5 : 0);
   }
 
-  /** The joints of a limb from its first along its main chain, `most` of them at most. */
+  /** Returns the joints of a limb from its first along its main chain, `most` of them at most. */
   mainChain(joint: number, most: number): readonly number[] {
     const chain = [joint];
     for (let next = this.#chained[joint]!; next.length > 0 && chain.length < most; next = this.#chained[chain.at(-1)!]!)
@@ -112,7 +112,7 @@ export class JointTree {
     return chain;
   }
 
-  /** Whether three or more similar branches leave a joint, as fingers leave a hand. */
+  /** Returns whether three or more similar branches leave a joint, as fingers leave a hand. */
   fansOut(joint: number): boolean {
     const branches = this.children[joint]!.filter((child) => !this.auxiliary[child]);
     const lengths = branches.map((child) => this.segments[child]! + this.heights[child]!);

@@ -20,18 +20,18 @@ const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
   leg: ['upperLeg', 'lowerLeg', 'foot'],
 };
 
-/** Joints of a chain that are looked at: no limb has as many bones before its hand. */
+/** The largest number of joints of a chain that is searched for a limb. */
 const longestChain = 16;
-/** A limb has at least this share of the skeleton's longest chain. */
+/** The shortest limb as a share of the skeleton's longest chain. */
 const shortestLimb = 0.12;
-/** Pairs that are compared with one another. */
+/** The largest number of pairs that are compared. */
 const maxPairs = 24;
 const maxBranches = 60;
 
 /** A chain bends at a joint by less than this where the joint only divides a bone [rad]. */
 const minBend = 0.02;
 
-/** Whether a joint of a chain only divides a bone, as twist bones do: the chain is straight there. */
+/** Returns whether a joint of a chain only divides a bone, as twist bones do: the chain is straight there. */
 function isInLine(tree: JointTree, chain: readonly number[], at: number): boolean {
   const [before, here, after] = [chain[at - 1], chain[at]!, chain[at + 1]];
   if (before === undefined || after === undefined) return false;
@@ -42,7 +42,7 @@ function isInLine(tree: JointTree, chain: readonly number[], at: number): boolea
   return dot(near, far) > 0 && length(cross(near, far)) < minBend * length(near) * length(far);
 }
 
-/** The three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
+/** Returns the three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
 export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   const chainOfAll = tree.mainChain(first, longestChain);
   const inside = kind === 'arm' ? 'lowerArm' : 'lowerLeg';
@@ -88,7 +88,7 @@ export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb |
   return best;
 }
 
-/** A thigh and a shin by their names. Their foot hangs elsewhere, from a control. null: names do not show them. */
+/** Returns thigh and shin of a leg whose foot hangs from a control; null: their names do not show them. */
 function legWithoutFoot(tree: JointTree, chain: readonly number[]): Limb | null {
   const named = tree.vote(chain[0]!, 'upperLeg') > 0.7 && tree.vote(chain[1]!, 'lowerLeg') > 0.5;
   return named ? { chain, at: [0, 1, 1], shape: 0.8, names: 0.6 } : null;
@@ -108,7 +108,7 @@ export interface LimbPair {
   readonly score: number;
 }
 
-/** The length of a limb from its first to its last named joint, with what lies before. */
+/** Returns the length of a limb from its first to its last named joint. */
 export const limbLength = (tree: JointTree, { chain, at }: Limb): number =>
   chain.slice(at[0] + 1, at[2] + 1).reduce((sum, joint) => sum + tree.segments[joint]!, 0);
 
@@ -124,7 +124,7 @@ export function difference(tree: JointTree, a: readonly number[], b: readonly nu
   return total > 0 ? apart / total : 1;
 }
 
-/** The side that most names of a limb state, with how sure they are. */
+/** Returns the side that most names of a limb state; null: there is none. */
 export function sideByNames(tree: JointTree, { chain, at }: Limb): Side | null {
   const votes = chain.slice(0, at[2] + 1).map((joint) => tree.votes[joint]!.side);
   const [left, right] = [
@@ -134,7 +134,7 @@ export function sideByNames(tree: JointTree, { chain, at }: Limb): Side | null {
   return left === right ? null : left > right ? 'left' : 'right';
 }
 
-/** How well the names of a limb fit the other kind. */
+/** Returns how well the names of a limb fit the other kind. */
 function votesAgainst(tree: JointTree, { chain, at }: Limb, kind: LimbKind): number {
   const parts = limbParts[kind === 'arm' ? 'leg' : 'arm'];
   return parts.reduce((sum, part, i) => sum + tree.vote(chain[at[i]!]!, part), 0) / parts.length;

@@ -39,7 +39,7 @@ function branchOf(tree: JointTree, first: number): Branch {
   };
 }
 
-/** Chains that leave a hand; a palm bone from which several leave counts as part of the hand. */
+/** Returns the chains that leave a hand; a palm bone from which several leave counts as part of the hand. */
 function branchesOf(tree: JointTree, hand: number, depth = 0): readonly Branch[] {
   return tree.children[hand]!.flatMap((child) => {
     const { end } = tree.joints[child]!;
@@ -49,7 +49,7 @@ function branchesOf(tree: JointTree, hand: number, depth = 0): readonly Branch[]
   }).filter(({ joints }) => joints.length > 0);
 }
 
-/** Fingers by where they leave the hand: the thumb leaves it first, the others follow from its side. */
+/** Assigns fingers by where they leave the hand: the thumb leaves it first, the others follow from its side. */
 function byPlace(tree: JointTree, hand: number, branches: readonly Branch[]): readonly (readonly [Finger, Branch])[] {
   if (branches.length < 3) return [];
   const at = tree.position(hand);

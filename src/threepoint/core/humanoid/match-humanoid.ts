@@ -144,7 +144,7 @@ class Matcher {
     if (above[head] !== undefined) this.#take('head', above[head], 'head', 'ends the trunk upward');
   }
 
-  /** Whether the joint that the arms leave is a neck: by its name, or because it lies above the shoulders. */
+  /** Returns whether the joint that the arms leave is a neck: by its name, or because it lies above the shoulders. */
   #isNeck(arms: LimbPair, trunk: readonly number[]): boolean {
     const { tree } = this;
     if (tree.vote(arms.root, 'neck') > 0.5) return true;
@@ -156,8 +156,8 @@ class Matcher {
   }
 
   /**
-   * The place of the head in the chain above the arms; −1: there is none. `least`: the first place that may be a head
-   * where the chain is longer.
+   * Returns the place of the head in the chain above the arms; −1: there is none. `least`: the first place that may be
+   * a head where the chain is longer.
    */
   #headAt(above: readonly number[], least: number): number {
     const { tree } = this;
@@ -174,7 +174,7 @@ class Matcher {
     return head;
   }
 
-  /** The sides of legs and arms, in the order of their limbs. */
+  /** Returns the sides of legs and arms, in the order of their limbs. */
   #sides({ arms, legs, trunk }: Body): readonly [readonly Side[], readonly Side[]] {
     const { tree } = this;
     const pairs = [legs, arms];
@@ -209,7 +209,7 @@ class Matcher {
     return lerp(this.tree.position(chain[at[0]]!), this.tree.position(chain[at[2]]!), 0.5);
   }
 
-  /** The direction to the left of a skeleton that stands at rest; null: it does not stand. */
+  /** Returns the direction to the left of a skeleton that stands at rest; null: it does not stand. */
   #leftOf(trunk: readonly number[], arms: LimbPair, legs: LimbPair | null) {
     const { tree } = this;
     const up = subtract(tree.position(arms.root), tree.position(trunk[0]!));
@@ -268,7 +268,7 @@ class Matcher {
       this.#take(`${side}Toes`, toes, 'toes', 'follows the foot');
   }
 
-  /** The first joint that names a part of a side; −1: there is none. */
+  /** Returns the first joint that names a part of a side; −1: there is none. */
   #named(side: Side | null, part: Part): number {
     const { tree } = this;
     return tree.order.find((i) => tree.votes[i]!.side === side && tree.vote(i, part) > 0.5) ?? -1;
@@ -289,7 +289,7 @@ class Matcher {
     }
   }
 
-  /** Takes what names alone show of a skeleton that is no humanoid by its structure: a start for a map by hand. */
+  /** Matches bones by names alone, as a start for a map by hand; the structure shows no humanoid. */
   #takeNamesAlone(): void {
     const guess = (bone: BoneName, side: Side | null, part: Part) => {
       const joint = this.#named(side, part);

@@ -28,7 +28,7 @@ export type Part =
   | 'finger'
   | 'appendage';
 
-/** What the name of a joint suggests. */
+/** The side and parts that the name of a joint suggests. */
 export interface NameVotes {
   readonly side: Side | null;
   /** How strongly the name means a part, from 0 to 1. */
@@ -44,14 +44,14 @@ const sideWords: Readonly<Record<string, Side>> = {
   ...{ r: 'right', right: 'right', rgt: 'right', rt: 'right' },
 };
 
-/** Words that programs put before or after the names of all bones. */
+/** The words that programs put before or after the names of all bones. */
 const noise = new Set(
   'j b c f cc base def org mixamorig bip biped valve skeleton armature bone joint jnt jt rig character skel sk'.split(
     ' ',
   ),
 );
 
-/** Words of what humans lack or wear. */
+/** The words for appendages: what humans lack or wear. */
 const appendageWords = new Set(
   (
     'hair skirt cape coat cloth tail wing weapon breast boob bust ear pack backpack bag hat helmet sleeve ribbon dress ' +
@@ -70,7 +70,7 @@ const auxiliaryWords = new Set([
 
 type Votes = NameVotes['parts'];
 
-/** Patterns of names without side and number. The first that matches counts. */
+/** The patterns of names without side and number. The first that matches counts. */
 const patterns: readonly (readonly [RegExp, Votes])[] = [
   [/carpal|^inhand/, { metacarpal: 1 }],
   [/thumb/, { thumb: 1 }],
@@ -113,7 +113,7 @@ function splitSide(word: string): readonly string[] {
   return last ? [last[2]!, last[1]!] : [word];
 }
 
-/** Whether a glued word begins as the name of a part. */
+/** Returns whether a word without separators begins with the name of a part. */
 const known = (word: string): boolean => {
   const found = patterns.find(([pattern]) => pattern.test(word));
   return found !== undefined && word.search(new RegExp(found[0].source.replace(/^\^/, ''))) === 0;

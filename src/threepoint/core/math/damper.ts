@@ -21,16 +21,16 @@ export const dampVec3 = (
   target?: MutableVec3,
 ): MutableVec3 => lerp(current, goal, smoothingFactor(halfLifeSeconds, deltaSeconds), target);
 
-/** 0 at and below `start`, 1 at and above `end`, smooth between (zero slope at both ends). */
+/** Returns 0 at and below `start`, 1 at and above `end`, smooth between (zero slope at both ends). */
 export function smoothstep(start: number, end: number, value: number): number {
   const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
   return t * t * (3 - 2 * t);
 }
 
 /**
- * Trapezoidal easing: 0 at and below `start`, 1 at and above `end`. With ramp = `trapezoidalRamp`, the speed rises
- * evenly over the first ramp·duration, is constant, and falls evenly over the last ramp·duration; peak speed 1/(1−ramp)
- * of the mean, where smoothstep has 1.5.
+ * Returns trapezoidal easing: 0 at and below `start`, 1 at and above `end`. With ramp = `trapezoidalRamp`, the speed
+ * rises evenly over the first ramp·duration, is constant, and falls evenly over the last ramp·duration; peak speed
+ * 1/(1−ramp) of the mean, where smoothstep has 1.5.
  */
 export function trapezoidalEasing(start: number, end: number, value: number): number {
   const ramp = easing.trapezoidalRamp;

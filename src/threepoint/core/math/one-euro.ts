@@ -4,8 +4,8 @@ import { copyQuat, slerp } from './quat';
 import { copyVec3, distance, lerp, type MutableVec3, vec3 } from './vec3';
 
 /**
- * A low-pass whose cutoff rises with speed: steady at rest, without lag in motion (Casiez, Roussel and Vogel, “1 €
- * Filter”, CHI 2012).
+ * The tuning of a low-pass whose cutoff rises with speed: steady at rest, without lag in motion (Casiez, Roussel and
+ * Vogel, “1 € Filter”, CHI 2012).
  */
 export interface OneEuroTuning {
   /** Cutoff at rest, and of the low-pass on the speed [Hz]. */
@@ -14,7 +14,7 @@ export interface OneEuroTuning {
   readonly cutoffPerSpeed: number;
 }
 
-/** Half-life [s] of a first-order low-pass with this cutoff [Hz]. */
+/** Returns the half-life [s] of a first-order low-pass with this cutoff [Hz]. */
 export const halfLifeOfCutoff = (cutoff: number): number => Math.LN2 / (2 * Math.PI * cutoff);
 
 /** The filter's state for one pose. */
@@ -36,8 +36,8 @@ export const makeFilteredPose = <F extends Frame>(): FilteredPose<F> => ({
 });
 
 /**
- * Takes the next sample; a step of no time keeps the value of a known state. The position's speed opens the filter for
- * the orientation too, because hands and heads that turn also move.
+ * Filters the next sample; a step of no time keeps the value of a known state. The position's speed opens the filter
+ * for the orientation too, because hands and heads that turn also move.
  */
 export function filterPose<F extends Frame>(
   state: FilteredPose<F>,

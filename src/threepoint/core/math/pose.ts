@@ -76,10 +76,7 @@ export function copyPose<F extends Frame>(pose: Pose<F>, target: MutablePose<F> 
   return target;
 }
 
-export const makeTransform = <To extends Frame, From extends Frame>(): MutableTransform<To, From> => ({
-  position: vec3(0, 0, 0),
-  orientation: quat(0, 0, 0, 1),
-});
+export const makeTransform = <To extends Frame, From extends Frame>(): MutableTransform<To, From> => makePose();
 
 /** Returns a point's coordinates in To. */
 export function transformPoint<To extends Frame, From extends Frame>(

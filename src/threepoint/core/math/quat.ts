@@ -58,7 +58,7 @@ export const multiply = (a: Quat, b: Quat, target: MutableQuat = quat(0, 0, 0, 1
 export const conjugate = (q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   setQuat(target, -q.x, -q.y, -q.z, q.w);
 
-/** v rotated by q. */
+/** Returns v rotated by q. */
 export function rotate(q: Quat, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const tx = 2 * (q.y * v.z - q.z * v.y);
   const ty = 2 * (q.z * v.x - q.x * v.z);
@@ -71,7 +71,7 @@ export function rotate(q: Quat, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): M
   );
 }
 
-/** v rotated by the inverse of the unit quaternion q. */
+/** Returns v rotated by the inverse of the unit quaternion q. */
 export function rotateInverse(q: Quat, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const tx = 2 * (q.z * v.y - q.y * v.z);
   const ty = 2 * (q.x * v.z - q.z * v.x);
@@ -84,7 +84,7 @@ export function rotateInverse(q: Quat, v: Vec3, target: MutableVec3 = vec3(0, 0,
   );
 }
 
-/** q scaled to length 1; the identity where it has none. */
+/** Returns q scaled to length 1; the identity where it has no length. */
 export function normaliseQuat(q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const squares = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
   const l = squares > 1e-280 && squares < 1e280 ? Math.sqrt(squares) : Math.hypot(q.x, q.y, q.z, q.w);
@@ -157,10 +157,10 @@ function frameOf(main: Vec3, side: Vec3, target: MutableQuat): boolean {
   return true;
 }
 
-/** Two directions of a thing at rest, in its own frame, measured once. */
+/** Two directions of an object at rest, in its own frame, computed once. */
 export interface RestDirections {
   readonly main: Vec3;
-  /** From its own frame to the one that main and side span; null: they are parallel. */
+  /** The rotation from the object's frame to the one that main and side span; null: they are parallel. */
   readonly inverse: Quat | null;
 }
 
@@ -184,8 +184,8 @@ export const alignDirections = (
     : rotationBetween(main, toMain, target);
 
 /**
- * Along the shorter arc from a (t = 0) to b (t = 1), both unit; t beyond [0, 1] extrapolates. Half a turn apart: one of
- * the two arcs.
+ * Interpolates along the shorter arc from a (t = 0) to b (t = 1), both unit; t beyond [0, 1] extrapolates. Half a turn
+ * apart: one of the two arcs.
  */
 export function slerp(a: Quat, b: Quat, t: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
@@ -240,7 +240,7 @@ export function limitAngle(q: Quat, limit: number, target: MutableQuat = quat(0,
   return slerp(identity, q, limit / angleBetween(identity, q), target);
 }
 
-/** Angles [rad] about x, y, z of the intrinsic decomposition Ry·Rx·Rz. */
+/** Returns the angles [rad] about x, y, z of the intrinsic decomposition Ry·Rx·Rz. */
 export function toEulerYxz(q: Quat, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const m12 = 2 * (q.y * q.z - q.x * q.w);
   return setVec3(

@@ -49,7 +49,7 @@ export const subtract = (a: Vec3, b: Vec3, target: MutableVec3 = vec3(0, 0, 0)):
 export const scale = (a: Vec3, factor: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, a.x * factor, a.y * factor, a.z * factor);
 
-/** a + b·factor. */
+/** Returns a + b·factor. */
 export const addScaled = (a: Vec3, b: Vec3, factor: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, a.x + b.x * factor, a.y + b.y * factor, a.z + b.z * factor);
 
@@ -58,7 +58,7 @@ export const dot = (a: Vec3, b: Vec3): number => a.x * b.x + a.y * b.y + a.z * b
 export const cross = (a: Vec3, b: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 
-/** Math.hypot is several times slower: only where squares overflow or vanish. */
+/** Returns the length of a vector; the slower Math.hypot only where squares overflow or vanish. */
 function hypotenuse(x: number, y: number, z: number): number {
   const squares = x * x + y * y + z * z;
   if (squares > 1e-280 && squares < 1e280) return Math.sqrt(squares);
@@ -79,7 +79,10 @@ export function normalise(a: Vec3, fallback: Vec3 = up, target: MutableVec3 = ve
 export const reject = (a: Vec3, axis: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   addScaled(a, axis, -dot(a, axis), target);
 
-/** From a (t = 0) to b (t = 1) along the straight line; t beyond [0, 1] extrapolates. t = 1 may miss b by rounding. */
+/**
+ * Interpolates from a (t = 0) to b (t = 1) along the straight line; t beyond [0, 1] extrapolates. t = 1 may miss b by
+ * rounding.
+ */
 export const lerp = (a: Vec3, b: Vec3, t: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);
 

@@ -14,7 +14,7 @@ import {
   type Vec3,
   zero,
 } from '../math/vec3';
-import { createJointPoses, type FileMotion } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
 import { recordOf } from '../records';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
@@ -29,16 +29,16 @@ export interface StandingJoints {
   readonly toes: readonly [number, number];
 }
 
-/** A body at rest leans or slouches less than this [rad]: more is another pose. */
+/** The largest lean of a body at rest [rad]; a larger one is another pose. */
 const maxLean = 0.6;
 /** The cosine to the vertical above which a trunk stands. */
 const standing = 0.7;
-/** Frames that are looked at to find how a clip stands. */
+/** The largest number of frames that are sampled to find how a clip stands. */
 const maxSamples = 300;
 
 const axisNames = Object.keys(directions) as FileAxis[];
 
-/** The rotation to the floor frame of a file in which these axes point up and ahead. */
+/** Returns the rotation to the floor frame of a file in which these axes point up and ahead. */
 export const floorFromAxes = (above: Vec3, ahead: Vec3): Quat =>
   conjugate(fromAxes(cross(ahead, above), above, scale(ahead, -1)));
 
@@ -60,8 +60,8 @@ export interface BodyAxes {
 }
 
 /**
- * How the trunk of a body stands at rest; null: left and right lie on each other. `turned`: the body may face anywhere,
- * as in a frame of a motion.
+ * Returns the axes of a body from its trunk at rest; null: left and right lie on each other. `turned`: the body may
+ * face anywhere, as in a frame of a motion.
  */
 export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turned = false): BodyAxes | null {
   const above = normalise(subtract(rest[joints.neck]!, rest[joints.hips]!), zero);
@@ -85,8 +85,8 @@ export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turne
   return null;
 }
 
-/** The direction of the trunk. */
-export const trunkWay = (positions: readonly Vec3[], { hips, neck }: StandingJoints): Vec3 =>
+/** Returns the unit direction from hips to neck. */
+export const trunkDirection = (positions: readonly Vec3[], { hips, neck }: StandingJoints): Vec3 =>
   normalise(subtract(positions[neck]!, positions[hips]!), zero);
 
 /** Yields some frames of a clip, evenly. */
@@ -95,7 +95,7 @@ export function* sampledFrames(frameCount: number, most = maxSamples): Generator
   for (let frame = 0; frame < frameCount; frame += step) yield frame;
 }
 
-/** What a clip shows of its vertical, in floor axes of its rest pose. */
+/** The statistics of a clip that show its vertical, in floor axes of its rest pose. */
 interface Stance {
   /** The share of frames in which the trunk stands along an axis, feet below the hips. */
   readonly shares: Readonly<Record<FileAxis, number>>;
@@ -105,8 +105,8 @@ interface Stance {
   readonly lowest: Readonly<Record<FileAxis, number>>;
 }
 
-function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance {
-  const poses = createJointPoses(file.names.length);
+function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): Stance {
+  const poses = createSkeletonPose(file.names.length);
   const shares = recordOf(axisNames, () => 0);
   const lows = recordOf(axisNames, (): number[] => []);
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
@@ -135,21 +135,21 @@ function stanceOf(file: FileMotion, floor: Quat, joints: StandingJoints): Stance
 }
 
 /**
- * The axis, in floor axes of the rest pose, along which a clip stands where that is not up: its trunk lies in most
- * frames and would stand by this axis. null: up is up. A body that lies on the floor, whose feet are not on the other
- * one, lies.
+ * Returns the axis, in floor axes of the rest pose, along which a clip stands if that is not up: its trunk lies in most
+ * frames and would stand along this axis. null: up is correct. A body that lies on the floor, and whose feet would not
+ * be on the other floor, lies.
  */
-export function otherUp(file: FileMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
+export function otherUp(file: ImportedMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
   const { shares, lowest, upright } = stanceOf(file, floor, joints);
   const best = axisNames.reduce((a, b) => (shares[b] > shares[a] ? b : a));
-  // Who stands at times is a person who lies down.
+  // A person who also stands at times lies down in the other frames.
   if (best === '+y' || shares[best] <= 0.5 || upright > 0.05) return null;
   const liesOnFloor = Math.abs(lowest['+y']) < 0.4;
   const standsOnOther = Math.abs(lowest[best]) < 0.5;
   return liesOnFloor && !standsOnOther ? null : best;
 }
 
-/** The rotation by right angles that takes an axis to another one. */
+/** Returns the rotation by right angles that takes an axis to another one. */
 export function turnBetween(from: FileAxis, to: FileAxis): Quat {
   const [before, after] = [directions[from], directions[to]];
   const cosine = dot(before, after);
@@ -158,11 +158,11 @@ export function turnBetween(from: FileAxis, to: FileAxis): Quat {
   return fromAxisAngle(about, cosine < -0.5 ? Math.PI : Math.PI / 2);
 }
 
-/** Whether toes point back in most frames: left and right are exchanged. null: no toes show it. */
-export function facesBack(file: FileMotion, joints: StandingJoints): boolean | null {
+/** Returns whether toes point back in most frames: left and right are exchanged. null: no toes show it. */
+export function facesBack(file: ImportedMotion, joints: StandingJoints): boolean | null {
   const [leftHip, rightHip] = joints.upperLegs;
   if ([leftHip, rightHip, ...joints.feet, ...joints.toes].some((i) => i < 0)) return null;
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   let [back, clear] = [0, 0];
   for (const frame of sampledFrames(file.frameCount, 100)) {
     const { positions } = file.pose(frame, poses);
@@ -179,21 +179,21 @@ export function facesBack(file: FileMotion, joints: StandingJoints): boolean | n
   return clear === 0 ? null : back > 0.8 * clear;
 }
 
-/** The direction out of the body to a side, in a file's axes. */
+/** Returns the direction out of the body to a side, in a file's axes. */
 export const outward = (floor: Quat, side: 'left' | 'right'): Vec3 =>
   rotate(conjugate(floor), scale(right, side === 'left' ? -1 : 1));
 
-/** Down in a file's axes. */
+/** Returns the downward direction in a file's axes. */
 export const downward = (floor: Quat): Vec3 => rotate(conjugate(floor), down);
 
 /** The rotation to the floor frame of a file with +Y up whose people face +Z. */
-export const usualFloor = floorFromAxes(directions['+y'], directions['+z']);
+export const defaultFloor = floorFromAxes(directions['+y'], directions['+z']);
 
-/** The rotation from a file's axes to the floor where another axis of the rest's floor points up. */
+/** Returns the rotation from a file's axes to the floor where another axis of the rest's floor points up. */
 export const floorOfMotion = (floor: Quat, axis: FileAxis | null): Quat =>
-  axis === null ? floor : multiply(turnBetween(axis, '+y'), floor, quat(0, 0, 0, 1));
+  axis === null ? floor : multiply(turnBetween(axis, '+y'), floor);
 
-/** The name of the file's axis that an axis of the floor is nearest to. */
+/** Returns the name of the file's axis that is nearest to an axis of the floor. */
 export function axisIn(floor: Quat, axis: FileAxis): FileAxis {
   const way = rotate(conjugate(floor), directions[axis]);
   return axisNames.reduce((a, b) => (dot(directions[b], way) > dot(directions[a], way) ? b : a));

@@ -2,8 +2,8 @@ import { sides } from '../math/side';
 import { median } from '../math/statistics';
 import { cross, dot, length, lerp, normalise, subtract, up, type Vec3, zero } from '../math/vec3';
 import { sampledFrames } from './body-axes';
-import { type OurMotion, positionAt } from './our-joints';
 import type { TruthJoint } from './skeleton-map';
+import { positionAt, type TruthMotion } from './truth-motion';
 
 /** A pelvis is further than this [m] off the middle of the feet in no motion for long. */
 const furthestPelvis = 0.5;
@@ -13,14 +13,14 @@ const behindBack = 0.1;
 /** Methods that all err by more than this [cm] on average show a file that was read wrongly. */
 const maxError = 12;
 
-/** The doubt that the mean errors [cm] of all measured methods raise; null: they raise none. */
+/** Returns the doubt that the mean errors [cm] of all measured methods raise; null: they raise none. */
 export const doubtOfErrors = (means: readonly number[]): string | null =>
   means.length > 0 && means.every((mean) => mean > maxError)
     ? `this cannot be right: the error of every method is over ${maxError} cm; look at the truth before the figures`
     : null;
 
-/** What cannot be right of a motion, a sentence each: figures that are measured on it are worth little. */
-export function doubtsOf(motion: OurMotion): readonly string[] {
+/** Returns the implausible properties of a motion, a sentence each: figures that are measured on it are unreliable. */
+export function doubtsOf(motion: TruthMotion): readonly string[] {
   const { rest, frameCount } = motion;
   const doubts: string[] = [];
   const pelvis: number[] = [];

@@ -1,17 +1,17 @@
-import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { conjugate, fromAxisAngle, multiply, type Quat, rotate } from '../math/quat';
 import { subtract, up, type Vec3 } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
 import { type BvhJoint, type BvhMotion, poseBvh } from '../motion/read-bvh';
 import { floorFromAxes } from './body-axes';
 import { directions } from './read-skeleton-map';
 import type { SkeletonMap } from './skeleton-map';
 
-/** What takes a file's axes to those of the floor (+Y up, people at rest face −Z). */
+/** Returns the rotation from a file's axes to those of the floor (+Y up, people at rest face −Z). */
 export const floorFromFile = ({ up: upward = '+y', forward = '+z' }: SkeletonMap): Quat =>
   floorFromAxes(directions[upward], directions[forward]);
 
 /** Returns the motion relative to another rest pose. */
-export function countedFrom(file: FileMotion, { positions, rotations }: JointPoses): FileMotion {
+export function withRestPose(file: ImportedMotion, { positions, rotations }: SkeletonPose): ImportedMotion {
   const backs = rotations.map((rotation) => conjugate(rotation));
   return {
     ...file,
@@ -25,19 +25,18 @@ export function countedFrom(file: FileMotion, { positions, rotations }: JointPos
 }
 
 /**
- * A person in T-pose, taken from a frame or from angles, stands turned as they stood: the same motion counted from one
- * who faces forward.
+ * Returns the motion relative to a rest pose that faces forward: a T-pose from a frame or from angles may be turned.
  */
-function facingForward(file: FileMotion, map: SkeletonMap): FileMotion {
+function facingForward(file: ImportedMotion, map: SkeletonMap): ImportedMotion {
   const floor = floorFromFile(map);
   const restOf = (joint: 'leftUpperArm' | 'rightUpperArm'): Vec3 => file.rest[file.names.indexOf(map.joints[joint]!)]!;
   const across = rotate(floor, subtract(restOf('rightUpperArm'), restOf('leftUpperArm')));
   const ours = fromAxisAngle(up, -Math.atan2(-across.z, across.x));
-  const turn = multiply(conjugate(floor), multiply(ours, floor, quat(0, 0, 0, 1)));
-  const turned = createJointPoses(file.names.length);
+  const turn = multiply(conjugate(floor), multiply(ours, floor));
+  const turned = createSkeletonPose(file.names.length);
   for (const [i, at] of file.rest.entries()) rotate(turn, at, turned.positions[i]!);
   for (const rotation of turned.rotations) Object.assign(rotation, turn);
-  return countedFrom(file, turned);
+  return withRestPose(file, turned);
 }
 
 /**
@@ -45,11 +44,11 @@ function facingForward(file: FileMotion, map: SkeletonMap): FileMotion {
  * sentence where the T-pose does not match the file.
  */
 export function fromMappedRest(
-  file: FileMotion,
+  file: ImportedMotion,
   map: SkeletonMap,
   bvh: { readonly motion: BvhMotion; readonly joints: readonly BvhJoint[] } | null,
-  restFile: FileMotion = file,
-): FileMotion {
+  restFile: ImportedMotion = file,
+): ImportedMotion {
   const { restFrame, restPose } = map;
   const demand = (joints: Readonly<Record<string, string>>, what: string) => {
     for (const [ours, theirs] of Object.entries(joints))
@@ -60,17 +59,17 @@ export function fromMappedRest(
   demand(map.rotations ?? {}, 'the rotation of ');
   if (restPose) {
     if (!bvh) throw new Error('restPose is for BVH files; here restFrame can be given');
-    return facingForward(countedFrom(file, poseOfAngles(bvh.motion, bvh.joints, restPose)), map);
+    return facingForward(withRestPose(file, poseOfAngles(bvh.motion, bvh.joints, restPose)), map);
   }
   if (restFrame === undefined) return file;
   if (restFrame > restFile.frameCount)
     throw new Error(`restFrame ${restFrame}, but there are ${restFile.frameCount} frames`);
-  const there = restFile.pose(restFrame - 1, createJointPoses(restFile.names.length));
+  const there = restFile.pose(restFrame - 1, createSkeletonPose(restFile.names.length));
   const order = file.names.map((name) => restFile.names.indexOf(name));
   const missing = order.indexOf(-1);
   if (missing >= 0) throw new Error(`no joint “${file.names[missing]}”, so its restFrame is of another skeleton`);
   const pose = { positions: order.map((i) => there.positions[i]!), rotations: order.map((i) => there.rotations[i]!) };
-  return facingForward(countedFrom(file, pose), map);
+  return facingForward(withRestPose(file, pose), map);
 }
 
 /** Returns the joints at these angles [degrees]: the root at the origin, others at their offsets, missing angles 0. */
@@ -78,7 +77,7 @@ function poseOfAngles(
   motion: BvhMotion,
   joints: readonly BvhJoint[],
   angles: NonNullable<SkeletonMap['restPose']>,
-): JointPoses {
+): SkeletonPose {
   for (const name of Object.keys(angles))
     if (!joints.some((joint) => joint.name === name))
       throw new Error(`no joint “${name}”, which the map's restPose turns`);
@@ -95,5 +94,5 @@ function poseOfAngles(
     });
   });
   const pose = { ...motion, joints, frameCount: 1, values: Float64Array.from(values) };
-  return poseBvh(pose, 0, createJointPoses(joints.length));
+  return poseBvh(pose, 0, createSkeletonPose(joints.length));
 }

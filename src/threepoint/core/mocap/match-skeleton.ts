@@ -3,11 +3,12 @@ import { type BoneMatch, type HumanoidMatch, humanoidComplaint, matchHumanoid } 
 import { type FileBones, fileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
 import { type Side, sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
 import {
   axesOfTrunk,
   axisIn,
   type BodyAxes,
+  defaultFloor,
   downward,
   facesBack,
   floorOfMotion,
@@ -15,24 +16,23 @@ import {
   outward,
   type StandingJoints,
   turnBetween,
-  usualFloor,
 } from './body-axes';
 import { handsOfCmuconvert } from './cmuconvert';
-import { countedFrom } from './mapped-motion';
+import { withRestPose } from './mapped-motion';
 import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from './skeleton-map';
 import { type Limbs, straightHands, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
-/** A joint above this share of the trunk is a chest, below it a spine. */
+/** The share of the trunk above which its only joint is a chest, and below which it is a spine. */
 const chestShare = 0.42;
 
-/** A neck lies this far up from between the shoulders to the head joint. */
+/** The height of a neck as a share of the way from between the shoulders to the head joint. */
 const neckShare = 0.25;
 
 /** A motion with the skeleton that was found in it. */
 export interface MatchedMotion {
   /** The motion relative to a rest that is a T-pose, or arms between level and hanging. */
-  readonly file: FileMotion;
+  readonly file: ImportedMotion;
   readonly skeleton: MappedSkeleton;
   /** The joints of the file, and which bones they are. */
   readonly bones: FileBones;
@@ -42,14 +42,14 @@ export interface MatchedMotion {
 
 type Joints = Partial<Record<TruthJoint, number>>;
 
-type Match = Pick<HumanoidMatch, 'map'>;
+type Match = HumanoidMatch['map'];
 
-/** Joints by the match, VRM's bones being those of the truth; `between` holds the joints that the file lacks. */
-function jointsOf(match: Match, file: FileMotion) {
+/** Returns the joints of a match by their VRM names; `between`: the joints that the file lacks. */
+function jointsOf(match: Match, file: ImportedMotion) {
   const notes: string[] = [];
   const joints: Joints = {};
   for (const joint of truthJoints) {
-    const found = match.map[joint satisfies BoneName];
+    const found = match[joint satisfies BoneName];
     if (found) joints[joint] = found.joint;
   }
   const between: MappedSkeleton['between'] = {};
@@ -64,7 +64,7 @@ function jointsOf(match: Match, file: FileMotion) {
     });
     notes.push('it has no neck; one between shoulders and head is assumed');
   }
-  if (joints.chest === undefined && !match.map.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
+  if (joints.chest === undefined && !match.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
     joints.chest = joints.spine!;
     delete joints.spine;
     notes.push('it has one joint between hips and neck; it was taken as the chest');
@@ -77,7 +77,7 @@ function jointsOf(match: Match, file: FileMotion) {
   return { joints, between, notes };
 }
 
-/** How far up the trunk the spine's only joint lies. */
+/** Returns the height of the spine's only joint as a share of the trunk. */
 function shareOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperArm }: Joints): number {
   const [low, at, top] = [hips, spine, neck ?? leftUpperArm].map((joint) => rest[joint!]!) as [Vec3, Vec3, Vec3];
   const trunk = subtract(top, low);
@@ -91,7 +91,7 @@ function standingJoints(joints: Joints, match: Match): StandingJoints {
   ];
   return {
     hips: joints.hips!,
-    neck: joints.neck ?? match.map.head!.joint,
+    neck: joints.neck ?? match.head!.joint,
     ...{ upperArms: pair('UpperArm'), upperLegs: pair('UpperLeg'), feet: pair('Foot'), toes: pair('Toes') },
   };
 }
@@ -101,14 +101,14 @@ function limbsOf(joints: Joints, match: Match): Limbs {
   const each = (limb: (side: Side) => readonly number[]) => ({ left: limb('left'), right: limb('right') });
   return {
     arms: each((side) => [
-      match.map[`${side}Shoulder`]?.joint ?? -1,
+      match[`${side}Shoulder`]?.joint ?? -1,
       ...(['UpperArm', 'LowerArm', 'Hand'] as const).map((part) => at(`${side}${part}`)),
     ]),
     legs: each((side) => (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => at(`${side}${part}`))),
   };
 }
 
-/** Whether arms at rest are straight and between level and hanging, and legs point down. */
+/** Returns whether arms at rest are straight and between level and hanging, and legs point down. */
 function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: BodyAxes): boolean {
   const down = downward(turn);
   const way = (from: number, to: number): Vec3 => normalise(subtract(rest[to]!, rest[from]!), zero);
@@ -123,14 +123,14 @@ function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: B
 }
 
 /** Returns the match with left and right exchanged. */
-function exchanged({ map }: Match): Match {
+function exchanged(match: Match): Match {
   const other = (bone: string): string => bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
-  return { map: Object.fromEntries(Object.entries(map).map(([bone, found]) => [other(bone), found])) };
+  return Object.fromEntries(Object.entries(match).map(([bone, found]) => [other(bone), found]));
 }
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
-function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): JointPoses | null {
-  const pose = file.pose(0, createJointPoses(file.names.length));
+function firstFrame(file: ImportedMotion, joints: StandingJoints, limbs: Limbs): SkeletonPose | null {
+  const pose = file.pose(0, createSkeletonPose(file.names.length));
   const axes = axesOfTrunk(pose.positions, joints, true);
   if (!axes || !restsAsPerson(pose.positions, limbs, axes)) return null;
   const level = sides.every((side) => {
@@ -148,7 +148,7 @@ function firstFrame(file: FileMotion, joints: StandingJoints, limbs: Limbs): Joi
  * user's map of its bones, which decides which joint is which. Throws UnknownBonesError with what was found and what is
  * missing where there is no map.
  */
-export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
+export function matchSkeleton(file: ImportedMotion, map?: BoneMap): MatchedMotion {
   const { match, notes } = map ? { match: mappedJoints(file, map), notes: [] } : matchSides(file);
   const found = jointsOf(match, file);
   const { joints } = found;
@@ -157,10 +157,10 @@ export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
   const upright = restAsMoved(file, standing);
   const rested = restOf(upright.file, standing, limbs);
   const hands = straightHands(rested.file, limbs.arms);
-  const based = hands ? countedFrom(rested.file, hands.pose) : rested.file;
+  const based = hands ? withRestPose(rested.file, hands.pose) : rested.file;
   notes.push(...found.notes, ...upright.notes, ...rested.notes, ...(hands?.notes ?? []));
   const { turn } = rested.axes;
-  const floor = rested.stands ? turn : usualFloor;
+  const floor = rested.stands ? turn : defaultFloor;
   const up = otherUp(based, floor, standing);
   if (up)
     notes.push(
@@ -169,7 +169,7 @@ export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
   return {
     file: based,
     notes,
-    bones: fileBones(jointsForPicture(file), match.map),
+    bones: fileBones(jointsToDraw(file), match),
     skeleton: {
       joints: Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at]!])),
       columns: joints,
@@ -182,13 +182,13 @@ export function matchSkeleton(file: FileMotion, map?: BoneMap): MatchedMotion {
 }
 
 /** Returns the joints of a file at these positions. */
-const jointsAt = ({ names, parents }: FileMotion, positions: readonly Vec3[]): FileBones['joints'] =>
+const jointsAt = ({ names, parents }: ImportedMotion, positions: readonly Vec3[]): FileBones['joints'] =>
   positions.map((position, i) => ({
     ...{ name: names[i]!, parent: parents[i]!, position },
     ...(names[i]!.endsWith(':end') && { end: true }),
   }));
 
-/** The second extent of positions as a share of the greatest: a folded skeleton has little of it. */
+/** Returns the second extent of positions as a share of the greatest, which is small for a folded skeleton. */
 function spreadOf(positions: readonly Vec3[]): number {
   const extents = (['x', 'y', 'z'] as const).map((axis) => {
     const values = positions.map((position) => position[axis]);
@@ -199,13 +199,13 @@ function spreadOf(positions: readonly Vec3[]): number {
 }
 
 /** Returns the joints for a picture: at rest, or in the first frame where they lie further apart there. */
-export function jointsForPicture(file: FileMotion): FileBones['joints'] {
-  const { positions } = file.pose(0, createJointPoses(file.names.length));
+export function jointsToDraw(file: ImportedMotion): FileBones['joints'] {
+  const { positions } = file.pose(0, createSkeletonPose(file.names.length));
   return jointsAt(file, spreadOf(positions) > spreadOf(file.rest) ? positions : file.rest);
 }
 
 /** Returns the joints that a map names. Throws a sentence where one is missing. */
-function mappedJoints({ names }: FileMotion, map: BoneMap): Match {
+function mappedJoints({ names }: ImportedMotion, map: BoneMap): Match {
   const missing = neededBones.filter((bone) => map[bone] === undefined);
   if (missing.length > 0) throw new Error(`the map of its bones has no ${missing.join(', no ')}`);
   const matches = Object.entries(map).map(([bone, name]): readonly [string, BoneMatch] => {
@@ -213,23 +213,23 @@ function mappedJoints({ names }: FileMotion, map: BoneMap): Match {
     if (joint < 0) throw new Error(`no joint “${name}”, which the map of its bones names as ${bone}`);
     return [bone, { joint, confidence: 1, reason: 'the map names it' }];
   });
-  return { map: Object.fromEntries(matches) };
+  return Object.fromEntries(matches);
 }
 
 /** Matches joints, left and right by where the toes point. Throws UnknownBonesError where they do not match. */
-function matchSides(file: FileMotion): { readonly match: Match; readonly notes: string[] } {
+function matchSides(file: ImportedMotion): { readonly match: Match; readonly notes: string[] } {
   const found = matchHumanoid(jointsAt(file, file.rest));
   const complaint = humanoidComplaint(found);
   if (complaint)
     throw new UnknownBonesError(
       `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
-      fileBones(jointsForPicture(file), found.map),
+      fileBones(jointsToDraw(file), found.map),
     );
   const hands = Object.entries(handsOfCmuconvert(file.names)).map(([bone, name]): readonly [string, BoneMatch] => [
     bone,
     { joint: file.names.indexOf(name), confidence: 1, reason: 'cmuconvert calls it so' },
   ]);
-  const match = { map: { ...found.map, ...Object.fromEntries(hands) } };
+  const match = { ...found.map, ...Object.fromEntries(hands) };
   if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes: [...found.notes] };
   const note = 'the names of left and right are exchanged: the toes point back; the motion was followed';
   return { match: exchanged(match), notes: [...found.notes, note] };
@@ -239,7 +239,7 @@ function matchSides(file: FileMotion): { readonly match: Match; readonly notes: 
  * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone.
  * The root then keeps the height of the hips along another axis than that along which the rest stands.
  */
-function restAsMoved(file: FileMotion, joints: StandingJoints) {
+function restAsMoved(file: ImportedMotion, joints: StandingJoints) {
   const axes = axesOfTrunk(file.rest, joints)?.axes;
   const above = axes && axisOfRoot(file, joints, axes.above);
   if (!axes || !above) return { file, notes: [] };
@@ -248,7 +248,7 @@ function restAsMoved(file: FileMotion, joints: StandingJoints) {
 }
 
 /** Returns the motion relative to a rest in which a person stands. */
-function restOf(file: FileMotion, joints: StandingJoints, limbs: Limbs) {
+function restOf(file: ImportedMotion, joints: StandingJoints, limbs: Limbs) {
   const axes = axesOfTrunk(file.rest, joints);
   const notes: string[] = [];
   if (axes && restsAsPerson(file.rest, limbs, axes)) {
@@ -258,12 +258,12 @@ function restOf(file: FileMotion, joints: StandingJoints, limbs: Limbs) {
   }
   const first = firstFrame(file, joints, limbs);
   if (first) {
-    const based = countedFrom(file, first);
+    const based = withRestPose(file, first);
     notes.push('its bones at rest are no T-pose; the T-pose of its first frame was taken');
     return { file: based, axes: axesOfTrunk(based.rest, joints, true)!, notes, stands: false };
   }
   if (!axes)
     throw new Error('the rest pose is no T-pose: left and right lie on each other. Name a “restFrame” in a map');
-  const built = straightRest(file, file.parents, limbs, axes.turn);
-  return { file: countedFrom(file, built.pose), axes, notes: built.notes, stands: false };
+  const built = straightRest(file, limbs, axes.turn);
+  return { file: withRestPose(file, built.pose), axes, notes: built.notes, stands: false };
 }

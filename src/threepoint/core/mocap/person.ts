@@ -5,9 +5,9 @@ import { median, quantile } from '../math/statistics';
 import { forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import { eyesFromHeadJoint } from './mocap-rules.json';
-import { type OurMotion, positionAt, rotationAt } from './our-joints';
-import { armSpanAtRest, eyeHeightAtRest } from './rest-pose';
+import { armSpanAtRest, eyeHeightAtRest } from './rest-joints';
 import type { TruthJoint } from './skeleton-map';
+import { positionAt, rotationAt, type TruthMotion } from './truth-motion';
 
 /** Frames of a motion, from one to before another. */
 export interface Piece {
@@ -15,30 +15,33 @@ export interface Piece {
   readonly to: number;
 }
 
-/** A trunk that deviates less from upright (as a cosine) than this is. */
+/** The smallest cosine between the trunk and the vertical of an upright person. */
 const upright = 0.94;
 /**
- * A foot's lowest joint lies so high above the floor [m], and may lie so far off before the floor is taken to lie
- * elsewhere.
+ * The height of a foot's lowest joint above the floor [m], and its largest deviation before another floor height is
+ * assumed.
  */
 const footHeight = 0.025;
 const floorTolerance = 0.04;
 
-/** Heights [m] of a joint over pieces. */
-function* heightsOf(motion: OurMotion, pieces: readonly Piece[], joint: TruthJoint): Generator<number> {
+/** Yields the heights [m] of a joint over pieces. */
+function* heightsOf(motion: TruthMotion, pieces: readonly Piece[], joint: TruthJoint): Generator<number> {
   for (const { from, to } of pieces)
     for (let frame = from; frame < to; frame++) yield positionAt(motion, frame, joint).y;
 }
 
-/** What a calibration would find of the person in a motion. */
-export function measuresOf(motion: OurMotion, pieces: readonly Piece[]): Calibration {
+/** Returns the calibration of the person in a motion. */
+export function measuresOf(motion: TruthMotion, pieces: readonly Piece[]): Calibration {
   const { rest } = motion;
   const eyesInMotion = () => quantile([...heightsOf(motion, pieces, 'head')], 0.9) + eyesFromHeadJoint[1]!;
   return { eyeHeight: eyeHeightAtRest(rest) ?? eyesInMotion(), armSpan: armSpanAtRest(rest) };
 }
 
-/** The head's rotation when this person looks ahead: its median pitch and roll over frames with an upright trunk. */
-export function neutralHead(motion: OurMotion, pieces: readonly Piece[]): Quat {
+/**
+ * Returns the head's rotation when this person looks ahead: its median pitch and roll over frames with an upright
+ * trunk.
+ */
+export function neutralHead(motion: TruthMotion, pieces: readonly Piece[]): Quat {
   const pitches: number[] = [];
   const rolls: number[] = [];
   const head = quat(0, 0, 0, 1);
@@ -59,10 +62,10 @@ export function neutralHead(motion: OurMotion, pieces: readonly Piece[]): Quat {
 }
 
 /**
- * How high [m] the floor lies that the lowest joint of the feet usually stands on; 0 where there are no feet or it lies
- * where it should.
+ * Returns the height [m] of the floor on which the lowest joint of the feet usually stands; 0 without feet, or within
+ * the tolerance.
  */
-export function floorHeight(motion: OurMotion, pieces: readonly Piece[]): number {
+export function floorHeight(motion: TruthMotion, pieces: readonly Piece[]): number {
   const { rest } = motion;
   const feet = sides.flatMap((side) => [`${side}Foot`, `${side}Toes`] as const).filter((joint) => rest.has(joint));
   if (feet.length === 0) return 0;

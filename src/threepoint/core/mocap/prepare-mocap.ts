@@ -3,27 +3,27 @@ import { reasonOf } from '../errors/reasons';
 import type { BoneMap } from '../humanoid/bones';
 import { type FileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
 import { isObject } from '../json';
-import type { FileMotion } from '../motion/file-motion';
+import type { ImportedMotion } from '../motion/imported-motion';
 import { readAmc } from '../motion/read-amc';
 import { readAsf } from '../motion/read-asf';
-import { bvhFileMotion, readBvh } from '../motion/read-bvh';
+import { importedBvhMotion, readBvh } from '../motion/read-bvh';
 import { readGlbMotion } from '../motion/read-glb-motion';
 import { readVrma } from '../motion/read-vrma';
 import { finishWork, scaleProgress } from '../motion/work';
-import { putBackLostBones } from './cmuconvert';
+import { restoreLostBones } from './cmuconvert';
 import { doubtsOf } from './doubts';
-import { cutAtLeaps, evenClip } from './even-clip';
 import { floorFromFile, fromMappedRest } from './mapped-motion';
-import { jointsForPicture, type MatchedMotion, matchSkeleton } from './match-skeleton';
+import { jointsToDraw, type MatchedMotion, matchSkeleton } from './match-skeleton';
 import { cmu, rateHz } from './mocap-rules.json';
-import { type OurMotion, toOurJoints, unitOf } from './our-joints';
 import { floorHeight, measuresOf, neutralHead } from './person';
 import { readSkeletonMap } from './read-skeleton-map';
+import { resampleClip, splitAtJumps } from './resampled-clip';
 import { simulateTrackers } from './simulate-trackers';
 import { acclaimMap, mappedSkeleton, type SkeletonMap } from './skeleton-map';
+import { type TruthMotion, toTruthMotion, unitOf } from './truth-motion';
 
-/** The text of a file that belongs to another, with its name. */
-interface Beside {
+/** The text of a further file that a motion file needs, with its name. */
+interface NamedText {
   readonly name: string;
   readonly text: string;
 }
@@ -32,24 +32,24 @@ interface Beside {
 export type MocapSource = {
   readonly name: string;
   /** The map of a skeleton that is unknown here. */
-  readonly map?: Beside;
+  readonly map?: NamedText;
   /** The user's map of the file's bones, for a file without the map above. */
   readonly bones?: BoneMap;
   /** The BVH or AMC file that the map's `restFrame` is of, where it is another. */
-  readonly rest?: Beside;
-  /** Frames per second, of a file that does not say its own. */
+  readonly rest?: NamedText;
+  /** The frame rate [Hz] of a file that does not state its own. */
   readonly rateHz?: number;
 } & (
   | { readonly format: 'bvh'; readonly text: string }
   | {
       readonly format: 'amc';
       readonly text: string;
-      readonly skeleton: Beside;
+      readonly skeleton: NamedText;
     }
   | { readonly format: 'gltf'; readonly description: unknown; readonly binary: Uint8Array }
 );
 
-/** A person's motion as a headset and two hands saw it, with the truth beside it; 60 frames a second. */
+/** A person's motion as tracked by a headset and two hands, with the ground truth; 60 frames a second. */
 export interface MocapClip {
   readonly name: string;
   readonly calibration: Calibration;
@@ -60,22 +60,25 @@ export interface MocapClip {
   readonly truth: Float32Array<ArrayBuffer>;
 }
 
-/** Frames per second of the files that are read: fewer are pictures of poses. */
+/** The range of frame rates [Hz] that are read; a lower one is a list of poses. */
 const lowestRateHz = 5;
 const highestRateHz = 5000;
 
-/** Frames per second of every clip. */
+/** The frame rate [Hz] of every clip. */
 export const mocapRateHz = rateHz;
 
-/** The clips of a file, and what was put right in it, a sentence each. */
+/** The clips of a file, with notes on what was corrected or assumed, a sentence each. */
 export interface PreparedMocap {
   readonly clips: readonly MocapClip[];
   readonly notes: readonly string[];
-  /** What cannot be right, a sentence each. */
+  /** The implausible properties of the motion, a sentence each. */
   readonly doubts: readonly string[];
   /** The joints of the file, and which bones they are. */
   readonly bones: FileBones;
 }
+
+/** A file's motion before it is cut into clips. */
+type ReadMocap = { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>;
 
 /** Returns the fault as a sentence that begins with the name of its file. */
 function faultIn(name: string, error: unknown): Error {
@@ -85,8 +88,8 @@ function faultIn(name: string, error: unknown): Error {
     : new Error(message, { cause: error });
 }
 
-/** What is read of a file that another needs; a fault in it begins with its own name. */
-function readBeside<Result>({ name, text }: Beside, read: (text: string, name: string) => Result): Result {
+/** Reads a further file; a fault in it begins with its own name. */
+function readNamedText<Result>({ name, text }: NamedText, read: (text: string, name: string) => Result): Result {
   try {
     return read(text, name);
   } catch (error) {
@@ -94,17 +97,17 @@ function readBeside<Result>({ name, text }: Beside, read: (text: string, name: s
   }
 }
 
-/** Reads a BVH file, with its lost bones put back. */
+/** Reads a BVH file, with its lost bones restored. */
 function* readBvhFile(text: string) {
   const motion = yield* readBvh(text);
-  const { joints, notes } = putBackLostBones(motion.joints);
-  return { motion, joints, file: bvhFileMotion(motion, joints, [...motion.notes, ...notes]) };
+  const { joints, notes } = restoreLostBones(motion.joints);
+  return { motion, joints, file: importedBvhMotion(motion, joints, [...motion.notes, ...notes]) };
 }
 
-const readAmcFile = (text: string, skeleton: Beside): Generator<number, FileMotion> =>
-  readAmc(text, readBeside(skeleton, readAsf), skeleton.name);
+const readAmcFile = (text: string, skeleton: NamedText): Generator<number, ImportedMotion> =>
+  readAmc(text, readNamedText(skeleton, readAsf), skeleton.name);
 
-/** Reads a file and finds its skeleton: by the map that was given, by the format, or by what it looks like. */
+/** Reads a file and finds its skeleton: by the given map, by the format, or by matching. */
 function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, MatchedMotion> {
   const bvh = source.format === 'bvh' ? yield* readBvhFile(source.text) : null;
   const file = bvh?.file ?? (yield* readOther(source));
@@ -118,36 +121,36 @@ function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator
     );
   const rest =
     source.rest &&
-    readBeside(source.rest, (text) =>
+    readNamedText(source.rest, (text) =>
       source.format === 'amc' ? finishWork(readAmcFile(text, source.skeleton)) : finishWork(readBvhFile(text)).file,
     );
   return withMap(fromMappedRest(file, map, bvh, map.restFile === undefined ? undefined : rest), map);
 }
 
-function* readOther(source: MocapSource): Generator<number, FileMotion> {
+function* readOther(source: MocapSource): Generator<number, ImportedMotion> {
   if (source.format === 'gltf') return readGltf(source.description, source.binary);
   if (source.format === 'amc') return yield* readAmcFile(source.text, source.skeleton);
   throw new Error('no file of motion');
 }
 
 /** Reads a VRM Animation, which names its bones, or the clip of another file. */
-function readGltf(description: unknown, binary: Uint8Array): FileMotion {
+function readGltf(description: unknown, binary: Uint8Array): ImportedMotion {
   if (!isObject(description)) throw new Error('its description is no object');
   const { extensions } = description;
   const isVrma = isObject(extensions) && extensions.VRMC_vrm_animation !== undefined;
   return isVrma ? readVrma(description, binary) : readGlbMotion(description, binary);
 }
 
-const withMap = (file: FileMotion, map: SkeletonMap): MatchedMotion => ({
+const withMap = (file: ImportedMotion, map: SkeletonMap): MatchedMotion => ({
   file,
   skeleton: mappedSkeleton(file.names, map, floorFromFile(map)),
-  bones: { joints: jointsForPicture(file), matched: map.joints, confidence: {} },
+  bones: { joints: jointsToDraw(file), matched: map.joints, confidence: {} },
   notes: [],
 });
 
 const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
 
-/** The rate [Hz] of a file that does not say it: known of the CMU database by the file's name. */
+/** Returns the rate [Hz] of a file that does not state it: that of the CMU database, by the file's name. */
 function rateOf(name: string): number {
   const found = /^0*(\d+)_0*\d+$/.exec(stemOf(name));
   if (!found)
@@ -167,11 +170,9 @@ function personOf(name: string): string {
  * Reads a file's motion in our joints. Yields the share [0, 1] that is done. `notes`: what was put right or assumed, a
  * sentence each. Throws a sentence that begins with the file's name.
  */
-export function* readOurMotion(
-  source: MocapSource,
-): Generator<number, { readonly motion: OurMotion } & Omit<PreparedMocap, 'clips'>> {
+export function* readTruthMotion(source: MocapSource): Generator<number, ReadMocap> {
   try {
-    const map = source.map && readBeside(source.map, readSkeletonMap);
+    const map = source.map && readNamedText(source.map, readSkeletonMap);
     const { file, skeleton, bones, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
     const rate = file.rateHz ?? map?.frameRate ?? source.rateHz ?? rateOf(source.name);
     if (!(rate >= lowestRateHz && rate <= highestRateHz))
@@ -179,7 +180,7 @@ export function* readOurMotion(
         `it has ${Number(rate.toPrecision(3))} frames a second; motion of ${lowestRateHz} to ${highestRateHz} is read`,
       );
     const unit = unitOf(file, skeleton);
-    const motion = yield* scaleProgress(toOurJoints(file, rate, skeleton, unit.metres), 0.75, 1);
+    const motion = yield* scaleProgress(toTruthMotion(file, rate, skeleton, unit.metres), 0.75, 1);
     const said = [...file.notes, ...notes, ...(unit.note ? [unit.note] : [])];
     return { motion, bones, notes: said, doubts: doubtsOf(motion) };
   } catch (error) {
@@ -193,7 +194,7 @@ export function* readOurMotion(
  * begins with the file's name.
  */
 export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
-  const read = yield* scaleProgress(readOurMotion(source), 0, 0.8);
+  const read = yield* scaleProgress(readTruthMotion(source), 0, 0.8);
   try {
     return yield* scaleProgress(clipsOf(source.name, read), 0.8, 1);
   } catch (error) {
@@ -201,11 +202,8 @@ export function* prepareMocap(source: MocapSource): Generator<number, PreparedMo
   }
 }
 
-function* clipsOf(
-  name: string,
-  { motion, notes, doubts, bones }: { readonly motion: OurMotion } & Omit<PreparedMocap, 'clips'>,
-): Generator<number, PreparedMocap> {
-  const { cuts, pieces } = cutAtLeaps(motion);
+function* clipsOf(name: string, { motion, notes, doubts, bones }: ReadMocap): Generator<number, PreparedMocap> {
+  const { cuts, pieces } = splitAtJumps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);
   const complaint = calibrationProblem(calibration);
@@ -216,7 +214,7 @@ function* clipsOf(
   for (const [i, piece] of pieces.entries()) {
     yield i / pieces.length;
     const clip = pieces.length === 1 ? stemOf(name) : `${stemOf(name)}#${i + 1}`;
-    const even = evenClip(motion, piece, floor, neutral);
+    const even = resampleClip(motion, piece, floor, neutral);
     const tracked = simulateTrackers(even, personOf(name), clip);
     clips.push({ name: clip, calibration, frameCount: even.frameCount, tracked, truth: even.positions });
   }

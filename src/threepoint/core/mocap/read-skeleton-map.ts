@@ -12,7 +12,7 @@ import {
   truthJoints,
 } from './skeleton-map';
 
-/** Directions of a file, by the names that a map gives them. */
+/** The directions of a file's axes by their names in a map. */
 export const directions: Readonly<Record<FileAxis, Vec3>> = {
   '+x': vec3(1, 0, 0),
   '-x': vec3(-1, 0, 0),
@@ -25,7 +25,7 @@ export const directions: Readonly<Record<FileAxis, Vec3>> = {
 const keys = ['name', 'scale', 'frameRate', 'up', 'forward', 'joints', 'rotations', 'restFrame', 'restPose'];
 
 /**
- * The map of a skeleton in a JSON text, as the evaluation takes it (docs/accuracy.md). Throws a sentence where
+ * Reads the map of a skeleton from a JSON text, as the evaluation takes it (docs/accuracy.md). Throws a sentence where
  * something is missing, unknown or of the wrong kind.
  */
 export function readSkeletonMap(text: string, name: string): SkeletonMap {

@@ -1,17 +1,17 @@
 import { fromAxisAngle, multiply, type Quat, rotate, writeQuat } from '../math/quat';
 import { createNormalRandom } from '../math/random';
 import { add, length, normalise, type Vec3, vec3, writeVec3 } from '../math/vec3';
-import type { EvenClip } from './even-clip';
 import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
-import { positionAt, rotationAt } from './our-joints';
+import type { ResampledClip } from './resampled-clip';
 import { trackedJoints } from './skeleton-map';
+import { positionAt, rotationAt } from './truth-motion';
 
-/** Numbers of a frame: position [m] and rotation (xyzw) of headset, left wrist and right wrist. */
+/** The number of values of a frame: position [m] and rotation (xyzw) of headset, left wrist and right wrist. */
 export const trackedWidth = 7 * trackedJoints.length;
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
-/** The deviation for a tracker, by its index in `trackedJoints`: the headset, then the hands. */
+/** Returns the deviation for a tracker, by its index in `trackedJoints`: the headset, then the hands. */
 const noiseOf = (joint: number, { head, hands }: Readonly<Record<'head' | 'hands', number>>): number =>
   joint === 0 ? head : hands;
 
@@ -21,11 +21,11 @@ type Normal = () => number;
 /** Returns the generator for a person or a clip; NormalNumbers in Python draws the same numbers. */
 const normalOf = (name: string): Normal => createNormalRandom(seed ^ checksum(name));
 
-/** Three normal numbers of this deviation. */
+/** Draws three normal numbers with this standard deviation. */
 const drawVector = (normal: Normal, deviation: number): Vec3 =>
   vec3(normal() * deviation, normal() * deviation, normal() * deviation);
 
-/** The rotation by |v| [rad] about v. */
+/** Returns the rotation by |v| [rad] about v. */
 const fromRotationVector = (v: Vec3): Quat => fromAxisAngle(normalise(v), length(v));
 
 const crcTable = Int32Array.from(Array(256).keys(), (byte) => {
@@ -34,7 +34,7 @@ const crcTable = Int32Array.from(Array(256).keys(), (byte) => {
   return word;
 });
 
-/** CRC-32 of a text's UTF-8. */
+/** Returns the CRC-32 of a text's UTF-8. */
 function checksum(text: string): number {
   const bytes = encodeURIComponent(text).replace(/%(..)/g, (_, hex: string) =>
     String.fromCharCode(Number.parseInt(hex, 16)),
@@ -45,8 +45,8 @@ function checksum(text: string): number {
 }
 
 /**
- * How a headset and two hands sit on a person, constant for a wearer: offsets [m] in the frames of head and wrists, and
- * turns.
+ * Draws the mounts of a person's headset and hand trackers, constant for that person: offsets [m] in the frames of head
+ * and wrists, and rotations.
  */
 function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readonly turns: readonly Quat[] } {
   const normal = normalOf(person);
@@ -60,10 +60,10 @@ function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readon
 }
 
 /**
- * What a headset and two hands would have reported of a person while the clip of this name was recorded, `trackedWidth`
- * numbers for each frame; the same as the evaluation's, which draws its errors by person and clip.
+ * Simulates the poses of headset and hands for the clip of this name, `trackedWidth` numbers for each frame. They equal
+ * those of the evaluation, because errors are drawn by person and clip.
  */
-export function simulateTrackers(motion: EvenClip, person: string, clip: string): Float32Array<ArrayBuffer> {
+export function simulateTrackers(motion: ResampledClip, person: string, clip: string): Float32Array<ArrayBuffer> {
   const { offsets, turns } = drawWearer(person);
   const normal = normalOf(clip);
   const { frameCount } = motion;

@@ -1,7 +1,7 @@
 import type { Quat } from '../math/quat';
 import { acclaim } from './mocap-rules.json';
 
-/** Joints of the truth, floor frame; VRM's names. Those that head and hands are made of are among them. */
+/** The joints of the truth that every body has, by their VRM names; floor frame. */
 export const bodyJoints = [
   'hips',
   'spine',
@@ -15,7 +15,7 @@ export const bodyJoints = [
   'rightLowerArm',
   'rightHand',
 ] as const;
-/** Joints that a file may lack. */
+/** The joints that a file may lack. */
 export const legJoints = [
   'leftUpperLeg',
   'leftLowerLeg',
@@ -38,20 +38,20 @@ export type TrackedJoint = (typeof trackedJoints)[number];
 /** The mapping from a file's joints to the skeleton's. */
 export interface SkeletonMap {
   readonly name: string;
-  /** What the file calls ours. */
+  /** The file's joint for each joint of the truth. */
   readonly joints: Readonly<Partial<Record<TruthJoint, string>>>;
   /** Metres per unit; absent: the unit that makes the arms a person's. */
   readonly scale?: number;
   /** The source joint for the rotation of head or hands where it is not the joint itself. */
   readonly rotations?: Readonly<Partial<Record<TrackedJoint, string>>>;
-  /** The file's axes: which way is up (absent: +y), and which way people at rest face (absent: +z). */
+  /** The file's axes: up (absent: +y), and the direction that people at rest face (absent: +z). */
   readonly up?: FileAxis;
   readonly forward?: FileAxis;
-  /** Hz, of files that do not say theirs. */
+  /** The frame rate [Hz] of files that do not state theirs. */
   readonly frameRate?: number;
   /** A frame in T-pose, from 1, or the angles of one [degrees] by the file's joint; neither: all angles 0. */
   readonly restFrame?: number;
-  /** The file that `restFrame` is of, where it is another. */
+  /** The file of `restFrame`, if it is another one. */
   readonly restFile?: string;
   readonly restPose?: Readonly<Record<string, readonly number[]>>;
 }
@@ -62,7 +62,7 @@ export type FileAxis = '+x' | '-x' | '+y' | '-y' | '+z' | '-z';
 /** Joints that every map has. */
 export const neededJoints: readonly TruthJoint[] = bodyJoints.filter((joint) => joint !== 'spine');
 
-/** A joint that a file lacks: a share of the way from the middle of some joints to that of others. */
+/** A joint that a file lacks: at a share of the way from the middle of some joints to that of others. */
 export interface BetweenJoints {
   readonly near: readonly TruthJoint[];
   readonly far: readonly TruthJoint[];
@@ -88,7 +88,7 @@ export interface MappedSkeleton {
   readonly motionFloor: Quat;
 }
 
-/** The skeleton that a map describes, whose joints all are in the file. */
+/** Returns the skeleton that a map describes; all its joints are in the file. */
 export function mappedSkeleton(names: readonly string[], map: SkeletonMap, floor: Quat): MappedSkeleton {
   const { joints, rotations, scale } = map;
   const columns = Object.fromEntries(Object.entries(joints).map(([joint, theirs]) => [joint, names.indexOf(theirs)]));
@@ -100,7 +100,10 @@ export function mappedSkeleton(names: readonly string[], map: SkeletonMap, floor
   };
 }
 
-/** Returns the map of an Acclaim skeleton without what the file lacks; null: it lacks needed joints. */
+/**
+ * Returns the map of an Acclaim skeleton without what the file lacks; null: it lacks needed joints. The matcher alone
+ * would read some files differently: a wrist's start as the hand, or another axis as up (CMU 03_01, 131).
+ */
 export function acclaimMap(names: readonly string[]): SkeletonMap | null {
   const known = new Set(names);
   const map = acclaim as SkeletonMap;

@@ -2,7 +2,7 @@ import { conjugate, fromAxisAngle, multiply, type Quat, rotate, rotationBetween 
 import { type Side, sides } from '../math/side';
 import { median } from '../math/statistics';
 import { add, cross, dot, length, normalise, reject, subtract, type Vec3, zero } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
 import { downward, outward, sampledFrames } from './body-axes';
 
 /** A limb's joints by their index, from the trunk outwards; −1: the file has no such joint. */
@@ -14,32 +14,29 @@ export interface Limbs {
   readonly legs: Readonly<Record<Side, LimbJoints>>;
 }
 
-/** A bone of a straight limb deviates less than this cosine. */
+/** The smallest cosine between a bone and the direction of its straight limb. */
 const straight = 0.9;
-/** A clavicle may deviate more from the side. */
+/** The smallest cosine between a clavicle and the side. */
 const clavicleOutward = 0.5;
-/** A hand at rest that lies further from its forearm than this [cosine] is bent. */
+/** The cosine between hand and forearm at rest up to which a hand is bent. */
 const bentHand = 0.5;
-/** In the motion such a hand lies nearer by this [cosine] where only its rest is bent. */
+/** The smallest increase of that cosine in the motion that shows that only the rest is bent. */
 const straighter = 0.5;
-/** An elbow that bends more [sine] shows the axis of its hinge. */
+/** The smallest bend of an elbow [sine] that defines the axis of its hinge. */
 const bentElbow = 0.35;
 
 /** Rotates joints of a pose about one of them, with all that hangs from it. */
 class Straightener {
-  readonly pose: JointPoses;
+  readonly pose: SkeletonPose;
 
-  constructor(
-    readonly file: FileMotion,
-    readonly parents: readonly number[],
-  ) {
-    this.pose = createJointPoses(file.names.length);
+  constructor(readonly file: ImportedMotion) {
+    this.pose = createSkeletonPose(file.names.length);
     for (const [i, at] of file.rest.entries()) Object.assign(this.pose.positions[i]!, at);
   }
 
   #hangsFrom(joint: number, ancestor: number): boolean {
     let at = joint;
-    while (at >= 0 && at !== ancestor) at = this.parents[at]!;
+    while (at >= 0 && at !== ancestor) at = this.file.parents[at]!;
     return at === ancestor;
   }
 
@@ -67,11 +64,11 @@ class Straightener {
 }
 
 /**
- * The axis about which an elbow bends, in the forearm's axes at rest; null: the elbow is straight in all frames. It
- * points down in T-pose on the left, up on the right.
+ * Returns the axis about which an elbow bends, in the forearm's axes at rest; null: the elbow is straight in all
+ * frames. It points down in T-pose on the left, up on the right.
  */
-function hingeOf(file: FileMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 | null {
-  const poses = createJointPoses(file.names.length);
+function hingeOf(file: ImportedMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 | null {
+  const poses = createSkeletonPose(file.names.length);
   const sum = { x: 0, y: 0, z: 0 };
   let count = 0;
   for (const frame of sampledFrames(file.frameCount)) {
@@ -87,8 +84,8 @@ function hingeOf(file: FileMotion, [, shoulder, elbow, hand]: LimbJoints): Vec3 
 }
 
 /**
- * The cosine between a hand and its forearm in a pose, and the directions of both; null: nothing with a length hangs
- * from the hand.
+ * Returns the cosine between a hand and its forearm in a pose, and the directions of both; null: nothing with a length
+ * hangs from the hand.
  */
 function handIn(
   positions: readonly Vec3[],
@@ -106,13 +103,13 @@ function handIn(
 
 /** Turns hands that are bent at rest and not in the motion along their forearms. null: no hand is bent so. */
 export function straightHands(
-  file: FileMotion,
+  file: ImportedMotion,
   arms: Limbs['arms'],
-): { readonly pose: JointPoses; readonly notes: readonly string[] } | null {
+): { readonly pose: SkeletonPose; readonly notes: readonly string[] } | null {
   const { parents } = file;
-  const body = new Straightener(file, parents);
+  const body = new Straightener(file);
   const notes: string[] = [];
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   for (const side of sides) {
     const rest = handIn(file.rest, parents, arms[side]);
     if (!rest || rest.cosine > bentHand) continue;
@@ -128,17 +125,16 @@ export function straightHands(
 }
 
 /**
- * The T-pose of a body whose bones lie otherwise when all angles are zero: limbs are straight there, so they are
- * turned as a whole, arms to the sides and legs down. What elbows bend about shows how arms are twisted. `notes`: what
+ * Builds the T-pose of a body whose bones point elsewhere when all angles are zero: each straight limb is turned as a
+ * whole, arms to the sides and legs down. The hinge axes of the elbows show the twist of the arms. `notes`: what
  * was assumed, a sentence each.
  */
 export function straightRest(
-  file: FileMotion,
-  parents: readonly number[],
+  file: ImportedMotion,
   limbs: Limbs,
   floor: Quat,
-): { readonly pose: JointPoses; readonly notes: readonly string[] } {
-  const body = new Straightener(file, parents);
+): { readonly pose: SkeletonPose; readonly notes: readonly string[] } {
+  const body = new Straightener(file);
   const notes = ['its bones at rest are no T-pose; the T-pose was built from its straight limbs'];
   for (const side of sides) {
     const arm = limbs.arms[side];

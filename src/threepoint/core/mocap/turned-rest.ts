@@ -2,30 +2,30 @@ import { conjugate, type Quat, quat, rotate } from '../math/quat';
 import { quantile } from '../math/statistics';
 import { parentsFirst } from '../math/tree';
 import { add, dot, subtract, type Vec3, vec3 } from '../math/vec3';
-import { createJointPoses, type FileMotion } from '../motion/file-motion';
-import { type StandingJoints, sampledFrames, trunkWay } from './body-axes';
+import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
+import { type StandingJoints, sampledFrames, trunkDirection } from './body-axes';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
-/** The hips' height differs from that at rest by less than this share where a body stands. */
+/** The largest deviation of the hips' height of a standing body from that at rest, as a share. */
 const nearHeight = 0.2;
 
 /**
- * The axis along which the root keeps the height of the hips where that is not the axis along which the body stands, at
- * rest and in its frames; null: it is, or no axis fits.
+ * Returns the axis along which the root keeps the height of the hips if that is not the axis along which the body
+ * stands, at rest and in its frames; null: it is, or no axis fits.
  */
-export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: FileAxis): FileAxis | null {
+export function axisOfRoot(file: ImportedMotion, joints: StandingJoints, restUp: FileAxis): FileAxis | null {
   const above = directions[restUp];
   const [foot] = joints.feet;
   if (foot < 0) return null;
   const height = dot(subtract(file.rest[joints.hips]!, file.rest[foot]!), above);
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   const places: Vec3[] = [];
   let standing = 0;
   for (const frame of sampledFrames(file.frameCount)) {
     file.pose(frame, poses);
     places.push({ ...poses.positions[joints.hips]! });
-    if (dot(trunkWay(poses.positions, joints), above) > 0.7) standing += 1;
+    if (dot(trunkDirection(poses.positions, joints), above) > 0.7) standing += 1;
   }
   if (standing < 0.5 * places.length) return null;
   const along = (axis: FileAxis): readonly number[] => places.map((place) => dot(place, directions[axis]));
@@ -39,10 +39,10 @@ export function axisOfRoot(file: FileMotion, joints: StandingJoints, restUp: Fil
 }
 
 /** Returns the motion with all offsets of its joints turned; rotations and the root's position stay. */
-export function withTurnedRest(file: FileMotion, turn: Quat): FileMotion {
-  const parents = file.parents;
+export function withTurnedRest(file: ImportedMotion, turn: Quat): ImportedMotion {
+  const { parents } = file;
   const order = parentsFirst(parents);
-  const before = createJointPoses(file.names.length);
+  const before = createSkeletonPose(file.names.length);
   const back = quat(0, 0, 0, 1);
   const offset = vec3(0, 0, 0);
   return {

@@ -28,7 +28,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from './imported-motion';
 
 /** A clip of glTF has no rate of its own: it is read at this one [Hz]. */
 const rateHz = 60;
@@ -47,7 +47,7 @@ interface Track {
   readonly interpolation: 'LINEAR' | 'STEP' | 'CUBICSPLINE';
 }
 
-/** A node and what moves it. */
+/** A node and its animation tracks. */
 export interface Node {
   parent: number;
   readonly translation: Vec3;
@@ -56,7 +56,7 @@ export interface Node {
   readonly tracks: Track[];
 }
 
-/** The objects of a list; none where it is no list. */
+/** Returns the objects of a list; an empty list where the value is no list. */
 export const objects = (value: unknown): readonly Json[] => (Array.isArray(value) ? value.filter(isObject) : []);
 
 const noMatrix: readonly number[] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -67,7 +67,7 @@ function numbers(value: unknown, fallback: readonly number[], what: string): rea
   throw new Error(`${what} is not ${fallback.length} finite numbers`);
 }
 
-/** Takes a matrix (by columns) apart; shear and mirrors are lost. */
+/** Decomposes a matrix (column-major) into translation, rotation and scale; shear and mirrors are lost. */
 export function decompose(matrix: readonly number[]): Pick<Node, 'translation' | 'rotation' | 'scale'> {
   const column = (i: number): Vec3 => readVec3(matrix, 4 * i);
   const [x, y, z] = [column(0), column(1), column(2)];
@@ -101,14 +101,7 @@ function nodesOf(description: Json): Node[] {
   return nodes;
 }
 
-/** The nodes with parents before children; throws where they go in a circle. */
-function inOrder(nodes: readonly Node[]): readonly number[] {
-  const order = parentsFirst(nodes.map(({ parent }) => parent));
-  if (order.length < nodes.length) throw new Error('the nodes go in a circle: a bone is its own ancestor');
-  return order;
-}
-
-/** Numbers of an accessor; integers are shares of the largest. */
+/** Returns the numbers of an accessor; normalised integers are fractions of the largest. */
 export function accessorOf(description: Json, binary: Uint8Array, index: unknown): Float32Array {
   if (!isIndex(index)) throw new Error('animations[0]: a sampler does not name its accessors');
   const accessor = objects(description.accessors)[index];
@@ -131,7 +124,7 @@ export function accessorOf(description: Json, binary: Uint8Array, index: unknown
   return values;
 }
 
-/** Gives nodes the tracks of an animation; returns how long it lasts [s]. */
+/** Adds the tracks of an animation to its nodes; returns the duration [s]. */
 function readTracks(description: Json, binary: Uint8Array, nodes: readonly Node[], index: number): number {
   const animation = objects(description.animations)[index];
   if (!animation) throw new Error('there is no animation in it');
@@ -159,7 +152,7 @@ function readTracks(description: Json, binary: Uint8Array, nodes: readonly Node[
   return duration;
 }
 
-/** Index of the last time that is not later. */
+/** Returns the index of the last key that is not later than `time`; 0 where all are. */
 function lastBefore(times: Float32Array, time: number): number {
   let [low, high] = [0, times.length - 1];
   while (low < high) {
@@ -200,7 +193,7 @@ function sample({ path, times, values, interpolation }: Track, time: number, tar
   [target[0], target[1], target[2], target[3]] = [x, y, z, w];
 }
 
-/** Forward kinematics of all nodes; without a time [s] they are at rest. */
+/** The forward kinematics of all nodes; without a time [s] they are at rest. */
 class Scene {
   readonly #places: MutableVec3[];
   readonly #turns: MutableQuat[];
@@ -238,7 +231,7 @@ class Scene {
     }
   }
 
-  write(bones: readonly number[], target: JointPoses): JointPoses {
+  write(bones: readonly number[], target: SkeletonPose): SkeletonPose {
     for (const [i, node] of bones.entries()) {
       copyVec3(this.#places[node]!, target.positions[i]!);
       copyQuat(this.#turns[node]!, target.rotations[i]!);
@@ -258,7 +251,8 @@ export class GltfClip {
   /** Throws a sentence that names the field where something is wrong. `animation`: its index. */
   constructor(description: Json, binary: Uint8Array, animation = 0) {
     this.nodes = nodesOf(description);
-    this.order = inOrder(this.nodes);
+    this.order = parentsFirst(this.nodes.map(({ parent }) => parent));
+    if (this.order.length < this.nodes.length) throw new Error('the nodes go in a circle: a bone is its own ancestor');
     this.#scene = new Scene(this.nodes, this.order);
     const duration = readTracks(description, binary, this.nodes, animation);
     this.frameCount = Math.floor(duration * (1 + precision) * rateHz + 1e-6) + 1;
@@ -267,9 +261,9 @@ export class GltfClip {
   }
 
   /** Writes nodes as the file shows them without its animation. */
-  rest(nodes: readonly number[]): JointPoses {
+  rest(nodes: readonly number[]): SkeletonPose {
     this.#scene.pose(null);
-    return this.#scene.write(nodes, createJointPoses(nodes.length));
+    return this.#scene.write(nodes, createSkeletonPose(nodes.length));
   }
 
   /** Returns for each of these nodes which of them is the nearest above it; −1: none. */
@@ -286,9 +280,9 @@ export class GltfClip {
   /** Returns the motion of nodes, counted from this rest, whose origin is the joint `root`. */
   motion(
     { names, nodes }: { readonly names: readonly string[]; readonly nodes: readonly number[] },
-    { positions, rotations }: JointPoses,
+    { positions, rotations }: SkeletonPose,
     root: number,
-  ): FileMotion {
+  ): ImportedMotion {
     const scene = this.#scene;
     const back = rotations.map((rotation) => conjugate(rotation));
     return {

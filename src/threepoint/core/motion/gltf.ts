@@ -7,7 +7,7 @@ export interface GltfDescription {
   animations?: unknown[];
 }
 
-/** What a node does over the times of a clip: rotations (x, y, z, w) or translations [m]. */
+/** The rotations (x, y, z, w) or translations [m] of a node at the times of a clip. */
 export interface NodeTrack {
   readonly node: number;
   readonly path: 'rotation' | 'translation';
@@ -19,7 +19,7 @@ export interface Clip {
   /** The times of all tracks [s], rising. */
   readonly times: Float32Array;
   readonly tracks: readonly NodeTrack[];
-  /** What else is to be said of it. */
+  /** Custom fields of the animation. */
   readonly extras: object;
 }
 
@@ -70,7 +70,7 @@ export const jsonChunk = 0x4e4f534a;
 /** See glbMagic. */
 export const binaryChunk = 0x004e4942;
 
-/** Text as bytes; what is beyond ASCII as JSON writes it when it must. */
+/** Returns a value as JSON in ASCII, with escapes for all other characters, padded to four bytes. */
 function asciiJson(value: unknown): Uint8Array<ArrayBuffer> {
   const text = JSON.stringify(value).replace(
     /[\u0080-\uffff]/g,
@@ -89,7 +89,7 @@ const words = (...values: number[]): Uint8Array<ArrayBuffer> => {
   return bytes;
 };
 
-/** The bytes of a GLB file, in parts. */
+/** Returns the bytes of a GLB file, in parts. */
 export function packGlb(
   description: GltfDescription,
   binary: readonly Uint8Array<ArrayBuffer>[],

@@ -1,8 +1,8 @@
 const maxShown = 40;
-/** No line of a motion file is longer [characters]. */
+/** The longest line of a motion file [characters]. */
 const longestLine = 2 ** 20;
 
-/** What a file says, as sentences quote it. */
+/** Returns a text of a file in quotes, shortened, for messages. */
 export const shown = (text: string): string => `“${text.length > maxShown ? `${text.slice(0, maxShown)}…` : text}”`;
 
 /** A word of a line and the column [from 1] at which it begins. */
@@ -11,7 +11,7 @@ export interface Word {
   readonly column: number;
 }
 
-/** Lines of a text one by one, with the place of what is read. */
+/** Reads the lines of a text one by one, and reports the place of faults. */
 export class Lines {
   /** The number of the current line, from 1. */
   number = 0;
@@ -28,12 +28,12 @@ export class Lines {
     this.#separator = this.text.includes('\n') ? '\n' : '\r';
   }
 
-  /** Share [0, 1] of the text that was read. */
+  /** The share [0, 1] of the text that was read. */
   get share(): number {
     return this.text.length === 0 ? 1 : Math.min(1, this.#next / this.text.length);
   }
 
-  /** Goes on to the next line that is not blank; false: there is none. */
+  /** Advances to the next line that is not blank; returns false if there is none. */
   next(): boolean {
     while (this.#next <= this.text.length) {
       const feed = this.text.indexOf(this.#separator, this.#next);
@@ -47,13 +47,13 @@ export class Lines {
     return false;
   }
 
-  /** Words of the line, up to a `#` where that begins a comment. */
+  /** Returns the words of the line. `comment`: whether `#` begins a comment, which is left out. */
   words(comment = false): readonly Word[] {
     const line = comment ? this.line.split('#', 1)[0]! : this.line;
     return [...line.matchAll(/\S+/g)].map(({ 0: word, index }) => ({ word, column: index + 1 }));
   }
 
-  /** The number that a word is; NaN: it is none. */
+  /** Returns the number that a word stands for; NaN: it is no finite number. */
   parse(word: string): number {
     // Number takes '0x10' and 'Infinity' too; the latter is no finite number.
     const value = Number(word);
@@ -64,7 +64,7 @@ export class Lines {
     return decimal;
   }
 
-  /** The number that a word is. */
+  /** Returns the number that a word stands for; throws where it is no finite number. */
   numberOf({ word, column }: Word): number {
     const value = this.parse(word);
     if (Number.isNaN(value)) this.fail(column, `${shown(word)} is no finite number`);
@@ -97,7 +97,7 @@ export class Lines {
   }
 }
 
-/** Rows of so many numbers, as many as come. */
+/** A growing table of rows of `width` numbers. */
 export class Rows {
   values: Float64Array;
   count = 0;

@@ -1,15 +1,15 @@
 import { type MutableQuat, multiply, quat, readQuat, rotate, setQuat, slerp, writeQuat } from '../math/quat';
 import { add, lerp, type MutableVec3, readVec3, vec3, writeVec3 } from '../math/vec3';
-import type { JointPoses } from './file-motion';
-import type { MotionBone } from './skeleton';
+import type { SkeletonPose } from './imported-motion';
+import type { MotionBone } from './motion-bones';
 
-/** A body over a while, in the clip frame (skeleton.ts): what every file of motion is written from. */
+/** A body over time, in the clip frame (motion-bones.ts), from which every motion file is written. */
 export interface Motion {
   /** Every bone before its children, the measured ones first. */
   readonly bones: readonly MotionBone[];
   /** The number of measured bones. */
   readonly measured: number;
-  /** Frames per second that the device asked for; `times` are what counts. */
+  /** The device's nominal frame rate [Hz]; `times` take precedence. */
   readonly rateHz: number;
   /** Seconds from the first frame, rising. */
   readonly times: Float64Array;
@@ -24,7 +24,19 @@ export interface Motion {
   readonly seen: Uint8Array;
 }
 
-/** The rotation of a measured bone against its parent in one frame. */
+/** Returns the buffers of a motion of these bones with `count` frames. */
+export function createMotion(bones: readonly MotionBone[], count: number, rateHz: number) {
+  const measured = bones.filter((bone) => bone.measured).length;
+  return {
+    ...{ bones, measured, rateHz },
+    times: new Float64Array(count),
+    hips: new Float64Array(3 * count),
+    rotations: new Float32Array(4 * measured * count),
+    seen: new Uint8Array(count),
+  } satisfies Motion;
+}
+
+/** Returns the rotation of a measured bone relative to its parent in one frame. */
 export const rotationAt = (motion: Motion, frame: number, bone: number, target: MutableQuat): MutableQuat =>
   readQuat(motion.rotations, 4 * (frame * motion.measured + bone), target);
 
@@ -33,7 +45,7 @@ export const hipsAt = ({ hips }: Motion, frame: number, target: MutableVec3): Mu
   readVec3(hips, 3 * frame, target);
 
 /** Writes position [m] and rotation from T-pose of every bone in one frame, clip frame. */
-export function poseBones(motion: Motion, frame: number, target: JointPoses): JointPoses {
+export function poseBones(motion: Motion, frame: number, target: SkeletonPose): SkeletonPose {
   const { positions, rotations } = target;
   const { bones } = motion;
   for (let i = 0; i < bones.length; i++) {
@@ -51,7 +63,7 @@ export function poseBones(motion: Motion, frame: number, target: JointPoses): Jo
   return target;
 }
 
-/** Frames that a file of an even rate may have: two and a half hours at 120 Hz. */
+/** The largest number of frames of a file with an even rate: two and a half hours at 120 Hz. */
 const maxFrames = 1_080_000;
 const framesPerStep = 64;
 
@@ -60,22 +72,16 @@ const framesPerStep = 64;
  * is invalid, or the motion would have more frames than a file can hold.
  */
 export function* resampleMotion(motion: Motion, rateHz: number): Generator<number, Motion> {
-  const { times, measured } = motion;
+  const { times } = motion;
   if (!(rateHz >= 1 && rateHz <= 1000)) throw new Error(`A rate of ${rateHz} Hz is not one from 1 to 1000.`);
   const duration = times.at(-1)!;
   const count = Math.floor(duration * rateHz + 1e-6) + 1;
   if (!(count <= maxFrames))
     throw new Error(`The motion lasts ${Math.round(duration)} s, at ${rateHz} Hz more than ${maxFrames} frames.`);
-  const even: Motion = {
-    ...motion,
-    rateHz,
-    times: Float64Array.from({ length: count }, (_, i) => i / rateHz),
-    hips: new Float64Array(3 * count),
-    rotations: new Float32Array(4 * measured * count),
-    seen: new Uint8Array(count),
-  };
+  const even = createMotion(motion.bones, count, rateHz);
   for (let frame = 0, before = 0; frame < count; frame++) {
-    const time = even.times[frame]!;
+    const time = frame / rateHz;
+    even.times[frame] = time;
     while (before + 1 < times.length && times[before + 1]! <= time) before += 1;
     const after = Math.min(before + 1, times.length - 1);
     const span = times[after]! - times[before]!;

@@ -1,11 +1,11 @@
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
 import { add, copyVec3, type MutableVec3, setVec3, subtract, vec3 } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from './imported-motion';
 import { Lines, Rows, shown } from './lines';
 import { type AsfSkeleton, fromEuler } from './read-asf';
 
 const framesPerStep = 16;
-/** What the head of a file says of its angles, in radians; without it they are in the skeleton's unit. */
+/** The units of angles [rad] by their keyword in a file's header; without one, the skeleton's unit applies. */
 const radiansPerUnit: Readonly<Record<string, number>> = { ':DEGREES': Math.PI / 180, ':RADIANS': 1 };
 
 /** The columns of a bone in a row: the first one and their number. */
@@ -14,7 +14,7 @@ interface Columns {
   readonly count: number;
 }
 
-/** Columns by bone: the root, then bones with freedom. */
+/** Returns the columns by bone: the root, then bones with degrees of freedom. */
 function columnsOf({ rootFreedoms, bones }: AsfSkeleton): {
   readonly columns: Map<string, Columns>;
   readonly width: number;
@@ -33,7 +33,7 @@ function columnsOf({ rootFreedoms, bones }: AsfSkeleton): {
  * Reads the text of an AMC file of a skeleton, which lies in the file of this name. Yields the share [0, 1] that was
  * read. Throws a sentence with line and column where the text is none, or of another skeleton.
  */
-export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: string): Generator<number, FileMotion> {
+export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: string): Generator<number, ImportedMotion> {
   const lines: Lines = new Lines(text);
   const { columns, width } = columnsOf(skeleton);
   const rows = new Rows(width);
@@ -72,12 +72,12 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
   return motionOf(new Player(skeleton, radians), skeleton, rows);
 }
 
-function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values }: Rows): FileMotion {
+function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values }: Rows): ImportedMotion {
   const { bones } = skeleton;
   const names = ['root', ...bones.map(({ name }) => name), ...bones.map(({ name }) => `${name}:end`)];
   const parents = [-1, ...bones.map(({ parent }) => 1 + parent), ...bones.map((_, bone) => 1 + bone)];
   const rest = player
-    .pose(new Float64Array(width), 0, createJointPoses(names.length))
+    .pose(new Float64Array(width), 0, createSkeletonPose(names.length))
     .positions.map((position) => subtract(position, skeleton.rootPosition));
   return {
     ...{ names, parents, rest, rateHz: null, frameCount: count, notes: [] },
@@ -85,7 +85,10 @@ function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values 
   };
 }
 
-/** Forward kinematics: a bone's rotation in its parent is C·M·C⁻¹ with the bone's axes C and the motion's angles M. */
+/**
+ * The forward kinematics of a skeleton: a bone's rotation in its parent is C·M·C⁻¹ with the bone's axes C and the
+ * motion's angles M.
+ */
 class Player {
   readonly #skeleton: AsfSkeleton;
   readonly #radiansPerUnit: number;
@@ -98,8 +101,8 @@ class Player {
     this.#radiansPerUnit = radiansPerUnit;
   }
 
-  /** From the numbers that begin at `column`: the root, where bones start, where they end. */
-  pose(values: Float64Array, column: number, target: JointPoses): JointPoses {
+  /** Writes the root, the starts of the bones and their ends, from the numbers that begin at `column`. */
+  pose(values: Float64Array, column: number, target: SkeletonPose): SkeletonPose {
     const { bones, rootFreedoms, rootAxis, rootPosition } = this.#skeleton;
     const { positions, rotations } = target;
     this.#turnBy(values, column, rootFreedoms, rootAxis, rotations[0]!);

@@ -2,16 +2,16 @@ import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat } from '../m
 import { backward, normalise, readVec3, right, scale, up, type Vec3, zero } from '../math/vec3';
 import { Lines, shown, type Word } from './lines';
 
-/** A bone in rest: from the end of its parent, in the file's unit and axes. */
+/** A bone at rest, which starts at the end of its parent; in the file's unit and axes. */
 export interface AsfBone {
   readonly name: string;
-  /** From its start to its end. */
+  /** The vector from its start to its end. */
   readonly way: Vec3;
-  /** The axes that its angles are about. */
+  /** The orientation of the axes of its angles. */
   readonly axis: Quat;
-  /** What an AMC file says of it, in order, as `rx`. */
+  /** Its degrees of freedom in an AMC file, in order, such as `rx`. */
   readonly freedoms: readonly string[];
-  /** Index of the parent among the bones; −1: the root. */
+  /** The index of the parent among the bones; −1: the root. */
   readonly parent: number;
 }
 
@@ -19,7 +19,7 @@ export interface AsfBone {
 export interface AsfSkeleton {
   /** Parents before children. */
   readonly bones: readonly AsfBone[];
-  /** What an AMC file says of the root, in order, as `tx`. */
+  /** The root's degrees of freedom in an AMC file, in order, such as `tx`. */
   readonly rootFreedoms: readonly string[];
   readonly rootAxis: Quat;
   readonly rootPosition: Vec3;
@@ -27,7 +27,7 @@ export interface AsfSkeleton {
   readonly radiansPerUnit: number;
 }
 
-/** No skeleton of a person has as many. */
+/** The largest number of bones of a human skeleton. */
 const maxBones = 2000;
 const axes = { x: right, y: up, z: backward };
 const turn = quat(0, 0, 0, 1);
@@ -43,7 +43,7 @@ export function fromEuler(angles: Vec3, order: string, target: MutableQuat = qua
   return target;
 }
 
-/** A bone as :bonedata has it; angles in the file's unit. */
+/** A bone as in :bonedata; angles in the file's unit. */
 interface RawBone {
   readonly name: string;
   readonly way: Vec3;
@@ -54,7 +54,7 @@ interface RawBone {
 
 type Block = Map<string, readonly Word[]>;
 
-/** What a file says before its bones are put in order. */
+/** The contents of a file before its bones are ordered. */
 class Sections {
   radiansPerUnit = Math.PI / 180;
   readonly root: Block = new Map();
@@ -99,7 +99,7 @@ class Sections {
   }
 }
 
-/** From the unit that a skeleton gives its angles in. */
+/** Returns the unit [rad] of a skeleton's angles. */
 function radiansPerAngle(lines: Lines, [keyword, unit]: readonly Word[]): number {
   if (!unit) return lines.fail(keyword!.column, 'angle should have a unit, deg or rad');
   if (/^deg/i.test(unit.word)) return Math.PI / 180;
@@ -107,7 +107,7 @@ function radiansPerAngle(lines: Lines, [keyword, unit]: readonly Word[]): number
   return lines.fail(unit.column, `angles are in deg or rad, not in ${shown(unit.word)}`);
 }
 
-/** The first numbers after a keyword. */
+/** Returns the first `count` numbers after a keyword. */
 function numbersOf(lines: Lines, words: readonly Word[], count: number): number[] {
   const given = words.slice(1, 1 + count);
   const { word, column } = words[0]!;
@@ -131,7 +131,7 @@ function rawBone(lines: Lines, at: Word, block: Block | null): RawBone {
   };
 }
 
-/** Parents before children; bones that the hierarchy does not name are left out. */
+/** Returns the bones, parents before children, without those that the hierarchy does not name. */
 function orderedBones({ bones, parents, radiansPerUnit }: Sections): readonly AsfBone[] {
   for (const child of parents.keys())
     if (!bones.has(child)) throw new Error(`the hierarchy names ${shown(child)}, but :bonedata has no such bone`);

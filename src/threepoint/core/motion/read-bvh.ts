@@ -1,6 +1,6 @@
 import { fromAxisAngle, multiply, quat, rotate, setQuat } from '../math/quat';
 import { add, backward, copyVec3, right, up, type Vec3, vec3, zero } from '../math/vec3';
-import type { FileMotion, JointPoses } from './file-motion';
+import type { ImportedMotion, SkeletonPose } from './imported-motion';
 import { Lines, Rows, shown, type Word } from './lines';
 
 type Axis = 'x' | 'y' | 'z';
@@ -13,28 +13,28 @@ export interface BvhChannel {
 /** A joint of a file; an end site is a joint without channels, called “<parent>:end”. */
 export interface BvhJoint {
   readonly name: string;
-  /** Index of the parent, which is smaller; −1: a root. */
+  /** The index of the parent, which is smaller; −1: a root. */
   readonly parent: number;
-  /** From the parent's joint, in the file's unit and axes. */
+  /** The offset from the parent's joint, in the file's unit and axes. */
   readonly offset: Vec3;
-  /** In the order in which they are applied. */
+  /** The channels in the order in which they are applied. */
   readonly channels: readonly BvhChannel[];
 }
 
-/** What a BVH file says, in its own unit and axes. */
+/** The contents of a BVH file, in its own unit and axes. */
 export interface BvhMotion {
   readonly joints: readonly BvhJoint[];
   readonly frameSeconds: number;
   readonly frameCount: number;
-  /** Numbers of a frame. */
+  /** The number of values of a frame. */
   readonly width: number;
-  /** Frame after frame; angles in degrees. */
+  /** The values, frame after frame; angles in degrees. */
   readonly values: Float64Array;
   /** What was put right or assumed, a sentence each. */
   readonly notes: readonly string[];
 }
 
-/** No skeleton of a person has as many. */
+/** The largest number of joints of a human skeleton. */
 const maxJoints = 5000;
 const linesPerStep = 64;
 
@@ -80,7 +80,7 @@ function statementsOf(lines: Lines): readonly (readonly Word[])[] {
   return statements.filter((words) => words.length > 0);
 }
 
-/** Reads what stands before MOTION. */
+/** Reads the hierarchy, up to MOTION. */
 function readHierarchy(lines: Lines): readonly OpenJoint[] {
   const joints: OpenJoint[] = [];
   const stack: number[] = [];
@@ -195,8 +195,8 @@ export function* readBvh(text: string): Generator<number, BvhMotion> {
 }
 
 /**
- * Marks position channels that say nothing: all zero on a joint that has an offset, or its offset again in every frame.
- * Constant positions of a joint without an offset are its offset.
+ * Marks position channels that are redundant: all zero on a joint that has an offset, or its offset again in every
+ * frame. Constant positions of a joint without an offset are its offset.
  */
 function withoutRepeatedPositions(motion: BvhMotion): BvhMotion {
   const { width, values, frameCount } = motion;
@@ -237,8 +237,8 @@ const axes: Readonly<Record<Axis, Vec3>> = { x: right, y: up, z: backward };
 const turn = quat(0, 0, 0, 1);
 const local = vec3(0, 0, 0);
 
-/** Every joint in one frame. A position that a file states takes the place of the joint's offset. */
-export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: JointPoses): JointPoses {
+/** Writes every joint of one frame. A position channel replaces the joint's offset. */
+export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: SkeletonPose): SkeletonPose {
   let column = frame * width;
   for (const [i, { parent, offset, channels }] of joints.entries()) {
     const position = target.positions[i]!;
@@ -261,10 +261,9 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
 }
 
 /**
- * A BVH file as any file of motion: at rest all its angles are zero. `joints`: those of the file, or what was put right
- * of them.
+ * Returns a BVH file as an imported motion, whose angles are all zero at rest. `joints`: the corrected ones, if any.
  */
-export function bvhFileMotion(motion: BvhMotion, joints = motion.joints, notes = motion.notes): FileMotion {
+export function importedBvhMotion(motion: BvhMotion, joints = motion.joints, notes = motion.notes): ImportedMotion {
   const rest: Vec3[] = [];
   for (const { parent, offset } of joints) rest.push(parent < 0 ? zero : add(rest[parent]!, offset));
   const { frameCount, frameSeconds } = motion;

@@ -1,8 +1,8 @@
 import { isIndex, type Json } from '../json';
 import { angleBetween, conjugate, identity, multiply, type Quat, rotate } from '../math/quat';
 import { add, distance, scale, subtract, type Vec3 } from '../math/vec3';
-import { createJointPoses, type FileMotion, type JointPoses } from './file-motion';
 import { accessorOf, decompose, GltfClip, objects } from './gltf-clip';
+import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from './imported-motion';
 
 /** A joint in the space in which its skin was bound. */
 interface Bound {
@@ -30,7 +30,7 @@ function bindPoses(description: Json, binary: Uint8Array): ReadonlyMap<number, B
  * Returns how much longer bones are as shown than as bound: the median, since some exporters bind the ends of chains a
  * hundredfold off.
  */
-function sizeOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>, shown: JointPoses): number {
+function sizeOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>, shown: SkeletonPose): number {
   const ratios = [...bound].flatMap(([node, { position }]) => {
     const { parent } = clip.nodes[node]!;
     const above = bound.get(parent);
@@ -44,7 +44,7 @@ function sizeOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>, shown: JointP
  * Returns all nodes as their skins were bound to them. What the file shows without its clip may be a picture of an
  * animation; the bind pose is a T or an A.
  */
-function restOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>): JointPoses {
+function restOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>): SkeletonPose {
   const all = clip.nodes.map((_, node) => node);
   const shown = clip.rest(all);
   const first = clip.order.find((node) => bound.has(node));
@@ -58,7 +58,7 @@ function restOf(clip: GltfClip, bound: ReadonlyMap<number, Bound>): JointPoses {
     );
   const [turn] = [identity, shown.rotations[above] ?? identity].sort((a, b) => off(a) - off(b)) as [Quat];
   const size = sizeOf(clip, bound, shown);
-  const rest = createJointPoses(all.length);
+  const rest = createSkeletonPose(all.length);
   for (const node of clip.order) {
     const { parent } = clip.nodes[node]!;
     const own = bound.get(node);
@@ -89,7 +89,7 @@ const durationOf = (description: Json, animation: Json): number =>
  * Reads the longest clip of a GLB file that moves the bones of a body. Throws a sentence that names the field where
  * there is none.
  */
-export function readGlbMotion(description: Json, binary: Uint8Array): FileMotion {
+export function readGlbMotion(description: Json, binary: Uint8Array): ImportedMotion {
   const animations = objects(description.animations);
   const durations = animations.map((animation) => durationOf(description, animation));
   const longest = Math.max(0, durations.indexOf(Math.max(...durations)));

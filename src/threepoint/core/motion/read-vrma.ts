@@ -1,12 +1,12 @@
 import { isIndex, isObject } from '../json';
-import type { FileMotion } from './file-motion';
 import { GltfClip } from './gltf-clip';
+import type { ImportedMotion } from './imported-motion';
 
 /**
  * Reads the description and the binary part of a VRM Animation 1.0. Throws a sentence that names the field where they
  * are none.
  */
-export function readVrma(description: unknown, binary: Uint8Array): FileMotion {
+export function readVrma(description: unknown, binary: Uint8Array): ImportedMotion {
   const extension =
     isObject(description) && isObject(description.extensions) ? description.extensions.VRMC_vrm_animation : null;
   const humanoid = isObject(extension) && isObject(extension.humanoid) ? extension.humanoid.humanBones : null;

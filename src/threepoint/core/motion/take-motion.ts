@@ -22,8 +22,8 @@ import { vec3, writeVec3 } from '../math/vec3';
 import { recordOf } from '../records';
 import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
-import type { Motion } from './motion';
-import { motionSkeleton, restBend, turnPoint, turnRotation } from './skeleton';
+import { createMotion, type Motion } from './motion';
+import { motionSkeleton, restBend, turnPoint, turnRotation } from './motion-bones';
 
 /** The inverse of each finger bone's frame at rest. */
 const fromRest = recordOf(fingerNames, (finger) => {
@@ -38,7 +38,8 @@ const inverse = quat(0, 0, 0, 1);
 const wrist = quat(0, 0, 0, 1);
 
 /**
- * How a bone of a bent finger has turned against the one before it since T-pose, in T-pose's axes of the floor frame.
+ * Writes the rotation from T-pose of a bent finger's bone relative to the one before it, in T-pose's axes of the floor
+ * frame.
  */
 function fingerRotation(side: Side, index: 0 | 1 | 2, target: MutableQuat): MutableQuat {
   if (index === 0) copyQuat(turned[0], against);
@@ -49,8 +50,8 @@ function fingerRotation(side: Side, index: 0 | 1 | 2, target: MutableQuat): Muta
 }
 
 /**
- * How every measured bone of a person is turned, frame after frame: fingers that are not seen keep their bend for a
- * while, as on an avatar.
+ * Computes the rotations of a person's measured bones, frame after frame. Fingers that are not seen keep their bend for
+ * a while, as on an avatar.
  */
 export class BoneRotations {
   readonly #hand;
@@ -94,7 +95,7 @@ export class BoneRotations {
     }
   }
 
-  /** A rotation of the floor frame's axes. */
+  /** Writes a rotation, given in the floor frame's axes. */
   #put(rotation: Quat): void {
     this.#at = writeQuat(turnRotation(rotation, this.#rotation), this.#target, this.#at);
   }
@@ -103,27 +104,17 @@ export class BoneRotations {
 /** Gathers a body's poses, frame by frame, into a motion with fingers. */
 export class MotionTaker {
   readonly #rotations: BoneRotations;
-  readonly #motion: Omit<Motion, 'rotations'> & { readonly rotations: Float32Array<ArrayBuffer> };
+  readonly #motion: ReturnType<typeof createMotion>;
   #firstTime = 0;
   #count = 0;
 
-  /** For so many frames of a person of these measures. */
+  /** Allocates `count` frames of a person with this calibration. */
   constructor(calibration: Calibration, count: number, rateHz: number) {
-    const bones = motionSkeleton(calibration);
-    const measured = bones.filter((bone) => bone.measured).length;
     this.#rotations = new BoneRotations(calibration);
-    this.#motion = {
-      bones,
-      measured,
-      rateHz,
-      times: new Float64Array(count),
-      hips: new Float64Array(3 * count),
-      rotations: new Float32Array(4 * measured * count),
-      seen: new Uint8Array(count),
-    };
+    this.#motion = createMotion(motionSkeleton(calibration), count, rateHz);
   }
 
-  /** The next frame. Throws a sentence where the pose has no body: of head and hands alone no motion is made. */
+  /** Adds the next frame. Throws a sentence where the pose has no body: head and hands alone are no motion. */
   add({ time, leftHand, rightHand, fingers = unknownFingers }: TrackingFrame, { body }: AvatarPose): void {
     if (!body)
       throw new Error('This method estimates no body, so there is no motion to export. Choose another method.');
@@ -140,7 +131,7 @@ export class MotionTaker {
     this.#count += 1;
   }
 
-  /** What was gathered. */
+  /** Returns the motion of the frames that were added. */
   finish(): Motion {
     const { measured, times, hips, rotations, seen } = this.#motion;
     const n = this.#count;
@@ -157,9 +148,8 @@ export class MotionTaker {
 const hipsOfBody = vec3(0, 0, 0);
 
 /**
- * The body that an estimator draws of a recording, frame by frame as it would have live; a network that answers later
- * is waited for. Yields the share [0, 1] that is done, now and then. Throws a sentence where the estimator fails or
- * draws no body.
+ * Estimates the motion of a recording frame by frame, awaiting each answer of a network. Yields the share [0, 1] that
+ * is done. Throws a sentence where the estimator fails or has no body.
  */
 export async function* estimateMotion(
   recording: Replayable,

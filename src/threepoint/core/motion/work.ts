@@ -1,6 +1,6 @@
 /**
- * Long work in pieces: it yields the share [0, 1] that is done, so that who runs it can show how far it is, let others
- * go first, or leave off.
+ * Long work in pieces. It yields the share [0, 1] that is done, so that its caller can show progress, yield to other
+ * tasks or stop.
  */
 export type Work<Result> = Generator<number, Result> | AsyncGenerator<number, Result>;
 
@@ -30,7 +30,7 @@ export function* scaleProgress<Result>(
   }
 }
 
-/** Does the whole of some work at once, where nothing waits for it. */
+/** Runs work synchronously to its end and returns the result. */
 export function finishWork<Result>(work: Generator<unknown, Result>): Result {
   for (;;) {
     const step = work.next();
@@ -46,11 +46,11 @@ export interface WorkHost {
   nextTurn(): Promise<void>;
 }
 
-/** Work goes on for this long [ms] before frames and input have their turn: half of a frame at 60 Hz. */
+/** The time slice [ms] of work between frames and input: half of a frame at 60 Hz. */
 const turnMs = 8;
 
 /**
- * Does long work in turns of a few milliseconds, so that a page goes on drawing. `onStep` receives what each step
+ * Runs long work in time slices of a few milliseconds, so that a page keeps drawing. `onStep` receives what each step
  * yields and may throw to stop the work. Rejects with what it or the work throws.
  */
 export async function runInTurns<Step, Result>(

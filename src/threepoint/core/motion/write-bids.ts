@@ -7,7 +7,7 @@ export const bidsVersion = '1.11.1';
 
 const absent = 'n/a';
 
-/** A table of BIDS: tabs, a header, `n/a` where there is no value. Throws where a row lacks a column. */
+/** Returns a table of BIDS: tabs, a header, `n/a` where there is no value. Throws where a row lacks a column. */
 export function bidsTable(columns: readonly string[], rows: readonly Readonly<Record<string, unknown>>[]): string {
   const cell = (value: unknown, column: string): string => {
     if (value === undefined) throw new Error(`a row of a BIDS table has no "${column}"`);

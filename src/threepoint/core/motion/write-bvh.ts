@@ -1,11 +1,11 @@
 import { type Quat, quat, toEulerYxz } from '../math/quat';
 import { type MutableVec3, scale, setVec3, type Vec3, vec3 } from '../math/vec3';
 import { hipsAt, type Motion, resampleMotion, rotationAt } from './motion';
-import type { MotionBone } from './skeleton';
+import type { MotionBone } from './motion-bones';
 import { scaleProgress } from './work';
 
 export interface BvhOptions {
-  /** What a number of the file is: metres (the default) or centimetres. */
+  /** The unit of lengths: metres (the default) or centimetres. */
   readonly unit?: 'm' | 'cm';
   /** Frames per second; default: those the device asked for. */
   readonly rateHz?: number;
@@ -16,8 +16,8 @@ const degrees = 180 / Math.PI;
 const locked = 1 - 5e-9;
 
 /**
- * Angles [rad] about x, y, z of Ry·Rx·Rz. Where x is a quarter turn only the sum of the others is a fact: all of it is
- * y's.
+ * Writes the angles [rad] about x, y, z of Ry·Rx·Rz. At gimbal lock (x is a quarter turn) only the sum or difference of
+ * the others is defined: y takes all of it.
  */
 export function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
   const sine = 2 * (q.x * q.w - q.y * q.z);
@@ -26,7 +26,7 @@ export function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
   return setVec3(target, Math.sign(sine) * (Math.PI / 2), y, 0);
 }
 
-/** Without the sign of a zero. */
+/** Formats a number with fixed digits, without the sign of a negative zero. */
 const fixed = (value: number, digits: number): string => {
   const text = value.toFixed(digits);
   return text.startsWith('-') && Number(text) === 0 ? text.slice(1) : text;
@@ -34,10 +34,10 @@ const fixed = (value: number, digits: number): string => {
 
 const root = 'CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation';
 const joint = 'CHANNELS 3 Yrotation Xrotation Zrotation';
-/** Says that no one measured the joint: it keeps its rest. */
+/** The channels of a joint that is not measured: it keeps its rest. */
 const unmeasured = 'CHANNELS 0';
 
-/** Lines of the hierarchy, bones indented below their parents. */
+/** Returns the lines of the hierarchy, bones indented below their parents. */
 function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string): string[] {
   const lines: string[] = ['HIERARCHY'];
   const write = (index: number, depth: number): void => {
@@ -54,7 +54,7 @@ function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string): s
   return lines;
 }
 
-/** The bones in the order in which a file lists them: each before its children, and those before its next sibling. */
+/** Returns the bones in depth-first order, in which a file lists them. */
 export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
   const order: number[] = [];
   const visit = (index: number): void => {
@@ -70,8 +70,8 @@ const framesPerStep = 64;
 const resampling = 0.3;
 
 /**
- * The text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z, an
- * even rate. Bones that are not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence
+ * Writes the text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z,
+ * an even rate. Bones that are not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence
  * where the rate or the unit is none.
  */
 export function* writeBvh(

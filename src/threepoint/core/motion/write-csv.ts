@@ -1,21 +1,21 @@
 import { vec3 } from '../math/vec3';
-import { createJointPoses } from './file-motion';
+import { createSkeletonPose } from './imported-motion';
 import { type Motion, poseBones } from './motion';
-import { turnPoint } from './skeleton';
+import { turnPoint } from './motion-bones';
 
 const framesPerStep = 64;
 
 /**
- * A table of joints, in parts: a row per frame with its time [s], whether each hand was seen (1, 0), and where every
- * measured joint is [m, floor frame: +Y up, −Z forward]. Joints that are not measured (legs) have no columns. Yields
- * the share [0, 1] that is done.
+ * Writes a table of joints, in parts: a row per frame with its time [s], whether each hand was seen (1, 0), and the
+ * position of every measured joint [m, floor frame: +Y up, −Z forward]. Joints that are not measured (legs) have no
+ * columns. Yields the share [0, 1] that is done.
  */
 export function* writeCsv(motion: Motion): Generator<number, readonly string[]> {
   const { bones, times, seen } = motion;
   const measuredBones = bones.filter(({ measured }) => measured);
   const columns = measuredBones.flatMap(({ name }) => ['x', 'y', 'z'].map((axis) => `${name}_${axis}`));
   const parts = [`${['time', 'left_hand_seen', 'right_hand_seen', ...columns].join(',')}\n`];
-  const posed = createJointPoses(bones.length);
+  const posed = createSkeletonPose(bones.length);
   const place = vec3(0, 0, 0);
   let lines = '';
   for (let frame = 0; frame < times.length; frame++) {

@@ -6,14 +6,14 @@ import { hipsAt, type Motion, rotationAt } from './motion';
 export const generator = 'threepoint';
 const array = ({ x, y, z }: Vec3): number[] => [x, y, z];
 
-/** A clip of this motion, but for its tracks; it names the bones that are not measured. */
+/** Returns the clip of a motion without its tracks; it names the bones that are not measured. */
 export const clipOf = (motion: Motion): Omit<Clip, 'tracks'> => ({
   name: 'motion',
   times: clipTimes(motion),
   extras: { notMeasured: motion.bones.filter(({ measured }) => !measured).map(({ name }) => name) },
 });
 
-/** Times of the frames as glTF has them [s]. */
+/** Returns the times of the frames [s], strictly rising in single precision. */
 export const clipTimes = ({ times }: Motion): Float32Array => {
   const seconds = Float32Array.from(times);
   // A clip's times rise: two that are one in single precision are parted by the smallest step there is.
@@ -24,7 +24,7 @@ export const clipTimes = ({ times }: Motion): Float32Array => {
 const bits = new Int32Array(1);
 const asFloat = new Float32Array(bits.buffer);
 
-/** The number after a positive one in single precision. */
+/** Returns the next larger number in single precision after a positive one. */
 function next(value: number): number {
   asFloat[0] = value;
   bits[0]! += 1;
@@ -32,9 +32,9 @@ function next(value: number): number {
 }
 
 /**
- * The bytes of a VRM Animation 1.0 (.vrma), in parts: T-pose at rest facing +Z, rotations against it, translation of
- * the hips alone. Legs are in it, as the format wants them, at rest: `extras.notMeasured` of the animation names them.
- * Yields the share [0, 1] that is done.
+ * Writes the bytes of a VRM Animation 1.0 (.vrma), in parts: T-pose at rest facing +Z, rotations against it,
+ * translation of the hips alone. Legs are in it, as the format wants them, at rest: `extras.notMeasured` of the
+ * animation names them. Yields the share [0, 1] that is done.
  */
 export function* writeVrma(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]> {
   const { bones, times } = motion;

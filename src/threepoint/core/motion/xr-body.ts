@@ -6,9 +6,9 @@ import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, backward, cross, normalise, right, scale, up, type Vec3, vec3, writeVec3, zero } from '../math/vec3';
-import { createJointPoses } from './file-motion';
-import { poseBones } from './motion';
-import { type MotionBone, motionSkeleton, turnPoint } from './skeleton';
+import { createSkeletonPose } from './imported-motion';
+import { createMotion, poseBones } from './motion';
+import { type MotionBone, motionSkeleton, turnPoint } from './motion-bones';
 import { BoneRotations } from './take-motion';
 
 /** A joint of WebXR Body Tracking: which bone carries it, where on it [m, T-pose], how its axes lie there in T-pose. */
@@ -19,7 +19,7 @@ interface XRJoint {
   readonly rest: Quat;
 }
 
-/** Axes with −Z along a bone and +Y as near to `above` as that allows; T-pose, clip frame. */
+/** Returns axes with −Z along a bone and +Y as near to `above` as that allows; T-pose, clip frame. */
 function axesAlong(along: Vec3, above: Vec3): Quat {
   const z = normalise(scale(along, -1), backward);
   const x = normalise(cross(above, z), right);
@@ -49,7 +49,7 @@ class Joints {
     return next === null ? (end ?? up) : this.#bones[this.index(next)]!.offset;
   }
 
-  /** A joint at a share of the way along a bone. */
+  /** Adds a joint at a share of the way along a bone. */
   add(name: string, bone: string, next: string | null, above: Vec3, share = 0): void {
     const along = this.along(bone, next);
     this.list.push({ name, bone: this.index(bone), at: scale(along, share), rest: axesAlong(along, above) });
@@ -112,7 +112,7 @@ function addLeg(joints: Joints, side: Side): void {
   joints.add(`${side}-foot-ball`, `${side}Foot`, null, up, 0.8);
 }
 
-/** The joints in the order of the specification's list. */
+/** Returns the joints in the order of the specification's list. */
 function jointsOf(bones: readonly MotionBone[]): readonly XRJoint[] {
   const joints = new Joints(bones);
   addTrunk(joints);
@@ -135,7 +135,6 @@ export type XRBodyJoints = ReadonlyMap<string, Pose<'floor'>>;
  * const joints = poser.pose(pose.body, pose.fingers, secondsSinceLastFrame);
  */
 export class XRBodyPoser {
-  readonly #bones: readonly MotionBone[];
   readonly #joints: readonly XRJoint[];
   readonly #rotations: BoneRotations;
   readonly #motion;
@@ -143,20 +142,11 @@ export class XRBodyPoser {
   readonly #poses: ReadonlyMap<string, MutablePose<'floor'>>;
 
   constructor(calibration: Calibration) {
-    this.#bones = motionSkeleton(calibration);
-    this.#joints = jointsOf(this.#bones);
+    const bones = motionSkeleton(calibration);
+    this.#joints = jointsOf(bones);
     this.#rotations = new BoneRotations(calibration);
-    const measured = this.#bones.filter((bone) => bone.measured).length;
-    this.#motion = {
-      bones: this.#bones,
-      measured,
-      rateHz: 1,
-      times: new Float64Array(1),
-      hips: new Float64Array(3),
-      rotations: new Float32Array(4 * measured),
-      seen: new Uint8Array(1),
-    };
-    this.#posed = createJointPoses(this.#bones.length);
+    this.#motion = createMotion(bones, 1, 1);
+    this.#posed = createSkeletonPose(bones.length);
     this.#poses = new Map(this.#joints.map(({ name }) => [name, makePose<'floor'>()]));
   }
 

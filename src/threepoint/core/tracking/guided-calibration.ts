@@ -190,8 +190,8 @@ interface MeasuredBody {
 
 function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): MeasuredBody | CalibrationFault {
   const reaches = (eyeHeight: number): readonly number[] | null => {
-    const arms = wrists.map(({ side, position }) => reachOf(side, position, headHeight, eyeHeight));
-    return arms.every((arm) => arm !== null) ? arms : null;
+    const arms = wrists.map(({ side, position }) => armTo(side, position, headHeight, eyeHeight));
+    return arms.every((arm) => arm !== null) ? arms.map(length) : null;
   };
   let eyeHeight = headHeight;
   let arms = reaches(eyeHeight);
@@ -234,15 +234,10 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
 }
 
 /**
- * Shoulder to wrist [m] of an arm stretched in one of the poses; null: it points elsewhere. Wrist in the heading frame,
- * the eyes this high now, which for a seated user is less than their eye height.
+ * Returns the vector [m] from shoulder to wrist of an arm stretched in one of the poses; null: it points elsewhere.
+ * Wrist in the heading frame; `headHeight`: the eyes' current height, which for a seated user is less than their eye
+ * height.
  */
-function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
-  const arm = armTo(side, wrist, headHeight, eyeHeight);
-  return arm && length(arm);
-}
-
-/** Returns the arm from its shoulder to the wrist. */
 function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): Vec3 | null {
   const shoulder = add(restShoulder(side, eyeHeight), vec3(0, headHeight - eyeHeight, 0));
   const arm = subtract(wrist, shoulder);

@@ -11,19 +11,6 @@ import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
-/**
- * Detects a user who stands taller than the calibration. A lower headset proves nothing: people crouch, slouch and sit.
- */
-interface GrowthDetector {
-  /**
-   * Observes a frame with the calibration in use. Returns a larger calibration in the frame that proves it too small,
-   * else null. Another object is another calibration, unless it is the returned one.
-   */
-  observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
-  /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */
-  reset(): void;
-}
-
 /** The time [s] at a height that proves it, longer than a jump. */
 const provingSeconds = 1.25;
 /** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
@@ -48,7 +35,10 @@ interface CalmStand {
   readonly highest: number;
 }
 
-export function createGrowthDetector(): GrowthDetector {
+/**
+ * Detects a user who stands taller than the calibration. A lower headset proves nothing: people crouch, slouch and sit.
+ */
+export function createGrowthDetector() {
   let current: Calibration | null = null;
   /** The eye height [m] before any growth, and the highest plausible one: above it a user stands on something. */
   let measured = 0;
@@ -76,7 +66,11 @@ export function createGrowthDetector(): GrowthDetector {
   }
 
   return {
-    observe({ time, head }, calibration) {
+    /**
+     * Observes a frame with the calibration in use. Returns a larger calibration in the frame that proves it too small,
+     * else null. Another object is another calibration, unless it is the returned one.
+     */
+    observe({ time, head }: TrackingFrame, calibration: Calibration): Calibration | null {
       if (calibration !== current) take(calibration);
       const height = levelHeight(head);
       const zone = calibration.eyeHeight > measured ? grownDeadZone : deadZone;
@@ -90,7 +84,8 @@ export function createGrowthDetector(): GrowthDetector {
       else current = grown;
       return grown;
     },
-    reset() {
+    /** Discards the observed height: the floor lies elsewhere, or another person wears the headset. */
+    reset(): void {
       stand = null;
     },
   };

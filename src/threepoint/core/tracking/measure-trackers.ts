@@ -28,14 +28,6 @@ const steadyRotation = 0.99;
 /** A head lower than this [eye heights] is that of a person who sits, whose feet are not below the hips. */
 const standingHead = 0.9;
 
-/** Measures how trackers are worn, in a guided calibration. */
-export interface TrackerMeasuring {
-  /** Returns the trackers that a frame shows, heading frame; null: there are none. */
-  readonly sample: typeof sampleTrackers;
-  /** Returns the joints in the frames of their trackers. */
-  readonly measure: typeof measureTrackers;
-}
-
 /** Returns the trackers that a frame shows, heading frame; null: there are none. */
 function sampleTrackers(
   headingFromFloor: Parameters<typeof transformTracked<'heading'>>[0],
@@ -70,7 +62,10 @@ function measureTrackers(
   return Object.keys(offsets).length > 0 ? { trackerOffsets: offsets } : {};
 }
 
-export const trackerMeasuring: TrackerMeasuring = { sample: sampleTrackers, measure: measureTrackers };
+/** Measures how trackers are worn, in a guided calibration. */
+export const trackerMeasuring = { sample: sampleTrackers, measure: measureTrackers } as const;
+/** See trackerMeasuring. */
+export type TrackerMeasuring = typeof trackerMeasuring;
 
 /** Returns a function for the joints of a person who stands straight, heading frame; null: unknown. */
 function restJointsOf(calibration: Calibration, headHeight: number): (name: TrackerName, tracker: Vec3) => Vec3 | null {

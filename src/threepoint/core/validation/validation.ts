@@ -1,11 +1,11 @@
 import * as v from 'valibot';
 
 /**
- * What came in is not what it should be; the message names the field: "paper.json: tasks[1].seconds: expected a
+ * The error of an invalid input; the message names the field: "paper.json: tasks[1].seconds: expected a
  * number".
  */
 export class ValidationError extends Error {
-  /** Empty: the whole. */
+  /** The path of the field; empty: the whole input. */
   readonly field: string;
   readonly complaint: string;
 
@@ -16,7 +16,7 @@ export class ValidationError extends Error {
   }
 }
 
-/** The way to a value as one writes it in code: tasks[1].seconds, phrases.fr["rest.title"]. */
+/** Returns the path of a value as in code: tasks[1].seconds, phrases.fr["rest.title"]. */
 function fieldOf(issue: v.BaseIssue<unknown>): string {
   return (issue.path ?? []).reduce((way, { key }) => {
     if (typeof key === 'number') return `${way}[${key}]`;
@@ -33,7 +33,7 @@ const kindsInWords: Readonly<Record<string, string>> = {
   Object: 'an object',
 };
 
-/** What is wrong, for schemas that have no sentence of their own. */
+/** Returns the fault, for schemas without their own message. */
 function complaintOf({ kind, expected, received }: v.BaseIssue<unknown>): string {
   if (expected === 'never') return 'is not known here';
   if (kind === 'schema' && received === 'undefined') return 'is missing';
@@ -44,7 +44,7 @@ function complaintOf({ kind, expected, received }: v.BaseIssue<unknown>): string
   return words ? `expected ${kindsInWords[words] ?? words}` : 'is not what it should be';
 }
 
-/** The value as the schema knows it; throws a ValidationError that names the first field that is wrong. */
+/** Returns the parsed value; throws a ValidationError that names the first invalid field. */
 export function checked<Schema extends v.GenericSchema>(schema: Schema, value: unknown): v.InferOutput<Schema> {
   const result = v.safeParse(schema, value, { abortEarly: true, message: complaintOf });
   if (result.success) return result.output;
@@ -52,7 +52,7 @@ export function checked<Schema extends v.GenericSchema>(schema: Schema, value: u
   throw new ValidationError(fieldOf(issue), issue.message);
 }
 
-/** Everything that a schema finds wrong with a value, in the order of its fields. */
+/** Returns all faults of a value, in the order of its fields. */
 export function complaintsAbout(
   schema: v.GenericSchema,
   value: unknown,
@@ -61,7 +61,7 @@ export function complaintsAbout(
   return issues.map((issue) => ({ field: fieldOf(issue), complaint: issue.message }));
 }
 
-/** Names that go into addresses, file names and tables. */
+/** A name for addresses, file names and tables. */
 export const identifier = v.pipe(
   v.string(),
   v.regex(
@@ -104,5 +104,5 @@ export const integerBetween = (min: number, max: number) =>
 
 const handTilt = v.object({ pitch: numberBetween(-1, 1), yaw: numberBetween(-1, 1) });
 
-/** How hands stand to their forearms [rad], of each hand that was measured. */
+/** The tilts of the measured hands to their forearms [rad]. */
 export const handTiltsSchema = v.object({ left: v.optional(handTilt), right: v.optional(handTilt) });

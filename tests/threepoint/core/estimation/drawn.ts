@@ -3,10 +3,10 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { headJointOf } from 'threepoint/core/body/head-joint';
 import type { JointName } from 'threepoint/core/body/joints';
+import { writeLocalRotations } from 'threepoint/core/body/local-rotations';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { armBones, fitArms, makeFitArmsState } from 'threepoint/core/estimation/arms/fit-arms';
 import type { CompletedFrame, CompletedHand } from 'threepoint/core/estimation/complete-hands';
-import { composeBody } from 'threepoint/core/estimation/compose-body';
 import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
 import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import { fitTorso, makeFitTorsoState, torsoBones } from 'threepoint/core/estimation/trunk/fit-torso';
@@ -75,7 +75,8 @@ export function fitted(
   return (frame, joints, deltaSeconds) => {
     const torso = fitTorso(state.torso, joints, frame, bones.torso, deltaSeconds);
     const arms = fitArms(state.arms, { frame, joints, torso, bones: bones.arm, poles }, deltaSeconds);
-    composeBody(torso, arms, frame.head.orientation, body);
+    copyVec3(torso.hips, body.hipsPosition);
+    writeLocalRotations(torso.rotations, frame.head.orientation, torso.clavicles, arms, body.localRotations);
     return forwardKinematics(skeleton, body);
   };
 }

@@ -20,7 +20,7 @@ export interface GoldenCase {
     readonly positions: readonly Numbers[];
     readonly rotations: readonly Numbers[];
     readonly seen: readonly boolean[];
-    /** Pitch and yaw that the left and the right hand are turned by, as noticed in the frames before. */
+    /** The pitch and yaw by which each hand is turned, as estimated from the frames before. */
     readonly handTilts: readonly Numbers[];
     readonly ikJoints: readonly Numbers[];
     readonly features: Numbers;
@@ -45,7 +45,7 @@ export interface GoldenFit {
   }[];
 }
 
-/** Arms that hang, and how far above its place the headset is noticed to sit by them, frame by frame. */
+/** Arms that hang, and the rise of the headset that is estimated from them, frame by frame. */
 export interface GoldenHeadsetRise {
   /** [m] */
   readonly arm: number;

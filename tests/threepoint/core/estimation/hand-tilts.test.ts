@@ -15,7 +15,7 @@ import { openPlainModel } from './shipped-models';
 const body: Calibration = { eyeHeight: 1.58, armSpan: 1.5 };
 const tilt = fc.record({ pitch: number(-0.5, 0.5), yaw: number(-0.5, 0.5) });
 const straight = { pitch: 0, yaw: 0 };
-/** Until the second frame nothing has been noticed. */
+/** No motion of the hands is observed before the second frame. */
 const framesAsTold = 2;
 
 /** Returns the frame of a device whose hands have these tilts to the forearms. */
@@ -92,9 +92,9 @@ describe('hands that stand at a tilt to their forearms', () => {
   });
 });
 
-describe('tilts that are noticed while hands move', () => {
+describe('tilts that are estimated while hands move', () => {
   /** How hands are turned after so many seconds of a person who wears them so. */
-  const noticed = (seconds: number, told: Calibration['handTilts'], left = straight, right = straight) => {
+  const estimated = (seconds: number, told: Calibration['handTilts'], left = straight, right = straight) => {
     const estimator = createIk({ ...body, handTilts: told });
     const person = movingPerson(7, body, { x: 0, z: 0, yaw: 0.3 });
     for (let i = 0; i <= seconds * 60; i++) estimator.update(worn(person(i / 60), left, right));
@@ -105,10 +105,10 @@ describe('tilts that are noticed while hands move', () => {
 
   test('are at first the calibrated ones, else the usual ones, a left hand’s the mirror image', () => {
     const told = { pitch: 0.3, yaw: -0.2 };
-    const { left, right } = noticed(0, { left: told });
+    const { left, right } = estimated(0, { left: told });
     expect(left).toBeSameRotationAs(tiltRotation(told), 1e-6);
     const { pitch, yaw } = handTiltOf(rotate(right, forward));
-    expect(handTiltOf(rotate(noticed(0, undefined).left, forward))).toEqual({
+    expect(handTiltOf(rotate(estimated(0, undefined).left, forward))).toEqual({
       pitch: expect.closeTo(pitch, 9),
       yaw: expect.closeTo(-yaw, 9),
     });
@@ -119,11 +119,11 @@ describe('tilts that are noticed while hands move', () => {
       { pitch: 0.3, yaw: 0.4 },
       { pitch: 0.3, yaw: -0.4 },
     ];
-    const usual = noticed(0, undefined, left, right);
+    const usual = estimated(0, undefined, left, right);
     expect(degreesFrom(usual.left, left)).toBeGreaterThan(40);
     expect(degreesFrom(usual.right, right)).toBeGreaterThan(40);
     for (const told of [undefined, { left: { pitch: -0.4, yaw: -0.4 }, right: { pitch: 0.6, yaw: 0.4 } }]) {
-      const found = noticed(120, told, left, right);
+      const found = estimated(120, told, left, right);
       expect(degreesFrom(found.left, left)).toBeLessThan(15);
       expect(degreesFrom(found.right, right)).toBeLessThan(15);
     }
@@ -131,7 +131,7 @@ describe('tilts that are noticed while hands move', () => {
 
   test('do not feed themselves: after minutes it makes little difference what was calibrated', () => {
     const [usual, told] = [undefined, { left: { pitch: 0.5, yaw: 0.5 }, right: { pitch: 0.5, yaw: 0.5 } }].map((told) =>
-      noticed(180, told),
+      estimated(180, told),
     );
     for (const side of sides) expect(told![side]).toBeSameRotationAs(usual![side], 6);
   });
@@ -153,12 +153,12 @@ describe('tilts that are noticed while hands move', () => {
     const { turns } = estimator.state.tilts;
     const usual = structuredClone(turns);
     for (let i = 0; i < 60; i++) estimator.update(person(i / 60));
-    const noticed = structuredClone(turns);
-    expect(noticed).not.toEqual(usual);
+    const estimated = structuredClone(turns);
+    expect(estimated).not.toEqual(usual);
     estimator.reset();
     estimator.update(person(1));
     estimator.update(person(20));
-    expect(turns).toEqual(noticed);
+    expect(turns).toEqual(estimated);
     estimator.calibrate(body);
     expect(turns).toEqual(usual);
   });

@@ -3,11 +3,11 @@ import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createIk } from 'threepoint/core/estimation/estimators';
 import { makeIkSolution, makeThreePoints } from 'threepoint/core/estimation/ik/solve-ik';
-import { unremarkable, usualReach } from 'threepoint/core/estimation/online-calibration/headset-rise.json';
 import {
+  estimateHeadsetRise,
   makeHeadsetRiseState,
-  noticeHeadsetRise,
-} from 'threepoint/core/estimation/online-calibration/notice-headset-rise';
+} from 'threepoint/core/estimation/online-calibration/estimate-headset-rise';
+import { unremarkable, usualReach } from 'threepoint/core/estimation/online-calibration/headset-rise.json';
 import { transformPoint } from 'threepoint/core/math/pose';
 import { fromAxisAngle } from 'threepoint/core/math/quat';
 import { sides } from 'threepoint/core/math/side';
@@ -48,19 +48,19 @@ function hanging(rise: number, further = 0): TrackingFrame {
 }
 
 /** An estimator after so many seconds of this frame, at 20 frames a second. */
-function noticedAfter(seconds: number, frame: TrackingFrame, estimator = createIk(body)) {
+function estimatorAfter(seconds: number, frame: TrackingFrame, estimator = createIk(body)) {
   for (let i = 0; i < seconds * 20; i++) estimator.update({ ...frame, time: i / 20 });
   return estimator;
 }
 
 describe('a headset that sits above or below its usual place', () => {
   test.each([0.03, -0.03])(
-    'by %f m: most of it is noticed within minutes, and the body is nearer to where it is',
+    'by %f m: most of it is observed within minutes, and the body is nearer to where it is',
     (rise) => {
-      const estimator = noticedAfter(240, hanging(rise));
-      const noticed = estimator.state.headset.rise;
-      expect(noticed / rise).toBeGreaterThan(0.5);
-      expect(noticed / rise).toBeLessThan(1.1);
+      const estimator = estimatorAfter(240, hanging(rise));
+      const observed = estimator.state.headset.rise;
+      expect(observed / rise).toBeGreaterThan(0.5);
+      expect(observed / rise).toBeLessThan(1.1);
       const off = (of: ReturnType<typeof createIk>) =>
         distance(
           forwardKinematics(skeleton, poseOf(of, { ...hanging(rise), time: 1000 }).body!).rightUpperArm.position,
@@ -70,17 +70,17 @@ describe('a headset that sits above or below its usual place', () => {
     },
   );
 
-  test('nothing is noticed where it belongs, nor within a moment, nor by hands that do not hang', () => {
-    expect(noticedAfter(240, hanging(0)).state.headset.rise).toBe(0);
-    expect(noticedAfter(4, hanging(0.03)).state.headset.rise).toBe(0);
+  test('nothing is observed where it belongs, nor within a moment, nor by hands that do not hang', () => {
+    expect(estimatorAfter(240, hanging(0)).state.headset.rise).toBe(0);
+    expect(estimatorAfter(4, hanging(0.03)).state.headset.rise).toBe(0);
     const raised = standing(body, vec3(-0.3, 1.2, -0.4), vec3(0.3, 1.2, -0.4));
-    expect(noticedAfter(60, raised).state.headset).toEqual(createIk(body).state.headset);
+    expect(estimatorAfter(60, raised).state.headset).toEqual(createIk(body).state.headset);
   });
 
-  test('nothing is noticed where the span was not measured: the arms may be longer', () => {
+  test('nothing is observed where the span was not measured: the arms may be longer', () => {
     const derived = { ...body, armSpan: calibrationFromHeadHeight(body.eyeHeight).armSpan };
-    expect(noticedAfter(60, hanging(0.03), createIk(derived)).state.headset.rise).toBe(0);
-    expect(noticedAfter(60, hanging(0.03)).state.headset.rise).toBeGreaterThan(0);
+    expect(estimatorAfter(60, hanging(0.03), createIk(derived)).state.headset.rise).toBe(0);
+    expect(estimatorAfter(60, hanging(0.03)).state.headset.rise).toBeGreaterThan(0);
   });
 
   test('no faster than a body is seen to move by it', () => {
@@ -96,29 +96,29 @@ describe('a headset that sits above or below its usual place', () => {
   });
 
   test('the head is lower by it along its own up, and the hands are where they are tracked', () => {
-    const estimator = noticedAfter(60, hanging(0.03));
-    const noticed = estimator.state.headset.rise;
+    const estimator = estimatorAfter(60, hanging(0.03));
+    const observed = estimator.state.headset.rise;
     const frame = { ...movingPerson(4, body, { x: 0, z: 0, yaw: 0 })(0.5), time: 70 };
     const bowed = { ...frame, head: { ...frame.head, orientation: fromAxisAngle(right, -0.9) } };
     const { head, leftHand } = poseOf(estimator, bowed);
     const moved = subtract(head.position, bowed.head.position);
-    expect(length(moved)).toBeCloseTo(noticed, 9);
-    expect(moved.y).toBeCloseTo(-noticed * Math.cos(0.9), 9);
+    expect(length(moved)).toBeCloseTo(observed, 9);
+    expect(moved.y).toBeCloseTo(-observed * Math.cos(0.9), 9);
     expect(leftHand?.position).toEqual(bowed.leftHand?.position);
   });
 
   test('lasts over a recentre and a pause, and is forgotten with the calibration', () => {
-    const estimator = noticedAfter(60, hanging(0.03));
-    const noticed = estimator.state.headset.rise;
-    expect(noticed).toBeGreaterThan(0);
+    const estimator = estimatorAfter(60, hanging(0.03));
+    const observed = estimator.state.headset.rise;
+    expect(observed).toBeGreaterThan(0);
     estimator.reset();
-    expect(estimator.state.headset.rise).toBe(noticed);
+    expect(estimator.state.headset.rise).toBe(observed);
     estimator.calibrate(body);
     expect(estimator.state.headset).toEqual(createIk(body).state.headset);
   });
 
   test('counts beyond what people differ by', () => {
-    const estimator = noticedAfter(240, hanging(0, (unremarkable / 2) * chestSpaceBody(body).arm));
+    const estimator = estimatorAfter(240, hanging(0, (unremarkable / 2) * chestSpaceBody(body).arm));
     const { reach, rise } = estimator.state.headset;
     expect(reach.left).toBeGreaterThan(usualReach + unremarkable / 4);
     expect(rise).toBe(0);
@@ -138,7 +138,7 @@ describe('TypeScript agrees with Python', () => {
       addScaled(vec3(0.2, 1.4, 0), left!, arm, points.leftHand.position);
       addScaled(vec3(0.2, 1.4, 0), right!, arm, points.rightHand.position);
       const completed = { leftHand: goldenHand(seen[0] === true), rightHand: goldenHand(seen[1] === true) };
-      noticeHeadsetRise(state, { completed, points, ik }, arm, lowered, seconds);
+      estimateHeadsetRise(state, { completed, points, ik }, arm, lowered, seconds);
       expect(state.reach.left).toBeCloseTo(hangingReach[0]!, 9);
       expect(state.reach.right).toBeCloseTo(hangingReach[1]!, 9);
       expect(state.rise).toBeCloseTo(rise, 9);

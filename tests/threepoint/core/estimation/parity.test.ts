@@ -7,7 +7,10 @@ import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/net
 import { FeatureWindow } from 'threepoint/core/estimation/networks/feature-window';
 import { featureCount, frameFeatures } from 'threepoint/core/estimation/networks/frame-features';
 import { paperFeatures } from 'threepoint/core/estimation/networks/paper-features';
-import { makeHandTiltsState, noticeHandTilts } from 'threepoint/core/estimation/online-calibration/notice-hand-tilts';
+import {
+  estimateHandTilts,
+  makeHandTiltsState,
+} from 'threepoint/core/estimation/online-calibration/estimate-hand-tilts';
 import { type Side, sides } from 'threepoint/core/math/side';
 import { distance, subtract, type Vec3 } from 'threepoint/core/math/vec3';
 import { floorFromHeading } from 'threepoint/core/tracking/heading';
@@ -54,7 +57,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
     }
   });
 
-  test('how hands stand to their forearms, noticed frame by frame', () => {
+  test('how hands stand to their forearms, observed frame by frame', () => {
     const state = makeHandTiltsState(golden.calibration.handTilts);
     const fromHead: Partial<Record<Side, Vec3>> = {};
     for (const frame of golden.frames) {
@@ -69,7 +72,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
         travel[side] = distance(now, fromHead[side] ?? now);
         fromHead[side] = now;
       }
-      noticeHandTilts(state, solution, hands, travel);
+      estimateHandTilts(state, solution, hands, travel);
     }
   });
 

@@ -125,6 +125,8 @@ describe.each(bodies)('$label with trackers', (subject) => {
 describe('a pinned trunk', () => {
   const draw = (estimator: ReturnType<typeof createEstimator>, frame: TrackingFrame): Joints =>
     jointsOf(poseOf(estimator, frame), calibration);
+  const drawTracked = (frame: TrackingFrame, joints: TrueJoints): Joints =>
+    draw(createPinned(calibration), { ...frame, trackers: trackersOn(joints) });
 
   test('turns the hips like their tracker where the back reaches so far', () => {
     fc.assert(
@@ -133,10 +135,7 @@ describe('a pinned trunk', () => {
         const free = draw(createEstimator('ik', calibration), frame);
         const headJoint = headJointIn(frame, calibration);
         const goal = elsewhere(free.hips, vec3(0, 0, 0), about, headJoint, reaches(calibration).hips - 0.06);
-        const joints = draw(createPinned(calibration), {
-          ...frame,
-          trackers: trackersOn({ hips: goal }),
-        });
+        const joints = drawTracked(frame, { hips: goal });
         expect(distance(at(joints, 'hips'), goal.position)).toBeLessThan(1e-3);
         expect(joints.hips.orientation).toBeSameRotationAs(goal.orientation);
       }),
@@ -150,10 +149,7 @@ describe('a pinned trunk', () => {
         const frame = movingPerson(motion, calibration, place)(0);
         const free = draw(createEstimator('ik', calibration), frame);
         const chest = { ...free.chest, position: add(at(free, 'chest'), vec3(0, apart, 0)) };
-        const joints = draw(createPinned(calibration), {
-          ...frame,
-          trackers: trackersOn({ hips: free.hips, chest }),
-        });
+        const joints = drawTracked(frame, { hips: free.hips, chest });
         expect(distance(at(joints, 'hips'), at(free, 'hips'))).toBeLessThan(1e-3);
         if (apart === 0) expect(distance(at(joints, 'chest'), at(free, 'chest'))).toBeLessThan(1e-3);
         expectWhole(joints, calibration);
@@ -169,10 +165,7 @@ describe('a pinned trunk', () => {
         const free = draw(createEstimator('ik', calibration), frame);
         const headJoint = headJointIn(frame, calibration);
         const goal = elsewhere(free.hips, to, vec3(0, 0, 0), headJoint, reaches(calibration).hips);
-        const joints = draw(createPinned(calibration), {
-          ...frame,
-          trackers: trackersOn({ hips: goal }),
-        });
+        const joints = drawTracked(frame, { hips: goal });
         expect(distance(at(joints, 'leftHand'), frame.leftHand!.position)).toBeLessThan(2e-3);
         expect(distance(at(joints, 'rightHand'), frame.rightHand!.position)).toBeLessThan(2e-3);
       }),

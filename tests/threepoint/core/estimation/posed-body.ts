@@ -4,7 +4,7 @@ import type { JointName } from 'threepoint/core/body/joints';
 import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import type { Side } from 'threepoint/core/math/side';
-import { dot, normalise, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { dot, lerp, normalise, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { type Joints, poseOf } from './drawn';
 
@@ -34,12 +34,6 @@ export const bentBy = (joints: Joints, side: Side): number => {
 export const hip = { left: vec3(-0.22, 0.85, -0.05), right: vec3(0.22, 0.85, -0.05) };
 export const ahead = { left: vec3(-0.2, 1.25, -0.4), right: vec3(0.2, 1.25, -0.4) };
 
-/** Elbow relative to the middle of the straight line from shoulder to wrist. */
-export const elbowAside = (joints: Joints, side: Side): Vec3 => {
-  const shoulder = at(joints, `${side}UpperArm`);
-  const hand = at(joints, `${side}Hand`);
-  return subtract(
-    at(joints, `${side}LowerArm`),
-    vec3((shoulder.x + hand.x) / 2, (shoulder.y + hand.y) / 2, (shoulder.z + hand.z) / 2),
-  );
-};
+/** Returns the elbow relative to the middle of the straight line from shoulder to wrist. */
+export const elbowAside = (joints: Joints, side: Side): Vec3 =>
+  subtract(at(joints, `${side}LowerArm`), lerp(at(joints, `${side}UpperArm`), at(joints, `${side}Hand`), 0.5));

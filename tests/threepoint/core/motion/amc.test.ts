@@ -1,5 +1,5 @@
 import { distance, vec3 } from 'threepoint/core/math/vec3';
-import { createJointPoses } from 'threepoint/core/motion/file-motion';
+import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
 import { readAmc } from 'threepoint/core/motion/read-amc';
 import { readAsf } from 'threepoint/core/motion/read-asf';
 import { finishWork } from 'threepoint/core/motion/work';
@@ -30,7 +30,7 @@ const motion = (header: string, angle: number) => `:FULLY-SPECIFIED\n${header}\n
 /** Returns the end of the bone in the one frame. */
 function endOf(asf: string, amc: string) {
   const file = finishWork(readAmc(amc, readAsf(asf), 'person.asf'));
-  const pose = createJointPoses(file.names.length);
+  const pose = createSkeletonPose(file.names.length);
   file.pose(0, pose);
   return pose.positions[file.names.indexOf('upper:end')]!;
 }

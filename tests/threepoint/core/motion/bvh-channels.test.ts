@@ -1,7 +1,7 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import { createRandom } from 'threepoint/core/math/random';
 import { distance } from 'threepoint/core/math/vec3';
-import { createJointPoses } from 'threepoint/core/motion/file-motion';
+import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
 import { poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
 import { finishWork } from 'threepoint/core/motion/work';
 import { expect, test } from 'vitest';
@@ -57,7 +57,7 @@ test.each([1, 2, 3])('channels of every order place joints as matrices do: file 
   const { text, offsets, rows, channels } = randomFile(createRandom(seed));
   const file = finishWork(readBvh(text));
   const found = file.joints.map(({ name }) => name);
-  const pose = createJointPoses(file.joints.length);
+  const pose = createSkeletonPose(file.joints.length);
   for (const [frame, row] of rows.entries()) {
     poseBvh(file, frame, pose);
     const worlds: Matrix4[] = [];

@@ -2,9 +2,9 @@ import { Quaternion, Vector3 } from 'three';
 import { BVHLoader } from 'three/addons/loaders/BVHLoader.js';
 import type { Quat } from 'threepoint/core/math/quat';
 import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { createJointPoses } from 'threepoint/core/motion/file-motion';
+import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
+import { turnPoint, turnRotation } from 'threepoint/core/motion/motion-bones';
 import { type BvhMotion, poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
-import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
 import { finishWork } from 'threepoint/core/motion/work';
 import { writeBvh } from 'threepoint/core/motion/write-bvh';
 import { describe, expect, test } from 'vitest';
@@ -30,7 +30,7 @@ describe.each(Object.entries(people))('the %s person in a BVH file', (_, { motio
     const file = read(textOf(writeBvh(motion, { unit })));
     expect(file.frameCount).toBe(truth.length);
     expect(file.frameSeconds).toBeCloseTo(1 / rateHz, 8);
-    const pose = createJointPoses(file.joints.length);
+    const pose = createSkeletonPose(file.joints.length);
     let compared = 0;
     for (const [frame, joints] of truth.entries()) {
       poseBvh(file, frame, pose);

@@ -1,9 +1,9 @@
 import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
 import { distance } from 'threepoint/core/math/vec3';
-import { createJointPoses } from 'threepoint/core/motion/file-motion';
+import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
 import { resampleMotion } from 'threepoint/core/motion/motion';
+import { turnPoint, turnRotation } from 'threepoint/core/motion/motion-bones';
 import { readVrma } from 'threepoint/core/motion/read-vrma';
-import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
 import { finishWork } from 'threepoint/core/motion/work';
 import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
@@ -21,7 +21,7 @@ const changed = (from: string | RegExp, to: string): unknown => {
 test('a VRM Animation is read back within 1 mm and 0.1° where its frames lie', () => {
   const file = readVrma(JSON.parse(json), binary);
   expect(file.rateHz).toBe(60);
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   // Every fifth frame of 60 Hz is a sixth of 72 Hz.
   for (let frame = 0; frame < file.frameCount; frame += 5) {
     file.pose(frame, poses);
@@ -40,7 +40,7 @@ test('a VRM Animation is read back within 1 mm and 0.1° where its frames lie', 
 test('between keys a bone is where straight lines and shorter arcs have it', () => {
   const file = readVrma(JSON.parse(json), binary);
   const even = finishWork(resampleMotion(motion, 60));
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   for (let frame = 1; frame < 60; frame++) {
     const { x, y, z } = file.pose(frame, poses).positions[file.names.indexOf('hips')]!;
     expect(

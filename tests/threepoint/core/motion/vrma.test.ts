@@ -6,9 +6,9 @@ import { Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { jointNames } from 'threepoint/core/body/joints';
 import { distance } from 'threepoint/core/math/vec3';
-import { createJointPoses } from 'threepoint/core/motion/file-motion';
+import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
 import { poseBones } from 'threepoint/core/motion/motion';
-import { turnPoint, turnRotation } from 'threepoint/core/motion/skeleton';
+import { turnPoint, turnRotation } from 'threepoint/core/motion/motion-bones';
 import { clipTimes, writeVrma } from 'threepoint/core/motion/write-vrma';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { mannequin } from '../../avatar/glb';
@@ -27,7 +27,7 @@ async function load(bytes: ArrayBuffer) {
 
 describe.each(Object.entries(people))('the %s person in a VRM Animation', (_, { motion, truth }) => {
   const bytes = bytesOf(writeVrma(motion));
-  const pose = createJointPoses(motion.bones.length);
+  const pose = createSkeletonPose(motion.bones.length);
   let vrm: VRM;
   let play: (time: number) => void;
 

@@ -78,10 +78,7 @@ interface ArmState extends SwivelState {
   forearmTwist: number;
 }
 
-export interface FitArmsState {
-  readonly left: ArmState;
-  readonly right: ArmState;
-}
+export type FitArmsState = Readonly<Record<Side, ArmState>>;
 
 const makeArmState = (): ArmState => ({
   known: false,

@@ -42,12 +42,12 @@ export const shippedGait: GaitNetwork = shipped;
  * A small network, computed for a person and their mirror image and averaged.
  */
 export class Gait {
-  /** The newest estimate; overwritten by the next update. */
-  readonly feet: Readonly<Record<Side, ExpectedFoot>>;
   readonly #own: Record<Side, Mutable<ExpectedFoot>> = {
     left: { x: 0, z: 0, yaw: 0, standing: 1 },
     right: { x: 0, z: 0, yaw: 0, standing: 1 },
   };
+  /** The newest estimate; overwritten by the next update. */
+  readonly feet: Readonly<Record<Side, ExpectedFoot>> = this.#own;
   readonly #features = new GaitFeatures();
   readonly #perceptron: Perceptron;
 
@@ -60,7 +60,6 @@ export class Gait {
       ]),
     );
     this.#perceptron = new Perceptron(weights, 'gait', gaitFeatureCount, gaitOutputCount);
-    this.feet = this.#own;
   }
 
   /** Adds a frame at a time [s] that must not decrease. `eyeHeight`: [m]. */

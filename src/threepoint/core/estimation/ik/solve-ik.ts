@@ -225,7 +225,7 @@ function placeArm(
   wrist: Pose<'heading'>,
   turn: Quat,
   body: ChestSpaceBody,
-  { joints, poles, untiltedForearms: untoldForearms }: IkSolution,
+  { joints, poles, untiltedForearms }: IkSolution,
 ): void {
   const sigma = sideSign(side);
   const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
@@ -247,9 +247,9 @@ function placeArm(
   writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 4);
   rotate(wrist.orientation, rotateInverse(turn, backward, handAxis), handAxis);
   writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 7);
-  placeElbow(parameters.untoldPole, sigma, untiltedPole, untiltedElbow);
+  placeElbow(parameters.untiltedPole, sigma, untiltedPole, untiltedElbow);
   normalise(subtract(wrist.position, untiltedElbow, untiltedForearm), circle.axis, untiltedForearm);
-  rotate(turn, rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm), untoldForearms[side]);
+  rotate(turn, rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm), untiltedForearms[side]);
 }
 
 /** Writes the elbow on its circle, and its pole, by these weights of the hand's features. */

@@ -11,8 +11,6 @@ export class LatestResult {
   readonly #finished: (output: Float32Array) => void;
   readonly #failed: () => void;
   #running: Promise<void> | null = null;
-  /** Whether the newest run has not settled. */
-  #open = false;
   #fault: string | null = null;
   #epoch = 0;
 
@@ -26,7 +24,7 @@ export class LatestResult {
 
   /** The current run; no other may be started before it settles. */
   get running(): Promise<void> | null {
-    return this.#open ? this.#running : null;
+    return this.#running;
   }
 
   /** The newest fault, until a run succeeds. */
@@ -36,9 +34,9 @@ export class LatestResult {
 
   /** Starts a run; resolves when it has settled. `features` may be overwritten then. */
   start(features: Float32Array): Promise<void> {
-    if (this.#open && this.#running) return this.#running;
-    this.#open = true;
-    this.#running = this.#run(features);
+    this.#running ??= this.#run(features).finally(() => {
+      this.#running = null;
+    });
     return this.#running;
   }
 
@@ -63,8 +61,6 @@ export class LatestResult {
       if (startedIn === this.#epoch) this.#finish(output);
     } catch (error) {
       this.#fail(error);
-    } finally {
-      this.#open = false;
     }
   }
 

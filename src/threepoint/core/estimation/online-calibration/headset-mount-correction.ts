@@ -1,5 +1,5 @@
 import type { Calibration } from '../../body/calibration';
-import { type MutablePose, makePose, type TrackedPose } from '../../math/pose';
+import { makeTrackedPose, type TrackedPose } from '../../math/pose';
 import { fromAxisAngle, identity, type MutableQuat, multiply, quat, rotate } from '../../math/quat';
 import { addScaled, right, up, vec3 } from '../../math/vec3';
 
@@ -10,10 +10,7 @@ const headUp = vec3(0, 0, 0);
  * nominal position.
  */
 export class HeadsetMountCorrection {
-  readonly #corrected: MutablePose<'floor'> & { tracking: TrackedPose['tracking'] } = {
-    ...makePose<'floor'>(),
-    tracking: 'tracked',
-  };
+  readonly #corrected = makeTrackedPose();
   /** The rotation from the headset to a level head; null: level, or not measured. */
   #levelling: MutableQuat | null = null;
 

@@ -36,6 +36,7 @@ import {
   type Vec3,
   vec3,
 } from '../../math/vec3';
+import { recordOf } from '../../records';
 import type { CompletedFrame } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
 import limits from '../kinematic-limits.json';
@@ -60,14 +61,17 @@ const spineToShoulders = 0.35;
 /** The height [m] of the hip joints' middle when sitting on the floor. */
 const lowestHips = 0.09;
 
-type TrunkBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck';
+/** The bones of the trunk, parents first. */
+export const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
+type TrunkRotations = Readonly<Record<(typeof trunkBones)[number], MutableQuat>>;
+export const makeTrunkRotations = (): TrunkRotations => recordOf(trunkBones, () => quat(0, 0, 0, 1));
 
 /** A trunk with fixed bone lengths under the head, floor frame. */
 export interface TorsoPose {
   readonly hips: MutableVec3;
   readonly chest: MutableVec3;
   readonly neck: MutableVec3;
-  readonly rotations: Readonly<Record<TrunkBone, MutableQuat>>;
+  readonly rotations: TrunkRotations;
   readonly clavicles: Readonly<Record<Side, MutableQuat>>;
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
@@ -89,13 +93,7 @@ export const makeFitTorsoState = (): FitTorsoState => ({
     hips: vec3(0, 0, 0),
     chest: vec3(0, 0, 0),
     neck: vec3(0, 0, 0),
-    rotations: {
-      hips: quat(0, 0, 0, 1),
-      spine: quat(0, 0, 0, 1),
-      chest: quat(0, 0, 0, 1),
-      upperChest: quat(0, 0, 0, 1),
-      neck: quat(0, 0, 0, 1),
-    },
+    rotations: makeTrunkRotations(),
     clavicles: { left: quat(0, 0, 0, 1), right: quat(0, 0, 0, 1) },
     shoulders: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
   },

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from golden_file import assert_as_committed
 from threepoint_training import golden
+from threepoint_training.estimate_headset_rise import hanging_reach, reaches, rise
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.shared_constants import HEADSET_RISE
-from threepoint_training.notice_headset_rise import hanging_reach, reaches, rise
 from threepoint_training.simulate_trackers import TrackerConfig, draw_wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
 

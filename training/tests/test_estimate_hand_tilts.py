@@ -5,10 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from threepoint_training import hand_tilt, mirror, quaternion
-from threepoint_training.features import frame_features
-from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.shared_constants import HAND_TILTS, LIMB
-from threepoint_training.notice_hand_tilts import (
+from threepoint_training.estimate_hand_tilts import (
     NO_CALIBRATED_TILTS,
     CalibratedTilts,
     noticed,
@@ -16,7 +13,10 @@ from threepoint_training.notice_hand_tilts import (
     ik_forearms,
     with_noticed_hands,
 )
+from threepoint_training.features import frame_features
+from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
+from threepoint_training.shared_constants import HAND_TILTS, LIMB
 from threepoint_training.simulate_trackers import TrackerConfig, Wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
 

@@ -27,9 +27,9 @@ import {
   writeVec3,
   zero,
 } from '../math/vec3';
-import { createJointPoses, type FileMotion } from '../motion/file-motion';
+import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
 import { armLength, cmu, eyesFromHeadJoint, units } from './mocap-rules.json';
-import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestPose } from './rest-pose';
+import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestJoints } from './rest-joints';
 import {
   type BetweenJoints,
   type MappedSkeleton,
@@ -39,9 +39,9 @@ import {
   truthJoints,
 } from './skeleton-map';
 
-/** A motion in our joints, floor frame [m], at its file's rate. */
-export interface OurMotion {
-  readonly rest: RestPose;
+/** A motion in the joints of the truth, floor frame [m], at its file's rate. */
+export interface TruthMotion {
+  readonly rest: RestJoints;
   readonly rateHz: number;
   readonly frameCount: number;
   /** x, y, z of `truthJoints`, frame after frame; NaN: the file has no such joint. */
@@ -52,12 +52,12 @@ export interface OurMotion {
   readonly rotations: Float64Array;
 }
 
-/** Numbers of a frame. */
+/** The number of values of a frame. */
 export const positionsWidth = 3 * truthJoints.length;
 /** See positionsWidth. */
 export const rotationsWidth = 4 * trackedJoints.length;
 
-/** Positions and rotations as `OurMotion` has them, in either precision. */
+/** Positions and rotations as `TruthMotion` has them, in either precision. */
 interface JointNumbers {
   readonly positions: ArrayLike<number>;
   readonly rotations: ArrayLike<number>;
@@ -82,15 +82,15 @@ const unitNames: Readonly<Record<string, string>> = {
   [cmu.metresPerUnit]: 'the CMU database (5.6 cm)',
 };
 
-/** What takes the rotation of a hand since rest to that of its wrist, whose −Z points to the knuckles. */
-function wristFromRest(side: 'left' | 'right', rest: RestPose): Quat {
+/** Returns the rotation from a hand's rotation since rest to its wrist's frame, whose −Z points to the knuckles. */
+function wristFromRest(side: 'left' | 'right', rest: RestJoints): Quat {
   const sign = side === 'left' ? 1 : -1;
   const forearm = subtract(rest.get(`${side}Hand`)!, rest.get(`${side}LowerArm`)!);
   const turn = fromAxisAngle(up, (sign * Math.PI) / 2);
   return multiply(rotationBetween(scale(right, -sign), forearm), turn);
 }
 
-/** Joints that a file may lack, each after those that it lies between. */
+/** The joints that a file may lack, each after those between which it lies. */
 const assumed = ['neck', 'chest', 'spine'] as const;
 
 /** Writes the position of an assumed joint. */
@@ -100,8 +100,8 @@ function placeBetween({ near, far, share }: BetweenJoints, at: (joint: TruthJoin
   return lerp(middle(near), middle(far), share, target);
 }
 
-/** The joints at rest [m], floor frame. */
-function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number): RestPose {
+/** Returns the joints at rest [m], floor frame. */
+function restInMetres(file: ImportedMotion, skeleton: MappedSkeleton, unit: number): RestJoints {
   const { columns, between, floor } = skeleton;
   const rest = new Map<TruthJoint, Vec3>();
   for (const joint of truthJoints) {
@@ -120,26 +120,26 @@ function restInMetres(file: FileMotion, skeleton: MappedSkeleton, unit: number):
 }
 
 /** Returns why height and arm span of joints at rest [m] are no person's; null: they are, or there are no legs. */
-function bodyComplaint(rest: RestPose): string | null {
+function bodyComplaint(rest: RestJoints): string | null {
   const eyeHeight = eyeHeightAtRest(rest);
   return eyeHeight === null ? null : calibrationProblem({ eyeHeight, armSpan: armSpanAtRest(rest) });
 }
 
-/** Whether joints at rest [m] have the size of a person. */
-function isPersonSized(rest: RestPose): boolean {
+/** Returns whether joints at rest [m] have the size of a person. */
+function isPersonSized(rest: RestJoints): boolean {
   const [least, most] = armLength as [number, number];
   const arm = armAtRest(rest, 'left');
   return least < arm && arm < most && bodyComplaint(rest) === null;
 }
 
-/** The unit of a file, and what was assumed of it; null: metres, centimetres or the map's. */
+/** The unit of a file, and a note if it was assumed; null: metres, centimetres or the map's. */
 interface FileUnit {
   readonly metres: number;
   readonly note: string | null;
 }
 
 /** Returns the scale that gives a body an average height, or average arms if it has no legs. */
-function averageUnit(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
+function averageUnit(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit {
   const rest = restInMetres(file, skeleton, 1);
   const head = headHeightAtRest(rest);
   const { eyeHeight } = defaultCalibration;
@@ -159,7 +159,7 @@ function averageUnit(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
  * Returns the map's unit, else the first known one in which the body has a person's size, else the one that gives it an
  * average size. Throws a sentence where the body is no person's then.
  */
-export function unitOf(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
+export function unitOf(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit {
   if (skeleton.scale) return { metres: skeleton.scale, note: null };
   const metres = units.find((unit) => isPersonSized(restInMetres(file, skeleton, unit)));
   if (metres === undefined) return averageUnit(file, skeleton);
@@ -168,15 +168,15 @@ export function unitOf(file: FileMotion, skeleton: MappedSkeleton): FileUnit {
 }
 
 /**
- * Brings a file's joints into ours; `unit`: its unit [m]. Yields the share [0, 1] that is done. Throws a sentence where
- * its skeleton is no person's.
+ * Converts a file's motion to the joints of the truth; `unit`: its unit [m]. Yields the share [0, 1] that is done.
+ * Throws a sentence where its skeleton is no person's.
  */
-export function* toOurJoints(
-  file: FileMotion,
+export function* toTruthMotion(
+  file: ImportedMotion,
   rateHz: number,
   skeleton: MappedSkeleton,
   unit: number,
-): Generator<number, OurMotion> {
+): Generator<number, TruthMotion> {
   const { columns, between, floor, motionFloor } = skeleton;
   const restFromFloor = conjugate(floor);
   const rest = restInMetres(file, skeleton, unit);
@@ -187,7 +187,7 @@ export function* toOurJoints(
   };
   const positions = new Float64Array(file.frameCount * positionsWidth).fill(Number.NaN);
   const rotations = new Float64Array(file.frameCount * rotationsWidth);
-  const poses = createJointPoses(file.names.length);
+  const poses = createSkeletonPose(file.names.length);
   const places = new Map(truthJoints.map((joint) => [joint, vec3(0, 0, 0)]));
   const lacking = assumed.filter((joint) => between[joint]);
   const carriedOf = new Map(

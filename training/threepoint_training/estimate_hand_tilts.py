@@ -1,4 +1,4 @@
-"""Hand tilts (hand_tilt) noticed while hands move; the twin of src/threepoint/core/estimation/online-calibration/notice-hand-tilts.ts.
+"""Hand tilts (hand_tilt) noticed while hands move; the twin of src/threepoint/core/estimation/online-calibration/estimate-hand-tilts.ts.
 
 Inverse kinematics without tilts estimates where forearms point. The mean of these directions in the frames of their
 hands is the tilt, for errors of single postures average out.

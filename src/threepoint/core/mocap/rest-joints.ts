@@ -6,7 +6,7 @@ import { eyesFromHeadJoint, shortestBone } from './mocap-rules.json';
 import type { MappedSkeleton, TruthJoint } from './skeleton-map';
 
 /** The joints at rest [m], +Y up, facing −Z, without those that a file lacks. */
-export type RestPose = ReadonlyMap<TruthJoint, Vec3>;
+export type RestJoints = ReadonlyMap<TruthJoint, Vec3>;
 
 const trunk = [
   ['hips', 'chest'],
@@ -19,18 +19,18 @@ const trunk = [
  */
 const soleOfLeg = 0.039 / 0.491;
 
-const between = (rest: RestPose, a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
+const between = (rest: RestJoints, a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
 
 /** Returns the length of an arm from shoulder to wrist. */
-export const armAtRest = (rest: RestPose, side: Side): number =>
+export const armAtRest = (rest: RestJoints, side: Side): number =>
   between(rest, `${side}UpperArm`, `${side}LowerArm`) + between(rest, `${side}LowerArm`, `${side}Hand`);
 
 /** Returns the distance from wrist to wrist with straight arms. */
-export const armSpanAtRest = (rest: RestPose): number =>
+export const armSpanAtRest = (rest: RestJoints): number =>
   between(rest, 'leftUpperArm', 'rightUpperArm') + armAtRest(rest, 'left') + armAtRest(rest, 'right');
 
 /** Returns the height of the head joint above the soles, with straight legs; null: a file without legs. */
-export function headHeightAtRest(rest: RestPose): number | null {
+export function headHeightAtRest(rest: RestJoints): number | null {
   const legs = sides.flatMap((side) => {
     const [hip, knee, ankle] = (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => rest.get(`${side}${part}`));
     return hip && knee && ankle ? [distance(hip, knee) + distance(knee, ankle)] : [];
@@ -41,14 +41,14 @@ export function headHeightAtRest(rest: RestPose): number | null {
 }
 
 /** Returns the eye height [m] with straight legs and the trunk as at rest; null: a file without legs. */
-export function eyeHeightAtRest(rest: RestPose): number | null {
+export function eyeHeightAtRest(rest: RestJoints): number | null {
   const head = headHeightAtRest(rest);
   return head === null ? null : head + eyesFromHeadJoint[1]!;
 }
 
 const direction = (v: Vec3): Vec3 => normalise(v, zero);
 
-/** A direction of a body that faces −Z, in a word. */
+/** Returns a direction of a body that faces −Z in words. */
 function shownVector({ x, y, z }: Vec3): string {
   const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
   if (ax >= ay && ax >= az) return x > 0 ? 'to the right' : 'to the left';
@@ -61,7 +61,7 @@ function shownVector({ x, y, z }: Vec3): string {
  * of no length, a trunk that lies, shoulders that are not left and right, raised or folded arms, legs that do not
  * stand.
  */
-export function checkRest(rest: RestPose, { joints: names }: Pick<MappedSkeleton, 'joints'>): void {
+export function checkRest(rest: RestJoints, { joints: names }: Pick<MappedSkeleton, 'joints'>): void {
   const at = (joint: TruthJoint): Vec3 => rest.get(joint)!;
   const nameOf = (joint: TruthJoint): string => names[joint] ?? 'assumed';
   const refuse = (what: string, should: string): never => {

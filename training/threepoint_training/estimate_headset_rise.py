@@ -1,5 +1,5 @@
 """How far above its usual place a headset sits, noticed by arms that hang; the twin of
-src/threepoint/core/estimation/online-calibration/notice-headset-rise.ts.
+src/threepoint/core/estimation/online-calibration/estimate-headset-rise.ts.
 """
 
 import numpy as np

@@ -25,7 +25,7 @@ export function resetHeadsetRise(state: HeadsetRiseState): void {
   state.rise = 0;
 }
 
-interface NoticedFrame extends Pick<SolvedFrame, 'points' | 'ik'> {
+interface ObservedFrame extends Pick<SolvedFrame, 'points' | 'ik'> {
   readonly completed: Pick<CompletedFrame, 'leftHand' | 'rightHand'>;
 }
 
@@ -39,9 +39,9 @@ const fromShoulder = vec3(0, 0, 0);
  *
  * `arm`: its length [m]; `lowered`: the rise by which the head of this frame was already lowered [m].
  */
-export function noticeHeadsetRise(
+export function estimateHeadsetRise(
   state: HeadsetRiseState,
-  { completed, points, ik: { joints } }: NoticedFrame,
+  { completed, points, ik: { joints } }: ObservedFrame,
   arm: number,
   lowered: number,
   deltaSeconds: number,

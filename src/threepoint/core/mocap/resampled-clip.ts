@@ -1,11 +1,11 @@
 import { conjugate, multiply, type Quat, quat, slerp, writeQuat } from '../math/quat';
 import { rateHz, shortestPieceSeconds, teleportSpeed } from './mocap-rules.json';
-import { type OurMotion, positionsWidth, rotationAt, rotationsWidth } from './our-joints';
 import type { Piece } from './person';
 import { bodyJoints, trackedJoints } from './skeleton-map';
+import { positionsWidth, rotationAt, rotationsWidth, type TruthMotion } from './truth-motion';
 
 /** Returns the frames at which a motion jumps, and the pieces between them that are long enough to be motion. */
-export function cutAtLeaps({ positions, rateHz: rate, frameCount }: OurMotion): {
+export function splitAtJumps({ positions, rateHz: rate, frameCount }: TruthMotion): {
   readonly cuts: readonly number[];
   readonly pieces: readonly Piece[];
 } {
@@ -25,28 +25,28 @@ export function cutAtLeaps({ positions, rateHz: rate, frameCount }: OurMotion): 
   return { cuts, pieces: pieces.filter(({ from, to }) => to - from >= shortest) };
 }
 
-/** A piece of a motion at 60 Hz in single precision, with the numbers of `OurMotion`. */
-export interface EvenClip {
+/** A piece of a motion at 60 Hz in single precision, with the numbers of `TruthMotion`. */
+export interface ResampledClip {
   readonly frameCount: number;
   readonly positions: Float32Array<ArrayBuffer>;
   readonly rotations: Float32Array<ArrayBuffer>;
 }
 
-// Scratch of `evenClip`: a joint's rotations in the two frames that are mixed.
+// Scratch of `resampleClip`: a joint's rotations in the two frames that are mixed.
 const rotationBefore = quat(0, 0, 0, 1);
 const rotationAfter = quat(0, 0, 0, 1);
 
 /**
- * The piece at 60 Hz: every nth frame where that is exact, else interpolated; above a floor at this height [m], its
- * head turned back by `neutral`.
+ * Returns the piece at 60 Hz: every nth frame where that is exact, else interpolated; relative to a floor at this
+ * height [m], its head turned back by `neutral`.
  */
-export function evenClip(motion: OurMotion, { from, to }: Piece, floor: number, neutral: Quat): EvenClip {
+export function resampleClip(motion: TruthMotion, { from, to }: Piece, floor: number, neutral: Quat): ResampledClip {
   const { positions, rateHz: rate } = motion;
   const length = to - from;
   const step = rate / rateHz;
   const every = Math.abs(step - Math.round(step)) < 1e-3 && step >= 1 ? Math.round(step) : null;
   const frameCount = every ? Math.ceil(length / every) : Math.floor(((length - 1) / rate) * rateHz) + 1;
-  const clip: EvenClip = {
+  const clip: ResampledClip = {
     frameCount,
     positions: new Float32Array(frameCount * positionsWidth),
     rotations: new Float32Array(frameCount * rotationsWidth),

@@ -41,7 +41,7 @@ const thumbAside: FingerBend = { ...straight, spread: Math.PI / 4 };
  */
 export const restBend = (finger: FingerName): FingerBend => (finger === 'thumb' ? thumbAside : straight);
 
-/** A point of the frame of a left wrist, in T-pose's clip frame, from the wrist of this side. */
+/** Returns a point of a left wrist's frame relative to the wrist of this side, clip frame, in T-pose. */
 function handPoint(side: Side, point: Vec3): Vec3 {
   const inWrist = side === 'left' ? point : mirrorPoint(point, vec3(0, 0, 0));
   return turnPoint(rotateInverse(wristFromHandBone[side], inWrist));
@@ -51,7 +51,7 @@ class Builder {
   readonly bones: MotionBone[] = [];
   readonly #index = new Map<string, number>();
 
-  /** `end` may be left out where a child follows. */
+  /** Adds a bone; `end` may be left out where a child follows. */
   add(name: string, parent: string | null, offset: Vec3, { end = null as Vec3 | null, measured = true } = {}): void {
     this.#index.set(name, this.bones.length);
     this.bones.push({ name, parent: parent === null ? -1 : this.#index.get(parent)!, offset, end, measured });

@@ -23,7 +23,7 @@ interface HandTiltState {
   readonly prior: MutableVec3;
   calibrated: boolean;
   /** Sum of observed directions times metres of travel [m], decaying by 1/e in memoryMetres. */
-  readonly noticed: MutableVec3;
+  readonly observed: MutableVec3;
 }
 
 export interface HandTiltsState {
@@ -33,7 +33,7 @@ export interface HandTiltsState {
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 
-const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, noticed: vec3(0, 0, 0) });
+const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, observed: vec3(0, 0, 0) });
 
 /** Returns the state for a user with these calibrated tilts. */
 export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTiltsState {
@@ -56,7 +56,7 @@ export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | un
     const tilt = calibrated?.[side];
     rotate(tiltRotation(tilt ?? defaultHandTilt(side)), forward, hand.prior);
     hand.calibrated = tilt !== undefined;
-    setVec3(hand.noticed, 0, 0, 0);
+    setVec3(hand.observed, 0, 0, 0);
     turnAfter(state, side);
   }
 }
@@ -67,15 +67,15 @@ const direction = vec3(0, 0, 0);
  * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of
  * doubtAngle/angle once prior and observations differ by more than doubtAngle; the usual tilt's is constant.
  */
-function priorMetres({ prior, calibrated: told, noticed }: HandTiltState): number {
-  if (!told) return usualMetres;
-  const angle = Math.atan2(length(cross(prior, noticed, direction)), dot(prior, noticed));
+function priorMetres({ prior, calibrated, observed }: HandTiltState): number {
+  if (!calibrated) return usualMetres;
+  const angle = Math.atan2(length(cross(prior, observed, direction)), dot(prior, observed));
   return angle > doubtAngle ? calibratedMetres * (doubtAngle / angle) ** 2 : calibratedMetres;
 }
 
 function turnAfter(state: HandTiltsState, side: Side): void {
   const hand = state[side];
-  addScaled(hand.noticed, hand.prior, priorMetres(hand), direction);
+  addScaled(hand.observed, hand.prior, priorMetres(hand), direction);
   forearmRotation(normalise(direction, forward, direction), state.turns[side]);
 }
 
@@ -85,9 +85,9 @@ function turnAfter(state: HandTiltsState, side: Side): void {
  * frame. The input ignores the estimate, so errors cannot feed back; IK's own errors average out as the posture
  * changes. A hand at rest changes nothing.
  */
-export function noticeHandTilts(
+export function estimateHandTilts(
   state: HandTiltsState,
-  { untiltedForearms: untoldForearms }: IkSolution,
+  { untiltedForearms }: IkSolution,
   { leftHand, rightHand }: Pick<CompletedFrame, 'leftHand' | 'rightHand'>,
   travel: Readonly<Record<Side, number>>,
 ): void {
@@ -95,8 +95,8 @@ export function noticeHandTilts(
     const hand = side === 'left' ? leftHand : rightHand;
     const metres = travel[side];
     if (hand.source !== 'tracked' || metres === 0) continue;
-    const { noticed } = state[side];
-    addScaled(scale(noticed, Math.exp(-metres / memoryMetres), noticed), untoldForearms[side], metres, noticed);
+    const { observed } = state[side];
+    addScaled(scale(observed, Math.exp(-metres / memoryMetres), observed), untiltedForearms[side], metres, observed);
     turnAfter(state, side);
   }
 }
