@@ -78,7 +78,7 @@ interface ArmState extends SwivelState {
   forearmTwist: number;
 }
 
-export type FitArmsState = Readonly<Record<Side, ArmState>>;
+export interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
 
 const makeArmState = (): ArmState => ({
   known: false,
