@@ -13,7 +13,7 @@ import { begin } from 'threepoint-study/model/progress/progress';
 import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { randomSource } from 'threepoint-study/simulation/random-source';
-import { heardFrom, kill } from '../tests/server/child-process';
+import { kill, messageFrom } from '../tests/server/child-process';
 import { paperFile } from '../tests/study/model/studies';
 import { playedRound } from '../tests/study/participant/played-round';
 
@@ -125,7 +125,7 @@ async function takePart(
 
 const inspect = async (server: ChildProcess) => {
   server.send('inspect');
-  return heardFrom<{ rssBytes: number; cpuSeconds: number }>(server);
+  return messageFrom<{ rssBytes: number; cpuSeconds: number }>(server);
 };
 
 const directory = mkdtempSync(join(tmpdir(), 'threepoint-load-'));
@@ -148,7 +148,7 @@ const server = spawn(command as string, words, {
   stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
   env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
 });
-const { port } = await heardFrom<{ port: number }>(server);
+const { port } = await messageFrom<{ port: number }>(server);
 const times: Times = new Map();
 const refused: string[] = [];
 const ask = client(`http://127.0.0.1:${port}`, times, refused);

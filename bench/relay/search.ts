@@ -1,6 +1,6 @@
 import { type ChildProcess, fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import { heardFrom } from '../../tests/server/child-process';
+import { messageFrom } from '../../tests/server/child-process';
 import type { Cell, ClientAnswer, Load, Meeting, PoseLatencies, RelayGreeting, RelayUsage } from './conversation';
 
 /** How one load went. */
@@ -70,7 +70,7 @@ class Drive {
   }
 
   async begin(): Promise<void> {
-    const { port } = await heardFrom<RelayGreeting>(this.#relay);
+    const { port } = await messageFrom<RelayGreeting>(this.#relay);
     this.#clients.send({ ...this.#cell, port, secret } satisfies Meeting);
   }
 
@@ -82,9 +82,9 @@ class Drive {
   async trial(rooms: number): Promise<Trial> {
     const { room } = this.#cell;
     this.#clients.send({ rooms, warmUpSeconds, seconds: this.#seconds } satisfies Load);
-    await heardFrom<ClientAnswer>(this.#clients);
+    await messageFrom<ClientAnswer>(this.#clients);
     const before = await this.#usage();
-    const result = await heardFrom<PoseLatencies>(this.#clients);
+    const result = await messageFrom<PoseLatencies>(this.#clients);
     const after = await this.#usage();
     const used = after.cpuMicroseconds - before.cpuMicroseconds;
     return {
@@ -103,7 +103,7 @@ class Drive {
 
   #usage(): Promise<RelayUsage> {
     this.#relay.send('usage');
-    return heardFrom(this.#relay);
+    return messageFrom(this.#relay);
   }
 }
 

@@ -46,7 +46,7 @@ export interface AuthThrottle {
 /** Failures are kept for this long [s]. */
 const memorySeconds = 3600;
 /** A secret that was right from an address is checked without delay from there for this long [s]. */
-const trustSeconds = 12 * 3600;
+const knownSecretSeconds = 12 * 3600;
 /** Wrong guesses without a delay; after them the delay doubles from one second up to a limit [s]. */
 const addressLimits = { free: 5, longestDelay: 900 } as const;
 /**
@@ -88,7 +88,7 @@ function createDelay({ free, longestDelay }: { readonly free: number; readonly l
 export function createAuthThrottle(onWrong: (guess: FailedAttempt) => void): AuthThrottle {
   const byAddress = createDelay(addressLimits);
   const byStudy = createDelay(studyLimits);
-  const right = new RateLimiterMemory({ points: 1, duration: trustSeconds });
+  const right = new RateLimiterMemory({ points: 1, duration: knownSecretSeconds });
   const wrong = new RateLimiterMemory({ points: 1, duration: memorySeconds });
 
   return {
@@ -114,7 +114,11 @@ export function createAuthThrottle(onWrong: (guess: FailedAttempt) => void): Aut
         throw error;
       }
       if (opens) {
-        await Promise.all([byAddress.forget(network), byStudy.giveBack(study), right.set(digest, 1, trustSeconds)]);
+        await Promise.all([
+          byAddress.forget(network),
+          byStudy.giveBack(study),
+          right.set(digest, 1, knownSecretSeconds),
+        ]);
         return true;
       }
       await wrong.set(digest, 1, memorySeconds);

@@ -1,7 +1,7 @@
 import type { ChildProcess } from 'node:child_process';
 
 /** The next message of a process; an error where it ends instead. */
-export const heardFrom = <T>(child: ChildProcess): Promise<T> =>
+export const messageFrom = <T>(child: ChildProcess): Promise<T> =>
   new Promise((resolve, reject) => {
     const ended = (code: number | null): void => reject(new Error(`the server's process ended with ${code}`));
     child.once('exit', ended);

@@ -2,7 +2,7 @@ import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../temporary-directory';
-import { heardFrom, isAlive, kill } from './child-process';
+import { isAlive, kill, messageFrom } from './child-process';
 
 /** What the process says once it serves. */
 export interface ServerHello {
@@ -46,7 +46,7 @@ export async function forkServer(
     },
   });
   onTestFinished(() => kill(child));
-  const { port, routes } = await heardFrom<ServerHello>(child);
+  const { port, routes } = await messageFrom<ServerHello>(child);
   return {
     port,
     routes,
@@ -56,11 +56,11 @@ export async function forkServer(
     /** Moves the clock of the server, and of nothing else, to this far from the machine's [s]. */
     async setClock(ahead: number) {
       child.send({ ahead });
-      await heardFrom(child);
+      await messageFrom(child);
     },
     async inspect() {
       child.send('inspect');
-      return heardFrom<ServerState>(child);
+      return messageFrom<ServerState>(child);
     },
   };
 }
@@ -85,6 +85,6 @@ export function probeHealth(url: string): (atLeast?: number) => Promise<Health> 
   onTestFinished(() => kill(child));
   return (atLeast = 1) => {
     child.send(atLeast);
-    return heardFrom<Health>(child);
+    return messageFrom<Health>(child);
   };
 }

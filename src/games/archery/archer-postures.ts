@@ -20,7 +20,6 @@ import {
   zero,
 } from 'threepoint/core/math/vec3';
 import { wristAround } from '../fist';
-import type { PlayerInput } from '../player-input';
 import {
   armRatio,
   halfShoulderRatio,
@@ -30,6 +29,7 @@ import {
   swayAt,
   yawOf,
 } from '../simulated-body';
+import type { SimulatedInput } from '../simulated-input';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseDirection } from './flight';
 
@@ -197,7 +197,7 @@ export class ArcherPostures {
    * Returns head, hands (floor frame) and buttons of a posture at a time [s]. `pressure`: on the string hand's button,
    * 0 to 1. `swing`: outward offset of that hand [m].
    */
-  inputFor(now: Posture, time: number, pressure: number, swing: number): PlayerInput {
+  inputFor(now: Posture, time: number, pressure: number, swing: number): SimulatedInput {
     const head = add(this.eyes, swayAt(time));
     const bowHand = this.#inFloor(head, this.#bowWrist(now));
     const stringHand = this.#inFloor(head, this.#stringWrist(now, swing));

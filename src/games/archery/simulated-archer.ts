@@ -1,7 +1,7 @@
 import { clamp } from 'threepoint/core/math/damper';
 import { addScaled, subtract } from 'threepoint/core/math/vec3';
-import type { PlayerInput } from '../player-input';
 import { minimumJerk, yawOf } from '../simulated-body';
+import type { SimulatedInput } from '../simulated-input';
 import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 
@@ -97,7 +97,7 @@ export function createSimulatedArcher(body: ArcherBody) {
 
   return {
     /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing], for this state of the match. */
-    follow(time: number, state: ArcheryState): PlayerInput {
+    follow(time: number, state: ArcheryState): SimulatedInput {
       proceed(time, state);
       const current = plan[0];
       const share = current ? minimumJerk(clamp((time - began) / current.seconds, 0, 1)) : 0;

@@ -1,7 +1,7 @@
 import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
-import type { PlayerInput } from '../player-input';
 import { minimumJerk, yawOf } from '../simulated-body';
+import type { SimulatedInput } from '../simulated-input';
 import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';
 
 /** What a pointer asks of an archer. */
@@ -52,7 +52,7 @@ export function createSteeredArcher(body: ArcherBody) {
       return phase === 'loosing' || phase === 'following' || phase === 'returning' || phase === 'lowering';
     },
     /** Returns head, hands (floor frame) and buttons at `time` [s, not decreasing]. */
-    follow(time: number, { target, pressed, cancelled }: Steering): PlayerInput {
+    follow(time: number, { target, pressed, cancelled }: Steering): SimulatedInput {
       aim = aim === null || last === null ? target : dampVec3(aim, target, aimHalfLife, time - last);
       last = time;
       const taking = postures.ready(yawOf(subtract(aim, eyes)));

@@ -1,5 +1,5 @@
 import { distance, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { PlayerInput } from '../player-input';
+import type { SimulatedInput } from '../simulated-input';
 import type { BallState } from './ball-state';
 import { rackPosition, stations } from './stations';
 
@@ -14,7 +14,7 @@ export interface BotView {
 /** A built-in player, which produces hands and buttons for a whole match. */
 export interface BallBot {
   /** Returns head, hands (own floor frame) and buttons at `time` [s, not decreasing]. */
-  follow(time: number, sight: BotView): PlayerInput;
+  follow(time: number, sight: BotView): SimulatedInput;
 }
 
 // Scratch of one call.

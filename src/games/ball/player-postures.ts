@@ -22,8 +22,8 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { wristAround } from '../fist';
-import type { PlayerInput } from '../player-input';
 import { armRatio, halfShoulderRatio, shoulderBehindRatio, shoulderDropRatio, swayAt, yawOf } from '../simulated-body';
+import type { SimulatedInput } from '../simulated-input';
 
 /** The body and the station of a player. */
 export interface PlayerBody {
@@ -171,7 +171,7 @@ export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = ar
       copyVec3(hangingThumb[side], target.thumb);
     },
     /** Returns head, hands and buttons of a posture at a time [s], with postural sway; pressures in [0, 1]. */
-    inputFor(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): PlayerInput {
+    inputFor(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): SimulatedInput {
       swayAt(time, drift);
       const head = makeTrackedPose();
       add(posture.eyes, drift, head.position);

@@ -16,7 +16,7 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { fallTime, velocityAt } from '../ballistics';
-import type { PlayerInput } from '../player-input';
+import type { SimulatedInput } from '../simulated-input';
 import type { BallBot, BotView } from './ball-bot';
 import type { BallState, TimedLaunch } from './ball-state';
 import { gripRadius } from './basket';
@@ -83,7 +83,7 @@ class Holder implements BallBot {
     this.#look = add(eyes, aheadOfEyes);
   }
 
-  follow(time: number, { state }: BotView): PlayerInput {
+  follow(time: number, { state }: BotView): SimulatedInput {
     const elapsed = this.#lastTime === null ? 0 : clamp(time - this.#lastTime, 0, 0.1);
     this.#lastTime = time;
     const comes = this.#findNextBall(state);

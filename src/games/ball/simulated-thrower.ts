@@ -14,8 +14,8 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import { gravity } from '../ballistics';
-import type { PlayerInput } from '../player-input';
 import { minimumJerk } from '../simulated-body';
+import type { SimulatedInput } from '../simulated-input';
 import { type BallBot, type BotView, nearestBall } from './ball-bot';
 import {
   copyPosture,
@@ -84,7 +84,7 @@ class Thrower implements BallBot {
     this.#random = createRandom(seed);
   }
 
-  follow(time: number, sight: BotView): PlayerInput {
+  follow(time: number, sight: BotView): SimulatedInput {
     this.#postures.inFloor(sight.basket ?? sight.state.basket.position, this.#basket);
     this.#proceed(time, sight);
     const current = this.#plan[0];
@@ -92,7 +92,7 @@ class Thrower implements BallBot {
   }
 
   /** Returns head, hands and buttons within a movement. */
-  #move(current: Movement, time: number): PlayerInput {
+  #move(current: Movement, time: number): SimulatedInput {
     const { swung } = current;
     const elapsed = Math.min(time - (this.#began ?? 0), current.seconds);
     const share = minimumJerk(clamp(elapsed / current.seconds, 0, 1));

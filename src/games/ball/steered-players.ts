@@ -16,8 +16,8 @@ import {
   vec3,
 } from 'threepoint/core/math/vec3';
 import type { Launch } from '../ballistics';
-import type { PlayerInput } from '../player-input';
 import { minimumJerk } from '../simulated-body';
+import type { SimulatedInput } from '../simulated-input';
 import type { BallBot, BotView } from './ball-bot';
 import { nearestBall } from './ball-bot';
 import {
@@ -134,7 +134,7 @@ class SteeredThrower implements SteeredPlayer {
     return this.#aims ? this.#aim : null;
   }
 
-  follow(time: number, sight: BotView): PlayerInput {
+  follow(time: number, sight: BotView): SimulatedInput {
     const input = this.#steering();
     const elapsed = this.#last === null ? 0 : clamp(time - this.#last, 0, 0.1);
     this.#last = time;

@@ -11,7 +11,7 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
 import type { CameraScene } from '../scene/desktop-view';
 import type { ActivityContext, ActivitySettings, ActivitySettingsWriter } from './activity-context';
@@ -71,7 +71,7 @@ export interface OpenActivity {
   /** Receives from the network and advances simulated players. */
   begin?(time: number): void;
   /** Returns the input of the simulated player, or of the one that a pointer steers; null: no player is moved. */
-  act(time: number): PlayerInput | null;
+  act(time: number): SimulatedInput | null;
   /** Advances the game by a tracked frame. Returns haptic pulses for the hands; null: the game is paused. */
   update(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] | null;
   /** Closes a hand around the object that it holds. Returns false if it holds nothing. */

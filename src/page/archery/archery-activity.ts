@@ -9,7 +9,7 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import { copyVec3, up, vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';
@@ -64,7 +64,7 @@ export class ArcheryActivity implements OpenActivity {
     return this.#context.settings.bowSide === 'left' ? 'right' : 'left';
   }
 
-  act(time: number): PlayerInput {
+  act(time: number): SimulatedInput {
     const { headset, pointer } = this.#context;
     const steering = pointer();
     if (!steering) return this.play.act(time);

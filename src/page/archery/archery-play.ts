@@ -13,7 +13,7 @@ import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } fro
 import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/archery/simulated-archer';
 import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
 import { createMatch, type Match } from 'threepoint-games/match';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */
@@ -68,7 +68,7 @@ const owner = 'archery';
 const dwellSeconds = 2;
 
 /** Returns the input with its hands at this place. */
-function movedTo(place: Vec3, { frame, buttons }: PlayerInput): PlayerInput {
+function movedTo(place: Vec3, { frame, buttons }: SimulatedInput): SimulatedInput {
   const moved = (hand: TrackedPose | null) => hand && { ...hand, position: add(hand.position, place) };
   return { frame: { ...frame, leftHand: moved(frame.leftHand), rightHand: moved(frame.rightHand) }, buttons };
 }
@@ -128,7 +128,7 @@ export class ArcheryPlay {
   }
 
   /** Returns the input of the simulated archer at a time [s]. */
-  act(time: number): PlayerInput {
+  act(time: number): SimulatedInput {
     return this.#archer.follow(time, this.#match.state);
   }
 
@@ -136,7 +136,7 @@ export class ArcheryPlay {
    * Returns the input of an archer who aims along a pointer (arena frame) and draws while it is held. `place`: where
    * the archer stands, from the middle of the zone [m].
    */
-  steer(time: number, pointer: Pointer, place: Vec3 = zero): PlayerInput {
+  steer(time: number, pointer: Pointer, place: Vec3 = zero): SimulatedInput {
     const { state } = this.#match;
     const aim = aimOf(pointer.origin, pointer.direction, state.targets);
     const pressed = pointer.isHeldFor(owner);

@@ -56,7 +56,7 @@ export function createArcheryRunner(host: StudyHost<StudiedArchery>): ActivityRu
       return taken;
     },
     waitingFor: null,
-    standing: false,
+    pausedByOther: false,
     interrupted: false,
     pause: () => undefined,
     get end() {

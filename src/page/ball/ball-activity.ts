@@ -11,7 +11,7 @@ import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { defaultBallOptions } from 'threepoint-games/ball/rules';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import { bannerText } from 'threepoint-rooms/client/connection-text';
 import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
 import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../activity/activity';
@@ -147,7 +147,7 @@ export class BallActivity implements OpenActivity {
     this.#voided = voided;
   }
 
-  act(time: number): PlayerInput | null {
+  act(time: number): SimulatedInput | null {
     return this.play.act(time, !this.#context.headset.worn);
   }
 

@@ -139,7 +139,7 @@ export function createBallRunner(host: StudyHost<StudiedBall>): ActivityRunner {
     get waitingFor() {
       return trial?.waitingFor ?? null;
     },
-    get standing() {
+    get pausedByOther() {
       return trial?.standing ?? false;
     },
     get interrupted() {

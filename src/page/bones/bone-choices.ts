@@ -1,5 +1,5 @@
 import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
-import { type BoneMap, type BoneName, boneNames, fingerNames, neededBones } from 'threepoint/core/humanoid/bones';
+import { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from 'threepoint/core/humanoid/bones';
 import { type Side, sides } from 'threepoint/core/math/side';
 import type { SkeletonToMap } from './skeleton-to-map';
 
@@ -17,7 +17,7 @@ const trunk = {
 const arm = { Shoulder: 'shoulder (collarbone)', UpperArm: 'upper arm', LowerArm: 'forearm', Hand: 'hand' };
 const leg = { UpperLeg: 'thigh', LowerLeg: 'lower leg', Foot: 'foot', Toes: 'toes' };
 const fingers = Object.fromEntries(
-  fingerNames.flatMap((finger) =>
+  vrmFingerNames.flatMap((finger) =>
     fingerBoneSuffixes(finger).map((bone, i) => [
       bone,
       `${finger.toLowerCase()} ${finger === 'Thumb' ? '' : 'finger '}${i + 1}`,

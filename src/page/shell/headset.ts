@@ -191,7 +191,7 @@ export class Headset {
     try {
       this.#emulator = await installEmulator();
     } catch (error) {
-      this.#say(`The emulated headset could not be loaded: ${firstLine(reasonOf(error))}`);
+      this.#showError(`The emulated headset could not be loaded: ${firstLine(reasonOf(error))}`);
     }
     this.#installing = null;
     this.#listener?.emulatorChanged();
@@ -217,7 +217,7 @@ export class Headset {
       }
       await this.#begin(passthrough);
     } catch (error) {
-      this.#say(
+      this.#showError(
         `${passthrough ? 'Passthrough' : 'VR'} could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`,
       );
       this.#listener?.refused();
@@ -297,7 +297,7 @@ export class Headset {
     if (!settings.actor) this.#emulator?.release();
   }
 
-  #say(sentence: string): void {
+  #showError(sentence: string): void {
     this.#options.notices.show('error', sentence);
   }
 }

@@ -13,8 +13,8 @@ const width = 0.036;
 /** Samples further away than this are ignored [s]. */
 const furthest = 3.4 * width;
 /** The time after its arrival in which a packet gains its full weight [s], so that a late one causes no jump. */
-const trustSeconds = 0.08;
-const minTrust = 1e-4;
+const confidentAfterSeconds = 0.08;
+const minConfidence = 1e-4;
 /** Regularisation of slope and curvature, where the samples do not determine them [share of the sum of weights]. */
 const stiffness = 1e-9;
 /** The maximum number of samples of one fit. */
@@ -51,8 +51,8 @@ export class PathFit {
     for (let i = 0; i < this.count; i++) {
       const { time, arrivedAt } = samples[first + i]!;
       const s = (time - centre) / width;
-      const trust = Math.max(minTrust, smoothstep(0, trustSeconds, now - arrivedAt));
-      const weight = trust * Math.exp((-s * s) / 2);
+      const confidence = Math.max(minConfidence, smoothstep(0, confidentAfterSeconds, now - arrivedAt));
+      const weight = confidence * Math.exp((-s * s) / 2);
       weights[i] = weight;
       m0 += weight;
       m1 += weight * s;

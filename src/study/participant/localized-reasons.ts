@@ -4,12 +4,12 @@ import { refusals } from '../model/progress/apply-event';
 
 /** Returns an error in the participant's language. Technical errors stay in English. */
 export const localizedReason = (error: unknown, phrases: Phrases): string =>
-  error instanceof PhrasedError ? error.in(phrases) : phrases.say('reason', { reason: reasonOf(error) });
+  error instanceof PhrasedError ? error.in(phrases) : phrases.text('reason', { reason: reasonOf(error) });
 
 /** Returns why a session refused an event, in the participant's language, or null. */
-export function localizedRefusal(refusal: string | null, { say }: Phrases): string | null {
+export function localizedRefusal(refusal: string | null, { text }: Phrases): string | null {
   if (refusal === null) return null;
-  if (refusal === refusals.paused) return say('refused.paused');
-  if (refusal === refusals.asked) return say('refused.asked');
-  return say('reason', { reason: refusal });
+  if (refusal === refusals.paused) return text('refused.paused');
+  if (refusal === refusals.asked) return text('refused.asked');
+  return text('reason', { reason: refusal });
 }

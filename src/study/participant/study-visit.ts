@@ -120,7 +120,7 @@ export class StudyVisit {
     const phrases = this.#phrasesOf(null);
     const unknown = error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer);
     const text = unknown
-      ? phrases.say('entrance.noStudy', { study: this.#requested.study })
+      ? phrases.text('entrance.noStudy', { study: this.#requested.study })
       : localizedReason(error, phrases);
     return { phrases, text };
   }
@@ -143,7 +143,7 @@ export class StudyVisit {
       complaint,
       known: { participant: this.#requested.participant, invitation: address.invitation() },
       go: (invited) => address.goTo(invited),
-      decline: () => display.ask({ kind: 'declined', phrases, title: phrases.say('study') }),
+      decline: () => display.ask({ kind: 'declined', phrases, title: phrases.text('study') }),
     });
   }
 
@@ -162,8 +162,8 @@ export class StudyVisit {
         if (taken === 'uninvited') {
           const complaint =
             contact === null
-              ? phrases.say('entrance.wrongInvitation', { participant })
-              : phrases.say('entrance.wrongInvitationRemote', { participant, contact });
+              ? phrases.text('entrance.wrongInvitation', { participant })
+              : phrases.text('entrance.wrongInvitationRemote', { participant, contact });
           this.#askForParticipant(study, phrases, complaint);
           return null;
         }
@@ -172,7 +172,7 @@ export class StudyVisit {
           return null;
         }
         if ('why' in taken) {
-          return `${formatSentence(localizedReason(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
+          return `${formatSentence(localizedReason(taken.why, phrases))} ${contact ?? phrases.text('askExperimenter')}`;
         }
         this.#begin(taken);
         return null;

@@ -1,5 +1,5 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
-import type { Words } from '../model/phrases/localized-text';
+import type { LocalizedText } from '../model/phrases/localized-text';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';
 import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
@@ -46,7 +46,7 @@ export function modelsWith(
 }
 
 /** Describes the effects: 'answers +0.5 points under "late-100".', or that there are none. */
-export function statedInWords({ answers, scores }: StatedEffects): string {
+export function effectsInWords({ answers, scores }: StatedEffects): string {
   const signed = (value: number) => `${value < 0 ? '−' : '+'}${Math.abs(value)}`;
   const parts = [
     ...Object.entries(answers).map(([id, value]) => `answers ${signed(value)} points under "${id}"`),
@@ -64,7 +64,7 @@ export interface SimulatedParticipant {
 
 const marked = (title: string): string => `SIMULATED: ${title}`.slice(0, 120);
 
-const markedInEachLanguage = (title: Words): Words =>
+const markedInEachLanguage = (title: LocalizedText): LocalizedText =>
   typeof title === 'string'
     ? marked(title)
     : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));

@@ -382,7 +382,7 @@ function darts(done: string[]) {
       played: () => void done.push('played'),
       take: () => [],
       waitingFor: null,
-      standing: false,
+      pausedByOther: false,
       end: null,
       interrupted: false,
       pause: () => undefined,

@@ -8,7 +8,7 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import { type ArcheryFrame, ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { CourtInput } from 'threepoint-page/ball/court-input';
 import { BallPlay } from 'threepoint-page/ball/match/ball-play';
@@ -31,7 +31,7 @@ function lookingAt(target: Vec3, from: Vec3 = eyes): Pose<'floor'> {
 }
 
 /** A session of a headset that reports no hands, in which an activity acts. */
-function handless(act: (time: number) => PlayerInput | null, settings = { gaze: false }) {
+function handless(act: (time: number) => SimulatedInput | null, settings = { gaze: false }) {
   const headset = fakeHeadset();
   const tracking = new TrackedSession({ ...headset, pointing: new Pointing(headset.session) });
   const pointers = new Pointers({ headset: { tracking }, settings });

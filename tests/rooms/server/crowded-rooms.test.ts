@@ -4,7 +4,7 @@ import { expect, onTestFinished, test } from 'vitest';
 import type { ClientAnswer, Farewell, Load, Meeting, PoseLatencies } from '../../../bench/relay/conversation';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
-import { heardFrom, kill } from '../../server/child-process';
+import { kill, messageFrom } from '../../server/child-process';
 import { forkRelay } from './relay-child';
 import { testSecret } from './running-relay';
 
@@ -27,9 +27,9 @@ async function play(port: number, { rooms, seconds }: typeof crowd) {
   onTestFinished(() => kill(clients));
   clients.send({ relay: 'ours', port, secret: testSecret, room: 3, hz: 30, plays: true } satisfies Meeting);
   clients.send({ rooms, warmUpSeconds: 1, seconds } satisfies Load);
-  expect(await heardFrom<ClientAnswer>(clients)).toBe('measuring');
+  expect(await messageFrom<ClientAnswer>(clients)).toBe('measuring');
   return {
-    heard: await heardFrom<PoseLatencies>(clients),
+    heard: await messageFrom<PoseLatencies>(clients),
     /** Gives up the seats; those of clients whose process is killed are held for half a minute. */
     leave: () => clients.send('leave' satisfies Farewell),
     kill: () => kill(clients),

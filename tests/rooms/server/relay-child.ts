@@ -1,6 +1,6 @@
 import { fork } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import { heardFrom, kill } from '../../server/child-process';
+import { kill, messageFrom } from '../../server/child-process';
 
 /** The measurements that a relay's process reports about itself. */
 export interface RelayMeasure {
@@ -18,19 +18,19 @@ export async function forkRelay(environment: Record<string, string> = {}, port =
     execArgv: ['--import', 'tsx'],
     env: { ...process.env, ...environment },
   });
-  const hello = await heardFrom<{ port: number }>(child);
+  const hello = await messageFrom<{ port: number }>(child);
   return {
     child,
     port: hello.port,
     url: `http://127.0.0.1:${hello.port}`,
     async measure() {
       child.send('measure');
-      return heardFrom<RelayMeasure>(child);
+      return messageFrom<RelayMeasure>(child);
     },
     /** Restarts the measurement. */
     async forget() {
       child.send('forget');
-      await heardFrom(child);
+      await messageFrom(child);
     },
     kill: () => kill(child),
   };

@@ -58,9 +58,9 @@ describe('what the page says in German', () => {
 
   test('counts, measures and lists as German does', () => {
     const phrases = new Phrases('de-AT');
-    const { say } = phrases;
-    expect(say('receipt.records', { count: 1 })).toBe('1 Eintrag');
-    expect(say('receipt.records', { count: 0 })).toBe('0 Einträge');
+    const { text } = phrases;
+    expect(text('receipt.records', { count: 1 })).toBe('1 Eintrag');
+    expect(text('receipt.records', { count: 0 })).toBe('0 Einträge');
     expect(phrases.metres(1.2)).toBe('1,2 m');
     expect(phrases.list(['P02', 'P03'])).toBe('P02 und P03');
     expect(new PhrasedError('round.archery').in(phrases)).toBe(german['round.archery']);
@@ -73,26 +73,26 @@ describe('a plan with phrases of its own', () => {
     const plan = planOf({
       fr: { next: 'Suivant', 'receipt.records': { one: '{count} réponse', other: '{count} réponses' } },
     });
-    const { say, spoken } = phrasesOf(plan, 'fr');
-    expect(spoken).toBe('fr');
-    expect(say('next')).toBe('Suivant');
-    expect(say('back')).toBe('Back');
+    const { text, locale } = phrasesOf(plan, 'fr');
+    expect(locale).toBe('fr');
+    expect(text('next')).toBe('Suivant');
+    expect(text('back')).toBe('Back');
     // French counts none as one, English as many: each phrase is counted by its own language.
-    expect(say('receipt.records', { count: 0 })).toBe('0 réponse');
-    expect(say('receipt.recordings', { count: 0 })).toBe('0 recordings of movements');
+    expect(text('receipt.records', { count: 0 })).toBe('0 réponse');
+    expect(text('receipt.recordings', { count: 0 })).toBe('0 recordings of movements');
     expect(missingKeys('fr', plan.phrases?.fr)).toHaveLength(phraseKeys.length - 2);
     expect(remarksOn(plan).join(' ')).toContain(`lacks ${phraseKeys.length - 2} of ${phraseKeys.length} phrases`);
   });
 
   test('may say in German or English what suits the laboratory better', () => {
     const plan = { ...examplePlan(), phrases: { de: { next: 'Nächste Frage' } } };
-    expect(phrasesOf(checkedPlan(plan), 'de').say('next')).toBe('Nächste Frage');
-    expect(phrasesOf(checkedPlan(plan), 'de').say('back')).toBe('Zurück');
+    expect(phrasesOf(checkedPlan(plan), 'de').text('next')).toBe('Nächste Frage');
+    expect(phrasesOf(checkedPlan(plan), 'de').text('back')).toBe('Zurück');
     expect(remarksOn(checkedPlan(plan)).join(' ')).not.toContain('phrases');
   });
 
   test('without a word in a language speaks English, and says so to screen readers', () => {
-    expect(phrasesOf(planOf({}), 'fr')).toMatchObject({ language: 'fr', spoken: 'en' });
+    expect(phrasesOf(planOf({}), 'fr')).toMatchObject({ language: 'fr', locale: 'en' });
     const all = Object.fromEntries(phraseKeys.map((key) => [key, english[key]]));
     expect(remarksOn(planOf({ fr: all })).join(' ')).not.toContain('phrases');
   });

@@ -108,7 +108,7 @@ export class ShownParts implements StudyDisplay {
 /** A game of one shot, whose hit by the test ends it. After `abort` it must be prepared again, as the court must. */
 export class OneShotGame implements TaskRunner {
   readonly waitingFor = null;
-  readonly standing = false;
+  readonly pausedByOther = false;
   end: TaskEnd | null = null;
   interrupted = false;
   running = false;

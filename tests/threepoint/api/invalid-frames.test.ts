@@ -17,7 +17,7 @@ const rate = 60;
 const nowhere = { x: Number.NaN, y: 1, z: 0 };
 const noRotation = { x: 0, y: 0, z: 0, w: 0 };
 
-const untold = ({ position, orientation }: TrackedPose) => ({ position, orientation });
+const withoutTracking = ({ position, orientation }: TrackedPose) => ({ position, orientation });
 
 /** A frame with one thing in it that no tracker means. */
 const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => TrackingFrame])[] = [
@@ -38,7 +38,12 @@ const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => T
   [
     'no word of how its points are tracked',
     ({ time, head, leftHand, rightHand }) =>
-      ({ time, head: untold(head), leftHand: untold(leftHand!), rightHand: untold(rightHand!) }) as TrackingFrame,
+      ({
+        time,
+        head: withoutTracking(head),
+        leftHand: withoutTracking(leftHand!),
+        rightHand: withoutTracking(rightHand!),
+      }) as TrackingFrame,
   ],
   [
     'a device’s body that is nowhere',
@@ -106,9 +111,9 @@ test('a point of a page that does not say how it is tracked is there', () => {
   // reason: a page without types
   const bare = {
     time,
-    head: untold(head),
-    leftHand: untold(leftHand!),
-    rightHand: untold(rightHand!),
+    head: withoutTracking(head),
+    leftHand: withoutTracking(leftHand!),
+    rightHand: withoutTracking(rightHand!),
   } as TrackingFrame;
   expect(bodies[0].update(bare)?.body).toEqual(bodies[1].update(at(0))?.body);
 });

@@ -17,7 +17,7 @@ import { ballRules } from 'threepoint-games/ball/rules';
 import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
 import { stations } from 'threepoint-games/ball/stations';
 import { ballInPalm, wristAround } from 'threepoint-games/fist';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import { describe, expect, test } from 'vitest';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel } from '../core/estimation/shipped-models';
@@ -88,7 +88,7 @@ function tooNear(by: number, inward: number): Thing['wrists'] {
 }
 
 /** A thrower whose arms hang. */
-function hanging(time: number): PlayerInput {
+function hanging(time: number): SimulatedInput {
   const postures = createPlayerPostures({ eyeHeight: wearer.eyeHeight, arenaFromFloor: makeTransform() });
   const posture = makePosture();
   copyVec3(postures.eyes, posture.eyes);

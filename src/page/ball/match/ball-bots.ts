@@ -7,7 +7,7 @@ import type { BallState } from 'threepoint-games/ball/ball-state';
 import type { BallGestures } from 'threepoint-games/ball/gestures';
 import type { Visitor } from 'threepoint-rooms/client/connection';
 import {
-  type CourtView,
+  type BotKnowledge,
   createGestures,
   createSimulatedPlayer,
   stationOf,
@@ -55,7 +55,7 @@ export class BallBots {
 
   constructor(
     private readonly options: BotsOptions,
-    private readonly sight: CourtView,
+    private readonly sight: BotKnowledge,
   ) {}
 
   /**

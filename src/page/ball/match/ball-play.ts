@@ -12,7 +12,7 @@ import type { BallEvent } from 'threepoint-games/ball/ball-state';
 import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
 import { displayedSeconds } from 'threepoint-games/ball/state-selectors';
 import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
 import { RoomClient } from 'threepoint-rooms/client/room-client';
 import { BallBots, readyAfter } from './ball-bots';
@@ -21,7 +21,7 @@ import type { BallProbe } from './ball-probe';
 import { probeOf } from './ball-probe';
 import { CourtPeople } from './court-people';
 import { joined, SimulatedPlayer } from './simulated-player';
-import type { CourtView } from './simulated-seat';
+import type { BotKnowledge } from './simulated-seat';
 import { createGestures, playFrame } from './simulated-seat';
 
 export interface BallPlayOptions {
@@ -47,7 +47,7 @@ const none: readonly never[] = [];
 export class BallPlay {
   newest: BallFrame | null = null;
   private readonly client: RoomClient<BallGame>;
-  private readonly sight: CourtView = { pausedSeconds: 0, opening: null };
+  private readonly sight: BotKnowledge = { pausedSeconds: 0, opening: null };
   private readonly bots: BallBots;
   private readonly simulated: SimulatedPlayer;
   private readonly people = new CourtPeople();
@@ -108,7 +108,7 @@ export class BallPlay {
    * Returns the input of the simulated player on the user's seat at a time [s], or null without a seat. `catchUp`: also
    * plays the moments between two slow frames, which no device could.
    */
-  act(time: number, catchUp = true): PlayerInput | null {
+  act(time: number, catchUp = true): SimulatedInput | null {
     if (!this.connection) return null;
     this.gestures ??= createGestures(this.connection);
     return this.simulated.act(this.connection, this.gestures, time, catchUp);

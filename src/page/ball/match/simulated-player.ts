@@ -13,8 +13,8 @@ import {
   type SteeredPlayer,
 } from 'threepoint-games/ball/steered-players';
 import type { Launch } from 'threepoint-games/ballistics';
-import type { PlayerInput } from 'threepoint-games/player-input';
-import type { CourtView } from './simulated-seat';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
+import type { BotKnowledge } from './simulated-seat';
 import {
   bodyAt,
   createSimulatedPlayer,
@@ -50,7 +50,7 @@ export interface SimulatedPlayerOptions {
 /** The player on the user's seat while no person wears a headset: a bot, or a body that follows the mouse. */
 export class SimulatedPlayer {
   readonly #options: SimulatedPlayerOptions;
-  readonly #sight: CourtView;
+  readonly #sight: BotKnowledge;
   /** Solves the bodies of moments between two pictures. */
   readonly #between;
   #calibration: Calibration;
@@ -60,7 +60,7 @@ export class SimulatedPlayer {
   #cues: readonly BallCue[] = none;
   #haptics: readonly HapticPulse[] = none;
 
-  constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: CourtView) {
+  constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: BotKnowledge) {
     this.#options = options;
     this.#sight = sight;
     this.#calibration = calibration;
@@ -82,7 +82,7 @@ export class SimulatedPlayer {
    * Returns the player's input at a time [s], or null without a seat. `catchUp`: also plays the moments between two
    * slow pictures, which no device could.
    */
-  act(connection: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): PlayerInput | null {
+  act(connection: BallConnection, gestures: BallGestures, time: number, catchUp: boolean): SimulatedInput | null {
     const view = connection.room;
     if (!view?.match || view.mySeat === null) return null;
     this.#steering = this.#options.steering?.() ?? null;

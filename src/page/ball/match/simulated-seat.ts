@@ -15,7 +15,7 @@ import type { PlayerBody } from 'threepoint-games/ball/player-postures';
 import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
 import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
 import { holderStation, stations } from 'threepoint-games/ball/stations';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 
 /** The least rate at which a simulated player moves, even if pictures are slower: a throw takes a fifth of a second. */
 const movesPerSecond = 60;
@@ -48,7 +48,7 @@ export function createSimulatedPlayer(station: number, calibration: Calibration,
 }
 
 /** What simulated players know about the court in addition to the state of the match. */
-export interface CourtView {
+export interface BotKnowledge {
   /** The total time for which the match's clock was paused [s]: simulated players stand still meanwhile. */
   pausedSeconds: number;
   opening: Opening | null;
@@ -93,8 +93,8 @@ export function simulatedInput(
   time: number,
   state: BallState,
   player: number,
-  { pausedSeconds, opening }: CourtView,
-): PlayerInput {
+  { pausedSeconds, opening }: BotKnowledge,
+): SimulatedInput {
   const done = actor.follow(time - pausedSeconds, { state, player, ...(opening && { basket: opening.position }) });
   return pausedSeconds === 0 ? done : { ...done, frame: { ...done.frame, time } };
 }
@@ -111,7 +111,7 @@ interface SimulatedSeat {
 export function stepSimulated(
   { connection, gestures, player, estimator }: SimulatedSeat,
   moment: number,
-  sight: CourtView,
+  sight: BotKnowledge,
 ): BallGestureFrame | null {
   const seen = connection.room;
   if (!seen?.match || seen.mySeat === null) return null;

@@ -8,7 +8,7 @@ import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
 import type { Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
@@ -142,7 +142,7 @@ export class Activities {
     return this.#current.mirrorSide === null ? 'never' : 'always';
   }
 
-  act(time: number): PlayerInput | null {
+  act(time: number): SimulatedInput | null {
     if (this.#options.study.idle) return null;
     return this.#current?.act(time) ?? null;
   }

@@ -3,7 +3,7 @@ import type { Calibration } from 'threepoint/core/body/calibration';
 import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { TrackedSession } from 'threepoint/xr/tracked-session';
-import type { PlayerInput } from 'threepoint-games/player-input';
+import type { SimulatedInput } from 'threepoint-games/simulated-input';
 import type { Actor } from '../../emulator/actor';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';
@@ -113,7 +113,7 @@ export class TrackingSource {
   }
 
   /** Returns the input of the activity's simulated player, else of the actor. */
-  #perform(time: number): PlayerInput {
+  #perform(time: number): SimulatedInput {
     const { activities, actor } = this.#options;
     return activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };
   }

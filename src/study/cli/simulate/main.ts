@@ -13,7 +13,7 @@ import { measuresIn, overallComparisons, type StudyMeasures } from '../../model/
 import { exportFiles, exportName, exportZip } from '../../server/export/export-zip';
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { openStudyStore } from '../../server/storage/study-store';
-import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../simulation/simulate-study';
+import { effectsInWords, modelsWith, simulatedPlan, simulateStudy } from '../../simulation/simulate-study';
 
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 /** The start of the first simulated participant, a fixed day so that the same seed gives the same files. */
@@ -143,7 +143,7 @@ function run(): void {
     write('SIMULATED-models.json', `${JSON.stringify({ simulated: true, seed, effects, models }, null, 2)}\n`);
 
     console.log(`SIMULATED study of ${simulated.length} participants, ${all.records.length} records, seed ${seed}.`);
-    console.log(`Put in: ${statedInWords(effects)}`);
+    console.log(`Put in: ${effectsInWords(effects)}`);
     for (const line of findings(all.records, plan)) console.log(line);
     console.log(`Open ${join(out, `${name}.zip`)} on /results: all tables and figures.`);
   } finally {

@@ -2,7 +2,7 @@ import { text } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
 
 /** A text for participants: one for all languages, or one for each. */
-export type Words = string | Readonly<Record<string, string>>;
+export type LocalizedText = string | Readonly<Record<string, string>>;
 
 const aLanguage = 'expected a language, as "en", "de" or "pt-BR"';
 
@@ -31,9 +31,9 @@ export const words = (maxLength: number) =>
   );
 
 /** Returns the text in a language, or in the first language that it has. */
-export const inLanguage = (text: Words, language: string): string =>
+export const inLanguage = (text: LocalizedText, language: string): string =>
   typeof text === 'string' ? text : (text[language] ?? Object.values(text)[0] ?? '');
 
 /** Returns the first of the languages that the text lacks, or null. */
-export const missingLanguage = (text: Words, languages: readonly string[]): string | null =>
+export const missingLanguage = (text: LocalizedText, languages: readonly string[]): string | null =>
   typeof text === 'string' ? null : (languages.find((language) => text[language] === undefined) ?? null);

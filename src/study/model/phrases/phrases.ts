@@ -51,7 +51,7 @@ export class Phrases {
   /** The language of the participant. */
   readonly language: string;
   /** The language of the phrases: English if the page has none in the participant's language. */
-  readonly spoken: string;
+  readonly locale: string;
   /** The phrases of the plan and then of the page, each with the plural rules of its language. */
   readonly #sources: readonly (readonly [GivenPhrases, Intl.PluralRules])[];
 
@@ -59,7 +59,7 @@ export class Phrases {
   constructor(language: string, given: GivenPhrases = {}) {
     const ours = shippedIn(language);
     this.language = language;
-    this.spoken = ours || Object.keys(given).length > 0 ? language : 'en';
+    this.locale = ours || Object.keys(given).length > 0 ? language : 'en';
     this.#sources = [
       [given, new Intl.PluralRules(language)],
       [ours ?? english, new Intl.PluralRules(ours ? language : 'en')],
@@ -67,7 +67,7 @@ export class Phrases {
   }
 
   /** Returns a phrase with its placeholders filled in; braces in values are kept. */
-  say = <Key extends PhraseKey>(key: Key, ...[values]: Values<Key>): string => {
+  text = <Key extends PhraseKey>(key: Key, ...[values]: Values<Key>): string => {
     const filled: Readonly<Record<string, string | number>> = values ?? {};
     const [source, plurals] = this.#sources.find(([phrases]) => Object.hasOwn(phrases, key)) ?? [];
     const phrase = source?.[key] ?? '';
@@ -81,23 +81,23 @@ export class Phrases {
   /** Formats a length [m] to a tenth: "1.2 m", "1,2 m". */
   metres(length: number): string {
     const digits = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
-    return this.say('metres', { length: new Intl.NumberFormat(this.spoken, digits).format(length) });
+    return this.text('metres', { length: new Intl.NumberFormat(this.locale, digits).format(length) });
   }
 
   /** Formats a list of names: "P02 and P03", "P02 und P03". */
   list(names: readonly string[]): string {
-    return new Intl.ListFormat(this.spoken).format(names);
+    return new Intl.ListFormat(this.locale).format(names);
   }
 }
 
 /** The languages and phrases of a study; `languages` absent: English only. */
-export interface Speaking {
+export interface LanguageOptions {
   readonly languages?: readonly string[];
   readonly phrases?: Readonly<Record<string, GivenPhrases>>;
 }
 
 /** Returns the phrases of a study for readers of this language. */
-export const phrasesOf = ({ phrases = {} }: Speaking, language: string): Phrases =>
+export const phrasesOf = ({ phrases = {} }: LanguageOptions, language: string): Phrases =>
   new Phrases(language, Object.hasOwn(phrases, language) ? phrases[language] : {});
 
 /** An error for participants in their language; its message is in English. */
@@ -106,12 +106,12 @@ export class PhrasedError<Key extends PhraseKey = PhraseKey> extends Error {
   readonly #values: Values<Key>;
 
   constructor(key: Key, ...values: Values<Key>) {
-    super(new Phrases('en').say(key, ...values));
+    super(new Phrases('en').text(key, ...values));
     this.#key = key;
     this.#values = values;
   }
 
   in(phrases: Phrases): string {
-    return phrases.say(this.#key, ...this.#values);
+    return phrases.text(this.#key, ...this.#values);
   }
 }

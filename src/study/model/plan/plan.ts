@@ -1,6 +1,6 @@
 import { checked, complaintsAbout, ValidationError } from 'threepoint/core/validation/validation';
 import type * as v from 'valibot';
-import { inLanguage, missingLanguage, type Words } from '../phrases/localized-text';
+import { inLanguage, type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import { refusePhrases } from '../phrases/phrase-schema';
 import {
   type Questionnaire,
@@ -145,7 +145,7 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
 
 function refuseUntranslated(plan: StudyPlan): void {
   const { title, paragraphs, motion } = plan.consent;
-  const texts: (readonly [string, Words])[] = [
+  const texts: (readonly [string, LocalizedText])[] = [
     ['title', plan.title],
     ...plan.tasks.map((task, index) => [`tasks[${index}].title`, task.title] as const),
     ['consent.title', title],

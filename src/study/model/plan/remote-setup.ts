@@ -39,31 +39,31 @@ export function setupFaults(
   { deviceFault, room, eyeHeight }: RemoteSetup,
   phrases: Phrases,
 ): readonly string[] {
-  const { say } = phrases;
-  if (deviceFault !== null) return [say('setup.openThere', { fault: deviceFaultText(deviceFault, phrases) })];
+  const { text } = phrases;
+  if (deviceFault !== null) return [text('setup.openThere', { fault: deviceFaultText(deviceFault, phrases) })];
   const faults: string[] = [];
   if (room && Math.min(room.width, room.depth) < freeSpace) {
     const [width, depth] = [phrases.metres(room.width), phrases.metres(room.depth)];
-    faults.push(say('setup.room', { width, depth, needed: phrases.metres(freeSpace) }));
+    faults.push(text('setup.room', { width, depth, needed: phrases.metres(freeSpace) }));
   }
   if (eyeHeight !== null && eyeHeight < standing.least) {
-    faults.push(say('setup.low', { height: phrases.metres(eyeHeight) }));
+    faults.push(text('setup.low', { height: phrases.metres(eyeHeight) }));
   }
   if (eyeHeight !== null && eyeHeight > standing.most) {
-    faults.push(say('setup.high', { height: phrases.metres(eyeHeight) }));
+    faults.push(text('setup.high', { height: phrases.metres(eyeHeight) }));
   }
   return faults;
 }
 
-function deviceFaultText(fault: DeviceFault, { say }: Phrases): string {
+function deviceFaultText(fault: DeviceFault, { text }: Phrases): string {
   switch (fault.kind) {
     case 'insecure':
-      return say('setup.insecure');
+      return text('setup.insecure');
     case 'no-webxr':
-      return say('setup.noWebxr');
+      return text('setup.noWebxr');
     case 'no-headset':
-      return say('setup.noHeadset');
+      return text('setup.noHeadset');
     case 'refused':
-      return say('setup.refused', { reason: fault.reason });
+      return text('setup.refused', { reason: fault.reason });
   }
 }

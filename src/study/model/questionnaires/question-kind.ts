@@ -1,5 +1,5 @@
 import type * as v from 'valibot';
-import type { Words } from '../phrases/localized-text';
+import type { LocalizedText } from '../phrases/localized-text';
 
 /** An answer as it is recorded: a number, or a text (typed by the participant, or the value of the chosen option). */
 export type Answer = number | string;
@@ -35,16 +35,16 @@ export interface QuestionKind<Form extends AnswerForm = AnswerForm> {
    */
   options(form: Form): readonly string[] | null;
   /** Returns every text of a form that participants read, with its path in the form. */
-  texts(form: Form): readonly (readonly [string, Words])[];
+  texts(form: Form): readonly (readonly [string, LocalizedText])[];
   /**
    * Returns the texts at the low end and at the high end of numeric answers, for axes of charts. Absent: there are
    * none.
    */
-  ends?(form: Form): { readonly low?: Words | undefined; readonly high?: Words | undefined };
+  ends?(form: Form): { readonly low?: LocalizedText | undefined; readonly high?: LocalizedText | undefined };
   /** Converts typed text to an answer, which is checked by `answer`. Absent for kinds that are not typed. */
   parse?(typed: string): unknown;
   /** Returns the values of the columns that the table questions.csv has about a form, with texts in one language. */
-  columns(form: Form, inWords: (text: Words) => string): { readonly answers: string };
+  columns(form: Form, inWords: (text: LocalizedText) => string): { readonly answers: string };
   /** Returns the answer of a simulated participant at `part` of the way from the low end to the high end, in [0, 1]. */
   simulate(form: Form, part: number, uniform: () => number): Answer;
 }

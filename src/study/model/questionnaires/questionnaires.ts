@@ -1,6 +1,6 @@
 import { checked, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { missingLanguage, type Words } from '../phrases/localized-text';
+import { type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import type { Answer, AnswerForm } from './question-kind';
 import { questionKind } from './question-kinds';
 import type { Question, QuestionnaireFile, Scale } from './questionnaire-schema';
@@ -15,7 +15,7 @@ import systemUsability from './shipped/system-usability.json' with { type: 'json
 /** A questionnaire with a form of the answer to every question. */
 export interface Questionnaire {
   readonly id: string;
-  readonly title: Words;
+  readonly title: LocalizedText;
   readonly source?: string;
   readonly questions: readonly Question[];
   readonly scales: readonly Scale[];
@@ -82,7 +82,7 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
 function textsOf(
   { title, answer, questions }: QuestionnaireFile,
   field: string,
-): readonly (readonly [string, Words])[] {
+): readonly (readonly [string, LocalizedText])[] {
   const formInWords = (form: AnswerForm | undefined, at: string) =>
     form === undefined
       ? []

@@ -28,7 +28,7 @@ export const recordingTime = ({ start, pauses }: TrialClock, second: number): nu
   pauses.reduce((time, pause) => (pause.time <= second + rounding ? time + pause.seconds : time), start + second);
 
 /** Counts the seconds of a trial by the page's clock [s] of each frame, which is also that of recordings. */
-export class TrialSeconds {
+export class TrialStopwatch {
   readonly #now: () => number;
   #clock: { readonly epoch: number; readonly start: number } | null = null;
   readonly #pauses: { readonly time: number; readonly seconds: number }[] = [];

@@ -1,10 +1,10 @@
 import { type VarianceAnalysis, varianceAnalysis } from '../../statistics/analysis-of-variance';
 import { asFamily } from '../../statistics/holm';
 import { friedmanTest, kruskalWallisTest, type RankAnalysis } from '../../statistics/rank-analyses';
-import type { Measure, Measured } from './measures';
+import type { Measure, MeasureName } from './measures';
 
 /** The comparison of a measure under all conditions and in all cohorts. */
-export interface OverallComparison extends Measured {
+export interface OverallComparison extends MeasureName {
   /** Participants (or groups) with a valid value under every condition; others are left out. */
   readonly n: number;
   readonly leftOut: readonly string[];

@@ -2,10 +2,10 @@ import { asFamily } from '../../statistics/holm';
 import { pairedTTest, signedRankTest } from '../../statistics/paired-tests';
 import type { RankTest } from '../../statistics/ranks';
 import { type MeanSummary, meanSummary, type TTest } from '../../statistics/summaries';
-import type { Exclusion, Measure, Measured } from './measures';
+import type { Exclusion, Measure, MeasureName } from './measures';
 
 /** The comparison of a measure under two conditions (paired tests) or between two cohorts: first − second. */
-export interface Comparison extends Measured {
+export interface Comparison extends MeasureName {
   /** null: no one has a value. */
   readonly first: MeanSummary | null;
   readonly second: MeanSummary | null;
@@ -45,7 +45,7 @@ function paired({ of, means }: Measure, [first, second]: readonly [string, strin
 
 /** Returns comparisons of measures as one family for Holm's correction; `tests` are those of two sides with values. */
 export const comparisonsOf = (
-  measured: readonly (Measured & Pick<Comparison, 'values'>)[],
+  measured: readonly (MeasureName & Pick<Comparison, 'values'>)[],
   tests: (first: readonly number[], second: readonly number[]) => Pick<Comparison, 'test' | 'ranks'>,
 ): readonly Comparison[] =>
   asFamily(

@@ -8,18 +8,18 @@ import { compareAll } from './compare-all';
 import { type ComparedCohorts, compareCohorts } from './compare-cohorts';
 import { compareConditions } from './compare-conditions';
 import { frameTimes } from './frame-times';
-import { answerMeasures, type CohortOf, isPlanned, type Measure, type Measured, scoreMeasures } from './measures';
+import { answerMeasures, type CohortOf, isPlanned, type Measure, type MeasureName, scoreMeasures } from './measures';
 import { cohortsTable, conditionsTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
 
 /** Returns the subject of a question or the name of a scale; empty: none. */
-export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<Measured, 'asked'>): string {
+export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<MeasureName, 'asked'>): string {
   const found = asked.find(({ id }) => id === of?.questionnaire);
   const scale = found?.scales.find(({ id }) => id === of?.question);
   return scale?.label ?? found?.questions.find(({ id }) => id === of?.question)?.about ?? '';
 }
 
 /** Returns a function from participants to the cohorts of the plan; empty: it has none. */
-export function cohortIn(plan: StudyPlan): CohortOf {
+export function cohortLookup(plan: StudyPlan): CohortOf {
   const cohorts = cohortsByParticipant(plan);
   return (participant) => cohorts.get(participant)?.id ?? '';
 }
@@ -36,7 +36,7 @@ export interface StudyMeasures {
 
 /** Returns the measures of a study; throws if simulated records and records of people are mixed. */
 export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): StudyMeasures {
-  const cohortOf = cohortIn(plan);
+  const cohortOf = cohortLookup(plan);
   const answers = answerMeasures(answersIn(records, plan), cohortOf);
   const scales = answerMeasures(scalesIn(records, plan), cohortOf);
   const trials = trialsIn(records);
@@ -47,12 +47,12 @@ export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): St
 }
 
 /** Returns whether a study is analysed as a whole; two conditions without cohorts are only compared in pairs. */
-export const comparedAsAWhole = ({ conditions, cohorts }: Pick<StudyPlan, 'conditions' | 'cohorts'>): boolean =>
+export const hasOverallAnalysis = ({ conditions, cohorts }: Pick<StudyPlan, 'conditions' | 'cohorts'>): boolean =>
   conditions.length > 2 || cohorts !== undefined;
 
 /** Returns the comparison of all conditions and cohorts at once; nothing if the study is not analysed as a whole. */
 export const overallComparisons = (measures: readonly Measure[], plan: Pick<StudyPlan, 'conditions' | 'cohorts'>) =>
-  comparedAsAWhole(plan)
+  hasOverallAnalysis(plan)
     ? compareAll(
         measures,
         plan.conditions.map(({ id }) => id),
@@ -106,6 +106,6 @@ export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): 
     ...tablesOf('answers', [measures.answers]),
     ...tablesOf('scales', [measures.scales]),
     ...tablesOf('scores', [measures.points, measures.percent]),
-    frameTimeTable(frameTimes(records, cohortIn(plan)), factsFor('explored')),
+    frameTimeTable(frameTimes(records, cohortLookup(plan)), factsFor('explored')),
   ];
 }

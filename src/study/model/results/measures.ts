@@ -11,25 +11,25 @@ export interface Exclusion {
 }
 
 /** A question or a scale of a questionnaire after a task. */
-export type Asked = Pick<AnswerRow, 'task' | 'questionnaire' | 'question'>;
+export type QuestionPlace = Pick<AnswerRow, 'task' | 'questionnaire' | 'question'>;
 
 /** The name of a measure. */
-export interface Measured {
+export interface MeasureName {
   /** "Q1" or the id of a task; for a question in more than one place "archery/nasa-tlx/mental". */
   readonly of: string;
   /** The question and its place; null: scores. */
-  readonly asked: Asked | null;
+  readonly asked: QuestionPlace | null;
   readonly unit: 'answer' | 'points' | 'percent';
 }
 
 /** Returns whether the plan names a measure; scores are planned in points. */
-export function isPlanned({ of, asked, unit }: Measured, { planned = [] }: Pick<StudyPlan, 'planned'>): boolean {
+export function isPlanned({ of, asked, unit }: MeasureName, { planned = [] }: Pick<StudyPlan, 'planned'>): boolean {
   const name = asked ? `${asked.task}/${asked.questionnaire}/${asked.question}` : `${of}/score`;
   return unit !== 'percent' && planned.includes(name);
 }
 
 /** The values of a measure. */
-export interface Measure extends Measured {
+export interface Measure extends MeasureName {
   /**
    * The mean of the counted values of each participant (or group) under each condition, in the order of their codes.
    */
@@ -55,7 +55,7 @@ interface Observation {
   readonly excluded: string;
 }
 
-function measured(name: Measured, observations: readonly Observation[], cohortOf: CohortOf): Measure {
+function measured(name: MeasureName, observations: readonly Observation[], cohortOf: CohortOf): Measure {
   const values = new Map<string, Map<string, number[]>>();
   const cohorts = new Map<string, string>();
   const inOrder = observations.toSorted((a, b) => (a.who < b.who ? -1 : a.who > b.who ? 1 : 0));
@@ -76,8 +76,8 @@ function measured(name: Measured, observations: readonly Observation[], cohortOf
 }
 
 /** Returns the questions with numeric answers in order, and their names: the id, if it is unique. */
-function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: Asked }[] {
-  const places = new Map<string, Asked>();
+function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: QuestionPlace }[] {
+  const places = new Map<string, QuestionPlace>();
   for (const { task, questionnaire, question, answer } of rows) {
     const key = `${task}/${questionnaire}/${question}`;
     if (typeof answer === 'number' && !places.has(key)) places.set(key, { task, questionnaire, question });
@@ -87,7 +87,7 @@ function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; re
   return [...places].map(([key, asked]) => ({ of: times.get(asked.question) === 1 ? asked.question : key, asked }));
 }
 
-const isOf = (row: AnswerRow, { task, questionnaire, question }: Asked) =>
+const isOf = (row: AnswerRow, { task, questionnaire, question }: QuestionPlace) =>
   row.question === question && row.questionnaire === questionnaire && row.task === task;
 
 /**

@@ -4,7 +4,7 @@ import { boolean, type Cell, type Column, number, type Table, text } from '../ta
 import type { OverallComparison } from './compare-all';
 import type { Comparison } from './compare-conditions';
 import type { FrameTimeRow } from './frame-times';
-import type { Measured } from './measures';
+import type { MeasureName } from './measures';
 import { checkedPaperRows } from './paper-tables';
 
 /** The facts that tables of results state next to their figures. */
@@ -13,8 +13,8 @@ export interface TableFacts {
   readonly family: 'planned' | 'explored';
   readonly simulated: boolean;
   /** Returns the subject of a question in a word or two; empty: none. */
-  readonly aboutOf: (one: Measured) => string;
-  readonly isPlanned: (one: Measured) => boolean;
+  readonly aboutOf: (one: MeasureName) => string;
+  readonly isPlanned: (one: MeasureName) => boolean;
 }
 
 const simulatedColumn = boolean(
@@ -45,7 +45,7 @@ const measureColumns: readonly Column[] = [
 ];
 
 /** Returns the first cells of every row. */
-const measureCells = (one: Measured, { simulated, aboutOf, isPlanned }: TableFacts) => ({
+const measureCells = (one: MeasureName, { simulated, aboutOf, isPlanned }: TableFacts) => ({
   simulated,
   of: one.of,
   about: aboutOf(one),

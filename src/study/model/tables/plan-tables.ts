@@ -1,7 +1,7 @@
 import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
 import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import { maxLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
-import { inLanguage, type Words } from '../phrases/localized-text';
+import { inLanguage, type LocalizedText } from '../phrases/localized-text';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
 import { questionKind, questionKindNames } from '../questionnaires/question-kinds';
 import { scaleRange } from '../questionnaires/questionnaire-scores';
@@ -30,7 +30,7 @@ export function questionTable(plan: StudyPlan): Table {
   const rows = questionnairesOf(plan).flatMap((questionnaire) =>
     questionnaire.questions.flatMap((question) =>
       languagesOf(plan).map((language) => {
-        const inWords = (words: Words) => inLanguage(words, language);
+        const inWords = (words: LocalizedText) => inLanguage(words, language);
         const { answers } = questionKind(question.answer).columns(question.answer, inWords);
         const { reversed = false } = question;
         const computed = { questionnaire: questionnaire.id, language, text: inWords(question.text), answers, reversed };

@@ -5,7 +5,7 @@ import { formatSentence } from 'threepoint-ui/text-format';
 import { type ExperimenterClient, ServerRefusal } from '../../client/study-client';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyInfo } from '../../model/progress/study-api';
-import { simulatedPlan, statedInWords } from '../../simulation/simulate-study';
+import { effectsInWords, simulatedPlan } from '../../simulation/simulate-study';
 import { ExperimenterAccess } from '../experimenter-access';
 import {
   type NewStudy,
@@ -152,7 +152,7 @@ class ExperimenterPage {
       const id = await storeSimulation(client, plan, { ...options, at: Date.now() / 1000, onProgress });
       await this.#access.list(client);
       await this.#open(id);
-      return `Effects: ${statedInWords(options.effects)} The results of the simulation can be looked at now.`;
+      return `Effects: ${effectsInWords(options.effects)} The results of the simulation can be looked at now.`;
     });
   }
 

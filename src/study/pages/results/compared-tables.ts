@@ -1,7 +1,7 @@
 import type { Comparison } from '../../model/results/compare-conditions';
 import { type TableHead, type TableRow, tableNode } from '../table';
 import { fixed, meanCell, measureCell, pText } from './result-cells';
-import type { Compared } from './shown-results';
+import type { ShownComparison } from './shown-results';
 
 const significance = 0.05;
 
@@ -21,7 +21,7 @@ const testHeads = {
   },
 } as const;
 
-function headsOf({ labels, between }: Compared): readonly TableHead[] {
+function headsOf({ labels, between }: ShownComparison): readonly TableHead[] {
   const heads = between ? testHeads.between : testHeads.paired;
   const [d, dTitle] = heads.d;
   const [ranks, ranksTitle] = heads.ranks;
@@ -47,7 +47,7 @@ function headsOf({ labels, between }: Compared): readonly TableHead[] {
   ];
 }
 
-function rowOf({ results, between }: Compared, one: Comparison, tagged: boolean): TableRow {
+function rowOf({ results, between }: ShownComparison, one: Comparison, tagged: boolean): TableRow {
   const { first, second, values, test, ranks, holmP, ranksHolmP } = one;
   const significant = (holmP ?? 1) < significance;
   return {
@@ -72,7 +72,11 @@ function rowOf({ results, between }: Compared, one: Comparison, tagged: boolean)
 }
 
 /** Returns a table of comparisons. Planned ones are marked if the table also has others. */
-export const comparedTable = (compared: Compared, caption: string, comparisons: readonly Comparison[]): HTMLElement =>
+export const comparedTable = (
+  compared: ShownComparison,
+  caption: string,
+  comparisons: readonly Comparison[],
+): HTMLElement =>
   tableNode(
     caption,
     headsOf(compared),

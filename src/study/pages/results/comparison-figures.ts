@@ -5,7 +5,7 @@ import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
 import { barChart, type Chart, figure, pairedChart, stripChart } from './charts';
-import type { Compared } from './shown-results';
+import type { ShownComparison } from './shown-results';
 
 /** A chart of the page with the name of its files. */
 interface NamedChart extends Chart {
@@ -15,7 +15,7 @@ interface NamedChart extends Chart {
 }
 
 /** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
-export function chartFigures({ results, labels, between }: Compared, chart: NamedChart): HTMLElement {
+export function chartFigures({ results, labels, between }: ShownComparison, chart: NamedChart): HTMLElement {
   const { title, note, each } = chart;
   const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
   const legend = { labels, simulated: results.study.simulated };
@@ -42,7 +42,7 @@ const paperFigures: Readonly<Record<string, string>> = {
 };
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
-export function questionCharts({ results, answers }: Compared): readonly NamedChart[] {
+export function questionCharts({ results, answers }: ShownComparison): readonly NamedChart[] {
   const { asked } = results;
   const [language] = languagesOf(results.study.plan);
   const charts = new Map<string, NamedChart>();
@@ -75,7 +75,7 @@ export function questionCharts({ results, answers }: Compared): readonly NamedCh
 }
 
 /** Returns a chart for each scale, with all tasks side by side. */
-export function scaleCharts({ results, scales }: Compared): readonly NamedChart[] {
+export function scaleCharts({ results, scales }: ShownComparison): readonly NamedChart[] {
   const { asked } = results;
   const charts = new Map<string, NamedChart>();
   for (const one of scales) {
@@ -99,7 +99,7 @@ export function scaleCharts({ results, scales }: Compared): readonly NamedChart[
 }
 
 /** Returns a chart for each task that has scores. */
-export const scoreCharts = ({ results, percent }: Compared): readonly NamedChart[] =>
+export const scoreCharts = ({ results, percent }: ShownComparison): readonly NamedChart[] =>
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);

@@ -1,5 +1,5 @@
 import { element } from 'threepoint-ui/element';
-import { cohortIn } from '../../model/results/exported-results';
+import { cohortLookup } from '../../model/results/exported-results';
 import { frameTimes } from '../../model/results/frame-times';
 import { frameTimeTable } from '../../model/results/result-tables';
 import { tableNode } from '../table';
@@ -23,7 +23,7 @@ const frameTimeHeads = [
 /** Returns the work per frame, separately for each cohort. */
 export function frameTimeParts({ study, titleOf, labelOf, fileOf, factsOf }: ShownResults): readonly Node[] {
   const { plan, records } = study;
-  const times = frameTimes(records, cohortIn(plan));
+  const times = frameTimes(records, cohortLookup(plan));
   const several = plan.cohorts !== undefined;
   const lateText = (missed: number, frames: number) =>
     `${missed} (${((100 * missed) / Math.max(1, frames)).toFixed(1)} %)`;

@@ -1,6 +1,6 @@
 import { element } from 'threepoint-ui/element';
 import type { OverallComparison } from '../../model/results/compare-all';
-import { comparedAsAWhole, overallComparisons } from '../../model/results/exported-results';
+import { hasOverallAnalysis, overallComparisons } from '../../model/results/exported-results';
 import type { Measure } from '../../model/results/measures';
 import { effectsOf, overallTable } from '../../model/results/result-tables';
 import { type TableRow, tableNode } from '../table';
@@ -90,7 +90,7 @@ const analyses = 'analyses of variance, and tests by ranks';
  */
 export function overallResults(results: ShownResults): readonly Node[] {
   const { study, measures } = results;
-  if (!comparedAsAWhole(study.plan)) return [];
+  if (!hasOverallAnalysis(study.plan)) return [];
   const explored = (name: string) => () => `Exploratory: ${name}: ${analyses}`;
   const plannedCaption = (count: number) => `Planned: ${analyses}; Holm over these ${count} alone`;
   return [

@@ -3,7 +3,7 @@ import type { PlanVersion } from '../../model/progress/study-api';
 import type { Questionnaire } from '../../model/questionnaires/questionnaires';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { aboutIn, measuresIn, type StudyMeasures } from '../../model/results/exported-results';
-import { isPlanned, type Measured } from '../../model/results/measures';
+import { isPlanned, type MeasureName } from '../../model/results/measures';
 import type { TableFacts } from '../../model/results/result-tables';
 import type { OpenedStudy } from '../study-file';
 
@@ -22,14 +22,14 @@ export interface ShownResults {
   labelOf(id: string): string;
   /** Returns the title of a task, with its id if another task has the same title. */
   titleOf(task: string): string;
-  nameOf(measure: Measured): string;
+  nameOf(measure: MeasureName): string;
   /** Returns the name of a file to save, without its extension. */
   fileOf(name: string): string;
   factsOf(family: TableFacts['family']): TableFacts;
 }
 
 /** Two compared sides as they are shown: first − second. */
-export interface Compared {
+export interface ShownComparison {
   readonly results: ShownResults;
   /** Whether the sides are cohorts, of different participants; otherwise they are conditions. */
   readonly between: boolean;
@@ -49,13 +49,13 @@ export function shownResults(study: ShownStudy): ShownResults {
   const asked = questionnairesOf(plan);
   const versionPart = planVersion === undefined ? '' : `-version-${planVersion}`;
   const named = [...plan.conditions, ...(plan.cohorts ?? [])];
-  const aboutOf = (one: Measured) => aboutIn(asked, one);
+  const aboutOf = (one: MeasureName) => aboutIn(asked, one);
   const titleOf = (task: string) => {
     const title = taskTitle(plan, task);
     const alike = plan.tasks.filter(({ id }) => taskTitle(plan, id) === title);
     return alike.length > 1 ? `${title} (${task})` : title;
   };
-  const isScale = ({ asked: of }: Measured) =>
+  const isScale = ({ asked: of }: MeasureName) =>
     asked.some(({ id, scales }) => id === of?.questionnaire && scales.some((scale) => scale.id === of.question));
   return {
     study,

@@ -6,7 +6,7 @@ import { cohortsTable, conditionsTable } from '../../model/results/result-tables
 import { comparedTable } from './compared-tables';
 import { chartFigures, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';
-import type { Compared, ShownResults } from './shown-results';
+import type { ShownComparison, ShownResults } from './shown-results';
 
 type Sides = Omit<ComparedCohorts, 'conditions'> & Partial<Pick<ComparedCohorts, 'conditions'>>;
 
@@ -22,7 +22,7 @@ interface Family {
 const withIntervals = 'means with 95 % confidence intervals, and tests';
 
 /** Returns the families; the exploratory ones show planned measures again. */
-function familiesOf(compared: Compared): readonly Family[] {
+function familiesOf(compared: ShownComparison): readonly Family[] {
   const { between, planned, answers, scales, points, percent } = compared;
   const alone = `Holm over these ${planned.length} alone`;
   const explored = (what: string, ofPairs: string) =>
@@ -50,7 +50,7 @@ function familiesOf(compared: Compared): readonly Family[] {
 }
 
 /** Returns the figures and the table of a family with its download button. */
-function familyParts(compared: Compared, sides: Sides, family: Family): readonly Node[] {
+function familyParts(compared: ShownComparison, sides: Sides, family: Family): readonly Node[] {
   const { name, heading, caption, comparisons, figures } = family;
   if (comparisons.length === 0) return [];
   const { results, between } = compared;

@@ -34,14 +34,14 @@ export function consentForm(
   });
 
   function showTexts(): void {
-    const { language, say } = phrases;
-    choice.label(say('language'));
-    kicker.textContent = say('consent.kicker', { version: consent.version });
-    simulation.textContent = say('consent.simulated');
-    agreed.label.textContent = say('consent.understood');
-    note.textContent = say('consent.nothingRecorded');
-    go.textContent = say('consent.agree');
-    decline.textContent = say('consent.decline');
+    const { language, text } = phrases;
+    choice.label(text('language'));
+    kicker.textContent = text('consent.kicker', { version: consent.version });
+    simulation.textContent = text('consent.simulated');
+    agreed.label.textContent = text('consent.understood');
+    note.textContent = text('consent.nothingRecorded');
+    go.textContent = text('consent.agree');
+    decline.textContent = text('consent.decline');
     title.textContent = inLanguage(consent.title, language);
     texts.replaceChildren(...paragraphs(consent.paragraphs.map((one) => inLanguage(one, language))));
     for (const node of [title, texts, ...(motion ? [motion.label] : [])]) node.lang = language;
@@ -53,7 +53,7 @@ export function consentForm(
     const chosen = languages.length > 1 ? phrases.language : null;
     const refusal = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
     if (refusal === null) return;
-    complaint.say(refusal);
+    complaint.show(refusal);
     go.disabled = false;
   }
 

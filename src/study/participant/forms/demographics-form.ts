@@ -12,13 +12,13 @@ interface FieldNode {
 
 const mayStayOpen = ({ id }: DemographicField) => id === 'vrSystems';
 
-function fieldNode(field: DemographicField, { say }: Phrases): FieldNode {
-  const must = mayStayOpen(field) ? [] : [element('span', { class: 'must', title: say('question.needed') }, ' *')];
-  const label = [say(field.phrase), ...must];
+function fieldNode(field: DemographicField, { text }: Phrases): FieldNode {
+  const must = mayStayOpen(field) ? [] : [element('span', { class: 'must', title: text('question.needed') }, ' *')];
+  const label = [text(field.phrase), ...must];
   if (field.kind === 'choice') {
     const radios = field.options.map(({ value, phrase }) => {
       const input = element('input', { type: 'radio', name: field.id, value });
-      return { input, node: element('label', { class: 'check' }, input, element('span', {}, say(phrase))) };
+      return { input, node: element('label', { class: 'check' }, input, element('span', {}, text(phrase))) };
     });
     return {
       node: element(
@@ -44,16 +44,16 @@ function fieldNode(field: DemographicField, { say }: Phrases): FieldNode {
 }
 
 /** Returns what is wrong with an answer, or null. */
-function complaintAbout(field: DemographicField, given: Given, { say }: Phrases): string | null {
-  if (given === undefined || given === '') return mayStayOpen(field) ? null : say('about.missing');
+function complaintAbout(field: DemographicField, given: Given, { text }: Phrases): string | null {
+  if (given === undefined || given === '') return mayStayOpen(field) ? null : text('about.missing');
   if (field.kind !== 'age' || typeof given !== 'number') return null;
   const { min: from, max: to } = field;
-  return Number.isInteger(given) && given >= from && given <= to ? null : say('about.ageRange', { from, to });
+  return Number.isInteger(given) && given >= from && given <= to ? null : text('about.ageRange', { from, to });
 }
 
 /** Returns the form with the questions that the paper asked its participants before they played. */
 export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>): readonly Node[] {
-  const { say } = phrases;
+  const { text } = phrases;
   const complaint = complaintLine();
   const fields = demographicFields.map((field) => ({ field, ...fieldNode(field, phrases) }));
   for (const { node } of fields) {
@@ -67,18 +67,18 @@ export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>
     for (const { node, wrong } of found) node.classList.toggle('missing', wrong !== null);
     const first = found.find(({ wrong }) => wrong !== null);
     if (first) {
-      complaint.say(first.wrong ?? '');
+      complaint.show(first.wrong ?? '');
       first.node.scrollIntoView({ block: 'center' });
       return;
     }
     const refusal = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
-    if (refusal !== null) complaint.say(refusal);
+    if (refusal !== null) complaint.show(refusal);
   }
   return [
-    ...heading(say('about.kicker'), say('about.title')),
-    element('p', { class: 'soft' }, say('question.neededNote')),
+    ...heading(text('about.kicker'), text('about.title')),
+    element('p', { class: 'soft' }, text('question.neededNote')),
     ...fields.map(({ node }) => node),
     complaint.node,
-    row(button(say('continue'), handIn, { class: 'primary' }), button(say('stopStudy'), stop)),
+    row(button(text('continue'), handIn, { class: 'primary' }), button(text('stopStudy'), stop)),
   ];
 }

@@ -8,14 +8,14 @@ import { complaintLine, type FormOf, heading, paragraphs, row } from './form-par
 import type { Invited, StudyForm } from './study-form';
 
 function participantForm({
-  phrases: { say },
+  phrases: { text },
   complaint: fault,
   known,
   go,
   decline,
 }: FormOf<'participant'>): readonly Node[] {
   const complaint = complaintLine();
-  if (fault !== null) complaint.say(fault);
+  if (fault !== null) complaint.show(fault);
   const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
     const attributes = { type: 'text', name, placeholder, maxlength, autocomplete: 'off' };
     const input = element('input', { ...attributes, value: known[name] ?? '' });
@@ -27,77 +27,77 @@ function participantForm({
       node: element('label', { class: 'field' }, element('span', {}, label), input),
     };
   };
-  const participant = field('participant', say('entrance.code'), 'P01', 4);
-  const invitation = field('invitation', say('entrance.invitation'), 'XXXX-XXXX-XXXX-XXXX', 30);
+  const participant = field('participant', text('entrance.code'), 'P01', 4);
+  const invitation = field('invitation', text('entrance.invitation'), 'XXXX-XXXX-XXXX-XXXX', 30);
   const submit = button(
-    say('continue'),
+    text('continue'),
     () => {
       const answer = { participant: participant.value(), invitation: invitation.value() };
-      if (!/^P\d{2,3}$/.test(answer.participant)) complaint.say(say('entrance.wrongCode'));
-      else if (answer.invitation === '') complaint.say(say('entrance.noInvitation'));
+      if (!/^P\d{2,3}$/.test(answer.participant)) complaint.show(text('entrance.wrongCode'));
+      else if (answer.invitation === '') complaint.show(text('entrance.noInvitation'));
       else go(answer);
     },
     { class: 'primary' },
   );
   return [
-    ...heading(say('study'), say('entrance.title')),
+    ...heading(text('study'), text('entrance.title')),
     participant.node,
     invitation.node,
     complaint.node,
-    element('p', { class: 'soft' }, say('consent.nothingRecorded')),
-    row(submit, button(say('consent.decline'), decline)),
+    element('p', { class: 'soft' }, text('consent.nothingRecorded')),
+    row(submit, button(text('consent.decline'), decline)),
   ];
 }
 
-function withdrawalForm({ phrases: { say }, code, withdrawalPage, noted, stop }: FormOf<'code'>): readonly Node[] {
-  const saved = `${say('code.file', { code, address: withdrawalPage })}\n`;
-  const save = button(say('code.save'), () => offerDownload('withdrawal-code.txt', 'text/plain', saved));
+function withdrawalForm({ phrases: { text }, code, withdrawalPage, noted, stop }: FormOf<'code'>): readonly Node[] {
+  const saved = `${text('code.file', { code, address: withdrawalPage })}\n`;
+  const save = button(text('code.save'), () => offerDownload('withdrawal-code.txt', 'text/plain', saved));
   return [
-    ...heading(say('code.kicker'), say('code.title')),
+    ...heading(text('code.kicker'), text('code.title')),
     element('p', {}, element('code', {}, code)),
     element(
       'p',
       {},
-      `${say('code.use')} `,
+      `${text('code.use')} `,
       element(
         'a',
         { href: withdrawalPage, target: '_blank', rel: 'noopener' },
         withdrawalPage.replace(/^https?:\/\//, ''),
       ),
     ),
-    ...paragraphs([say('code.once')]),
-    row(button(say('code.noted'), noted, { class: 'primary' }), save, button(say('stopStudy'), stop)),
+    ...paragraphs([text('code.once')]),
+    row(button(text('code.noted'), noted, { class: 'primary' }), save, button(text('stopStudy'), stop)),
   ];
 }
 
 function lockedOutForm({
-  phrases: { say },
+  phrases: { text },
   participant,
   unsent,
   contact,
   restart,
 }: FormOf<'locked-out'>): readonly Node[] {
   return [
-    ...heading(say('study'), contact === null ? say('callExperimenter') : say('lockedOut.title'), true),
+    ...heading(text('study'), contact === null ? text('callExperimenter') : text('lockedOut.title'), true),
     ...paragraphs([
-      say('lockedOut.place', { participant }),
-      ...(contact === null ? [] : [say('lockedOut.contact', { contact })]),
+      text('lockedOut.place', { participant }),
+      ...(contact === null ? [] : [text('lockedOut.contact', { contact })]),
     ]),
-    ...(unsent > 0 ? [element('p', { class: 'hint' }, say('lockedOut.unsent', { count: unsent }))] : []),
-    row(button(say('lockedOut.restart'), restart)),
+    ...(unsent > 0 ? [element('p', { class: 'hint' }, text('lockedOut.unsent', { count: unsent }))] : []),
+    row(button(text('lockedOut.restart'), restart)),
   ];
 }
 
 /** Returns the nodes of a form; `onLanguage` is called when another language is chosen on it. */
 export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => void): readonly Node[] {
-  const { say } = form.phrases;
+  const { text } = form.phrases;
   switch (form.kind) {
     case 'participant':
       return participantForm(form);
     case 'consent':
       return consentForm(form, onLanguage);
     case 'declined':
-      return [...heading(form.title, say('declined.title')), ...paragraphs([say('declined.text')])];
+      return [...heading(form.title, text('declined.title')), ...paragraphs([text('declined.text')])];
     case 'code':
       return withdrawalForm(form);
     case 'demographics':
@@ -105,7 +105,7 @@ export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => voi
     case 'locked-out':
       return lockedOutForm(form);
     case 'fault':
-      return [...heading(say('study'), say('entrance.fault'), true), ...paragraphs([form.text])];
+      return [...heading(text('study'), text('entrance.fault'), true), ...paragraphs([form.text])];
   }
 }
 

@@ -15,12 +15,12 @@ export const row = (...buttons: readonly Node[]) => element('div', { class: 'row
 export const paragraphs = (texts: readonly string[]) => texts.map((text) => element('p', {}, text));
 
 /** A line with the complaint about a form, which screen readers announce. */
-export function complaintLine(): { readonly node: HTMLElement; say(text: string): void; hide(): void } {
+export function complaintLine(): { readonly node: HTMLElement; show(text: string): void; hide(): void } {
   const node = element('p', { class: 'hint', role: 'alert' });
   node.hidden = true;
   return {
     node,
-    say(text) {
+    show(text) {
       node.hidden = false;
       node.textContent = text;
     },

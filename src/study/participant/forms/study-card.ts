@@ -19,7 +19,7 @@ const dotNodes = (question: ScreenQuestion): readonly Node[] =>
     button(String(index + 1), () => question.goTo(index), {
       'data-id': `go-${id}`,
       class: `dot ${state}`,
-      'aria-label': question.phrases.say(phraseOfState[state], { number: index + 1 }),
+      'aria-label': question.phrases.text(phraseOfState[state], { number: index + 1 }),
       ...(index + 1 === question.number && { 'aria-current': 'step' }),
     }),
   );
@@ -34,8 +34,8 @@ const questionNodes = ({ id, text, language, optional, field, phrases }: ScreenQ
       {},
       text,
       optional
-        ? element('span', { class: 'soft', lang: phrases.spoken }, ` ${phrases.say('question.mayStayOpen')}`)
-        : element('span', { class: 'must', lang: phrases.spoken, title: phrases.say('question.needed') }, ' *'),
+        ? element('span', { class: 'soft', lang: phrases.locale }, ` ${phrases.text('question.mayStayOpen')}`)
+        : element('span', { class: 'must', lang: phrases.locale, title: phrases.text('question.needed') }, ' *'),
     ),
     ...questionView(field).card(field, id, phrases),
   ),
@@ -85,11 +85,11 @@ export function createStudyCard(parent: HTMLElement = document.body) {
   let shownKey = '';
   let shownDots = '';
 
-  const setLanguage = ({ say, spoken }: Phrases) => {
-    card.lang = spoken;
-    card.ariaLabel = say('study');
-    bar.ariaLabel = say('progress');
-    dots.ariaLabel = say('question.all');
+  const setLanguage = ({ text, locale }: Phrases) => {
+    card.lang = locale;
+    card.ariaLabel = text('study');
+    bar.ariaLabel = text('progress');
+    dots.ariaLabel = text('question.all');
   };
 
   return {

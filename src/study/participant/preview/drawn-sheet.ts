@@ -43,7 +43,7 @@ export function createDrawnSheet() {
       screen = shown;
       node.hidden = shown === null;
       targets = shown ? targetsOf(shown) : [];
-      if (shown) node.lang = shown.phrases.spoken;
+      if (shown) node.lang = shown.phrases.locale;
       if (shown) node.ariaLabel = `In the headset: ${[shown.kicker, shown.title, ...shown.text].join('. ')}`;
       paint();
     },

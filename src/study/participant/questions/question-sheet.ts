@@ -50,7 +50,7 @@ export function paintQuestion(
   context.fillStyle = vrColors.ink;
   paintText(
     context,
-    optional ? `${text} ${phrases.say('question.mayStayOpen')}` : text,
+    optional ? `${text} ${phrases.text('question.mayStayOpen')}` : text,
     sheet.textBottom?.(field) ?? usualTextBottom,
   );
   if (all.length > maxDots) {

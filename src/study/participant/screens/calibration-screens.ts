@@ -11,7 +11,7 @@ export function calibrationScreen(
   { session, inSession, calibration, setupFaults }: StudySituation,
 ): StudyScreen {
   const { base, phrases } = parts;
-  const { say } = phrases;
+  const { text } = phrases;
   const { remote } = session.plan;
   if (remote && setupFaults.length > 0 && (!calibration || calibration.kind === 'done')) {
     return setupScreen(parts, remote, { faults: setupFaults, inSession });
@@ -20,8 +20,8 @@ export function calibrationScreen(
     return {
       ...base,
       id: 'calibration-enter',
-      title: say('headset.title'),
-      text: [say('headset.measures')],
+      title: text('headset.title'),
+      text: [text('headset.measures')],
       buttons: [enterButton(parts), pauseButton(parts)],
     };
   }
@@ -29,8 +29,8 @@ export function calibrationScreen(
   return {
     ...base,
     id: 'calibration',
-    title: say('measures.title'),
-    text: [say('measures.stance'), say('measures.press')],
+    title: text('measures.title'),
+    text: [text('measures.stance'), text('measures.press')],
     buttons: [calibrateButton(parts, 'measures.begin'), pauseButton(parts)],
   };
 }
@@ -41,21 +41,21 @@ function setupScreen(
   { contact }: RemoteTerms,
   { faults, inSession }: { readonly faults: readonly string[]; readonly inSession: boolean },
 ): StudyScreen {
-  const { say } = parts.phrases;
+  const { text } = parts.phrases;
   return {
     ...parts.base,
     id: 'setup',
-    title: inSession ? say('setup.title') : say('setup.device'),
-    text: [...faults, say('setup.contact', { contact })],
+    title: inSession ? text('setup.title') : text('setup.device'),
+    text: [...faults, text('setup.contact', { contact })],
     trouble: true,
     buttons: inSession ? [calibrateButton(parts, 'measureAgain'), pauseButton(parts)] : [askToStopButton(parts)],
   };
 }
 
 /** Returns a step of the measurement in one word or number. */
-function headlineOf(step: Exclude<CalibrationStep, { kind: 'failed' }>, { say }: Phrases): string {
+function headlineOf(step: Exclude<CalibrationStep, { kind: 'failed' }>, { text }: Phrases): string {
   if (step.kind === 'countdown') return String(Math.ceil(step.secondsLeft));
-  return step.kind === 'measuring' ? say('measuring.hold') : say('measuring.done');
+  return step.kind === 'measuring' ? text('measuring.hold') : text('measuring.done');
 }
 
 function measuringScreen(parts: ScreenParts, calibration: CalibrationStep): StudyScreen {
@@ -65,16 +65,16 @@ function measuringScreen(parts: ScreenParts, calibration: CalibrationStep): Stud
     return {
       ...base,
       id,
-      title: phrases.say('measuring.failed'),
-      text: [phrases.say(`measuring.${calibration.fault}`)],
+      title: phrases.text('measuring.failed'),
+      text: [phrases.text(`measuring.${calibration.fault}`)],
       buttons: [calibrateButton(parts, 'measureAgain')],
     };
   }
   return {
     ...base,
     id,
-    title: phrases.say('measuring.title'),
-    text: [phrases.say('measuring.instruction')],
+    title: phrases.text('measuring.title'),
+    text: [phrases.text('measuring.instruction')],
     figure: headlineOf(calibration, phrases),
     part: calibration.kind === 'measuring' ? calibration.part : null,
     buttons: [],

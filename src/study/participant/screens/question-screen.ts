@@ -22,7 +22,7 @@ export function questionPart(
   const shown = questions[at] as Question;
   const { draft } = session.progress;
   const { phrases } = session;
-  const { language, say } = phrases;
+  const { language, text } = phrases;
   const open = unanswered({ questions }, draft);
   const stateOf = ({ id, optional }: Question) => {
     if (draft[id] !== undefined) return 'answered' as const;
@@ -39,7 +39,7 @@ export function questionPart(
       text: inLanguage(shown.text, language),
       language,
       number: at + 1,
-      place: say('question.of', { number: at + 1, total: questions.length }),
+      place: text('question.of', { number: at + 1, total: questions.length }),
       phrases,
       optional: shown.optional ?? false,
       field: view.field(form, {
@@ -55,9 +55,9 @@ export function questionPart(
       (misread
         ? (view.misread?.(form, phrases) ?? null)
         : triedToSubmit && open.includes(shown.id)
-          ? say('question.thisOpen')
+          ? text('question.thisOpen')
           : open.length > 0
-            ? say('question.someOpen', { count: open.length, total: required })
+            ? text('question.someOpen', { count: open.length, total: required })
             : null),
   };
 }
@@ -65,14 +65,14 @@ export function questionPart(
 /** Returns the screen of a questionnaire with the question on display. */
 export function questionScreen(parts: ScreenParts, situation: StudySituation): StudyScreen {
   const { base, phrases, actions } = parts;
-  const { say } = phrases;
+  const { text } = phrases;
   const { session, questionnaire } = situation;
   const questions = screenQuestions(session);
   const at = Math.min(questionnaire.question, questions.length - 1);
   const last = at === questions.length - 1;
   const left = session.remaining();
   const time =
-    left === null ? '' : left > 0 ? say('question.timeLeft', { time: clockText(left) }) : say('question.takeTime');
+    left === null ? '' : left > 0 ? text('question.timeLeft', { time: clockText(left) }) : text('question.takeTime');
   const { question, hint } = questionPart(questions, at, situation, actions);
   return {
     ...base,
@@ -82,11 +82,11 @@ export function questionScreen(parts: ScreenParts, situation: StudySituation): S
     hint,
     question,
     buttons: [
-      { id: 'back', label: say('back'), look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
+      { id: 'back', label: text('back'), look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
       pauseButton(parts),
       last
-        ? { id: 'submit', label: say('submit'), look: 'primary', act: actions.submit }
-        : { id: 'next', label: say('next'), look: 'primary', act: () => actions.goTo(at + 1) },
+        ? { id: 'submit', label: text('submit'), look: 'primary', act: actions.submit }
+        : { id: 'next', label: text('next'), look: 'primary', act: () => actions.goTo(at + 1) },
     ],
     footnote: time ? `${time} · ${base.footnote}` : base.footnote,
   };

@@ -6,14 +6,14 @@ import type { StudySituation } from './study-situation';
 /** Returns the screen of a round or a practice, or null while it is played. */
 export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: StudySituation): StudyScreen | null {
   const { base, phrases } = parts;
-  const { say } = phrases;
+  const { text } = phrases;
   const { inSession, playing, waitingFor, standing, prepared } = situation;
   if (!inSession) {
     return {
       ...base,
       id: 'trial-enter',
-      title: say('headset.title'),
-      text: [say('headset.round')],
+      title: text('headset.title'),
+      text: [text('headset.round')],
       buttons: [enterButton(parts), pauseButton(parts)],
     };
   }
@@ -22,13 +22,13 @@ export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: Stu
     return {
       ...base,
       id: 'waiting',
-      title: say('waiting.title'),
-      text: [waitingFor.length > 0 ? say('waiting.for', names) : say('waiting.others')],
+      title: text('waiting.title'),
+      text: [waitingFor.length > 0 ? text('waiting.for', names) : text('waiting.others')],
       buttons: [pauseButton(parts)],
     };
   }
   if (playing && standing) {
-    return { ...base, id: 'standing', title: say('paused.title'), text: [say('standing.text')], buttons: [] };
+    return { ...base, id: 'standing', title: text('paused.title'), text: [text('standing.text')], buttons: [] };
   }
   if (playing) return null;
   if (prepared?.state === 'failed') return failedScreen(parts, prepared.reason, situation);
@@ -40,16 +40,16 @@ function failedScreen({ base, phrases, actions }: ScreenParts, why: string, { se
   return {
     ...base,
     id: 'trial-failed',
-    title: remote ? phrases.say('round.failed') : phrases.say('callExperimenter'),
+    title: remote ? phrases.text('round.failed') : phrases.text('callExperimenter'),
     text: [why, ...(remote ? [remote.contact] : [])],
     trouble: true,
-    buttons: [{ id: 'again', label: phrases.say('tryAgain'), look: 'primary', act: actions.prepareAgain }],
+    buttons: [{ id: 'again', label: phrases.text('tryAgain'), look: 'primary', act: actions.prepareAgain }],
   };
 }
 
 function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }: StudySituation): StudyScreen {
   const { base, actions } = parts;
-  const { say } = parts.phrases;
+  const { text } = parts.phrases;
   const { progress, plan } = session;
   const practice = step.kind === 'tutorial';
   const ready = prepared?.state === 'ready' && !progress.running;
@@ -58,17 +58,17 @@ function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }
   return {
     ...base,
     id: practice ? 'tutorial-ready' : 'trial-ready',
-    title: practice ? say('practice') : say('ready.title'),
+    title: practice ? text('practice') : text('ready.title'),
     text: [
-      ...(progress.attempt > 1 ? [say('ready.again')] : []),
-      game === 'ball' ? say('ready.ball') : say('ready.archery'),
-      practice ? say('ready.practice', { count }) : say('ready.seconds', { count }),
-      say('ready.raise'),
+      ...(progress.attempt > 1 ? [text('ready.again')] : []),
+      game === 'ball' ? text('ready.ball') : text('ready.archery'),
+      practice ? text('ready.practice', { count }) : text('ready.seconds', { count }),
+      text('ready.raise'),
     ],
     buttons: [
       {
         id: 'start',
-        label: ready ? say('start') : say('loading'),
+        label: ready ? text('start') : text('loading'),
         look: ready ? 'primary' : 'off',
         act: () => actions.apply({ type: 'start' }),
       },

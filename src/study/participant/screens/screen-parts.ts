@@ -18,14 +18,14 @@ export interface ScreenParts {
 
 export const pauseButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
   id: 'pause',
-  label: phrases.say('pause'),
+  label: phrases.text('pause'),
   look: 'plain',
   act: () => actions.apply({ type: 'pause' }),
 });
 
 export const enterButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
   id: 'enter',
-  label: phrases.say('enterVr'),
+  label: phrases.text('enterVr'),
   look: 'primary',
   act: actions.enterVr,
 });
@@ -33,11 +33,11 @@ export const enterButton = ({ phrases, actions }: ScreenParts): ScreenButton => 
 export const calibrateButton = (
   { phrases, actions }: ScreenParts,
   label: Extract<PhraseKey, 'measureAgain' | 'measures.begin'>,
-): ScreenButton => ({ id: 'calibrate', label: phrases.say(label), look: 'primary', act: actions.calibrate });
+): ScreenButton => ({ id: 'calibrate', label: phrases.text(label), look: 'primary', act: actions.calibrate });
 
 export const askToStopButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
   id: 'ask-to-stop',
-  label: phrases.say('stopStudy'),
+  label: phrases.text('stopStudy'),
   look: 'plain',
   act: () => actions.askToStop(true),
 });

@@ -15,9 +15,9 @@ import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 
 /** Why the device could not store, in the participant's language where the page knows the reason. */
-function storageReason(fault: string, say: Phrases['say']): string {
-  if (fault === noStorage) return say('kept.noStorage');
-  return fault === silentStorage ? say('kept.silentStorage') : fault;
+function storageReason(fault: string, text: Phrases['text']): string {
+  if (fault === noStorage) return text('kept.noStorage');
+  return fault === silentStorage ? text('kept.silentStorage') : fault;
 }
 
 /**
@@ -26,20 +26,23 @@ function storageReason(fault: string, say: Phrases['say']): string {
  */
 export function uploadStatusText(
   { unsent, unsaved, storageFault, online, refusal }: UploadStatus,
-  { say }: Phrases,
+  { text }: Phrases,
   remote?: RemoteTerms,
 ): readonly [string, boolean] {
   if (refusal !== null && unsent > 0) {
     const what = { count: unsent, reason: refusal };
-    return [remote ? say('kept.refusedRemote', { ...what, contact: remote.contact }) : say('kept.refused', what), true];
+    return [
+      remote ? text('kept.refusedRemote', { ...what, contact: remote.contact }) : text('kept.refused', what),
+      true,
+    ];
   }
   if (unsaved > 0) {
-    if (storageFault === null) return [say('kept.saving'), false];
-    const reason = storageReason(storageFault, say);
-    return [say('kept.noRoom', { count: unsaved, reason }), true];
+    if (storageFault === null) return [text('kept.saving'), false];
+    const reason = storageReason(storageFault, text);
+    return [text('kept.noRoom', { count: unsaved, reason }), true];
   }
-  if (!online) return [say('kept.offline', { count: unsent }), false];
-  return [unsent > 0 ? say('kept.sending') : say('kept.all'), false];
+  if (!online) return [text('kept.offline', { count: unsent }), false];
+  return [unsent > 0 ? text('kept.sending') : text('kept.all'), false];
 }
 
 /** Returns the line above the title. Participants know rounds by number, never by condition. */
@@ -47,7 +50,7 @@ function kickerOf({ plan, phrases }: ShownSession, step: StudyStep): string {
   if (!('task' in step)) return inLanguage(plan.title, phrases.language);
   const title = taskTitle(plan, step.task, phrases.language);
   const practice = step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('after-tutorial'));
-  return `${title} · ${practice ? phrases.say('practice') : phrases.say('round', { number: step.block })}`;
+  return `${title} · ${practice ? phrases.text('practice') : phrases.text('round', { number: step.block })}`;
 }
 
 /** Returns the screen in the headset after the place was given to another device. The form on the page says more. */
@@ -55,14 +58,14 @@ export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen =>
   id: 'locked-out',
   phrases,
   kicker: inLanguage(plan.title, phrases.language),
-  title: phrases.say(plan.remote ? 'lockedOut.title' : 'callExperimenter'),
-  text: plan.remote ? [phrases.say('lockedOut.deleted'), plan.remote.contact] : [phrases.say('lockedOut.released')],
+  title: phrases.text(plan.remote ? 'lockedOut.title' : 'callExperimenter'),
+  text: plan.remote ? [phrases.text('lockedOut.deleted'), plan.remote.contact] : [phrases.text('lockedOut.released')],
   figure: null,
   part: null,
   question: null,
   hint: null,
   buttons: [],
-  footnote: phrases.say('lockedOut.silent'),
+  footnote: phrases.text('lockedOut.silent'),
   trouble: true,
 });
 
@@ -79,7 +82,7 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     part: null,
     question: null,
     hint: refusal,
-    footnote: session.simulated ? `${phrases.say('simulated')} · ${kept}` : kept,
+    footnote: session.simulated ? `${phrases.text('simulated')} · ${kept}` : kept,
     trouble: worrying,
   };
   const parts: ScreenParts = { base, phrases, actions };
@@ -105,13 +108,13 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
 const pausedScreen = (parts: ScreenParts): StudyScreen => ({
   ...parts.base,
   id: 'paused',
-  title: parts.phrases.say('paused.title'),
-  text: [parts.phrases.say('paused.text')],
+  title: parts.phrases.text('paused.title'),
+  text: [parts.phrases.text('paused.text')],
   buttons: [
     askToStopButton(parts),
     {
       id: 'resume',
-      label: parts.phrases.say('continue'),
+      label: parts.phrases.text('continue'),
       look: 'primary',
       act: () => parts.actions.apply({ type: 'resume' }),
     },
@@ -120,30 +123,30 @@ const pausedScreen = (parts: ScreenParts): StudyScreen => ({
 
 /** Asks whether to stop, because of answers or because the participant wants to. */
 function stopScreen(
-  { base, phrases: { say }, actions }: ScreenParts,
+  { base, phrases: { text }, actions }: ScreenParts,
   { unwell }: Progress,
   remote: RemoteTerms | undefined,
 ): StudyScreen {
   return {
     ...base,
     id: unwell ? 'unwell' : 'stopping',
-    title: unwell ? say('unwell.title') : say('stopping.title'),
+    title: unwell ? text('unwell.title') : text('stopping.title'),
     text: [
-      ...(unwell ? [say('unwell.text')] : []),
-      say('stopping.text'),
-      ...(unwell && remote ? [say('unwell.contact', { contact: remote.contact })] : []),
+      ...(unwell ? [text('unwell.text')] : []),
+      text('stopping.text'),
+      ...(unwell && remote ? [text('unwell.contact', { contact: remote.contact })] : []),
     ],
     buttons: [
       // The way back is where the button to stop was, so that pressing twice stops nothing.
       {
         id: 'go-on',
-        label: unwell ? say('unwell.goOn') : say('stopping.goOn'),
+        label: unwell ? text('unwell.goOn') : text('stopping.goOn'),
         look: unwell ? 'plain' : 'primary',
         act: () => (unwell ? actions.apply({ type: 'go-on' }) : actions.askToStop(false)),
       },
       {
         id: 'stop',
-        label: say('stop'),
+        label: text('stop'),
         look: unwell ? 'primary' : 'plain',
         act: () => actions.apply({ type: 'stop', by: 'participant' }),
       },
@@ -160,8 +163,8 @@ function restScreen(
   return {
     ...parts.base,
     id: 'rest',
-    title: parts.phrases.say('rest.title'),
-    text: [parts.phrases.say('rest.text')],
+    title: parts.phrases.text('rest.title'),
+    text: [parts.phrases.text('rest.text')],
     figure: clockText(left),
     part: seconds > 0 ? 1 - left / seconds : 1,
     buttons: [pauseButton(parts)],
@@ -170,16 +173,16 @@ function restScreen(
 
 function endScreen({ base, phrases }: ScreenParts, { session, withdrawalPage }: StudySituation): StudyScreen {
   const { plan, progress, uploadStatus } = session;
-  const { say } = phrases;
+  const { text } = phrases;
   return {
     ...base,
     id: 'end',
     kicker: inLanguage(plan.title, phrases.language),
-    title: say('end.title'),
+    title: text('end.title'),
     text: [
-      progress.stopped ? say('end.stopped') : say('end.done'),
-      uploadStatus.unsent === 0 ? say('end.arrived') : say('end.keepOpen'),
-      say('end.withdraw', { address: withdrawalPage.replace(/^https?:\/\//, '') }),
+      progress.stopped ? text('end.stopped') : text('end.done'),
+      uploadStatus.unsent === 0 ? text('end.arrived') : text('end.keepOpen'),
+      text('end.withdraw', { address: withdrawalPage.replace(/^https?:\/\//, '') }),
     ],
     buttons: [],
   };

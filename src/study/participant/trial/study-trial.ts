@@ -4,7 +4,7 @@ import { writeRecordingWithin } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
 import { maxMotionBytes } from '../../model/progress/study-api';
-import { TrialSeconds } from '../../model/records/trial-clock';
+import { TrialStopwatch } from '../../model/records/trial-clock';
 import { type FrameListener, TrialLog, type TrialOutcome } from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
@@ -65,7 +65,7 @@ export class PlayedTrial {
   readonly #log: TrialLog;
   /** null: none are kept. */
   readonly #frames: TrackingFrame[] | null;
-  readonly #seconds: TrialSeconds;
+  readonly #seconds: TrialStopwatch;
   #begun = false;
   /** The second of the trial at which it ended; null: it goes on. */
   #endedAt: number | null = null;
@@ -82,7 +82,7 @@ export class PlayedTrial {
     this.#calibration = host.calibration();
     this.#log = new TrialLog(this.#device, this.#calibration);
     this.#frames = motion ? [] : null;
-    this.#seconds = new TrialSeconds(now);
+    this.#seconds = new TrialStopwatch(now);
     for (const name of runner.assists()) this.#log.assist(name);
     host.listenToFrames((spent, late) => {
       if (!this.#isPaused && this.#endedAt === null && runner.waitingFor === null) this.#log.frame(spent, late);
@@ -97,7 +97,7 @@ export class PlayedTrial {
 
   /** Whether the game is paused by another participant of the group. */
   get standing(): boolean {
-    return this.#runner.standing;
+    return this.#runner.pausedByOther;
   }
 
   /** Whether the game was lost, so that the trial is void. */
@@ -148,7 +148,7 @@ export class PlayedTrial {
   }
 
   get #isPaused(): boolean {
-    return this.#paused || this.#runner.standing;
+    return this.#paused || this.#runner.pausedByOther;
   }
 
   /** Takes the first frame of the trial into account. */

@@ -40,7 +40,7 @@ export interface TaskRunner {
    */
   readonly waitingFor: readonly string[] | null;
   /** Whether the clock of the game is paused by another participant of the group. */
-  readonly standing: boolean;
+  readonly pausedByOther: boolean;
   /** The end of the trial; null: there is no trial, or it goes on. */
   readonly end: TaskEnd | null;
   /** Whether the started trial was lost, so that it has no result. */

@@ -23,47 +23,51 @@ function field(label: string, attributes: Readonly<Record<string, string | numbe
 }
 
 /** Deletes the data of the participant in this browser; resolves with a sentence about the result. */
-async function forgottenHere(receipt: Receipt, { say }: Phrases): Promise<string> {
+async function forgottenHere(receipt: Receipt, { text }: Phrases): Promise<string> {
   try {
     const vault = await openStudyVault();
     await vault.forget(receipt);
     vault.close();
-    return say('receipt.hereToo');
+    return text('receipt.hereToo');
   } catch {
     // reason: a browser without storage holds nothing, and the sentence says what else there is to do
-    return say('receipt.elsewhere');
+    return text('receipt.elsewhere');
   }
 }
 
 function receiptLines(
   { number, study, participant, records, motionFiles, at }: Receipt,
-  { say, spoken }: Phrases,
+  { text, locale }: Phrases,
 ): readonly string[] {
   return [
-    say('receipt.number', { number, study }),
-    say('receipt.deleted', {
+    text('receipt.number', { number, study }),
+    text('receipt.deleted', {
       participant,
-      records: say('receipt.records', { count: records }),
-      recordings: say('receipt.recordings', { count: motionFiles }),
+      records: text('receipt.records', { count: records }),
+      recordings: text('receipt.recordings', { count: motionFiles }),
     }),
-    say('receipt.when', { time: new Date(1000 * at).toLocaleString(spoken), address: pageFolder() }),
+    text('receipt.when', { time: new Date(1000 * at).toLocaleString(locale), address: pageFolder() }),
   ];
 }
 
 /** Returns the receipt that is shown after the deletion. */
 function receiptCard(receipt: Receipt, about: PublicStudy | null, phrases: Phrases, here: string): HTMLElement {
-  const { say } = phrases;
+  const { text } = phrases;
   const lines = receiptLines(receipt, phrases);
   const save = () =>
     offerDownload(`receipt-${receipt.study}-${receipt.number}.txt`, 'text/plain', `${lines.join('\n')}\n`);
   return element(
     'section',
-    { class: 'card', 'aria-label': say('receipt.name') },
-    element('h2', { style: 'margin-top:0' }, say('receipt.title')),
+    { class: 'card', 'aria-label': text('receipt.name') },
+    element('h2', { style: 'margin-top:0' }, text('receipt.title')),
     ...lines.map((line) => paragraph(line)),
     paragraph(here),
-    paragraph(`${say('receipt.copies')} ${about?.contact ?? say('askExperimenter')}`),
-    element('div', { class: 'bar', style: 'margin-top:12px' }, button(say('receipt.save'), save, { class: 'primary' })),
+    paragraph(`${text('receipt.copies')} ${about?.contact ?? text('askExperimenter')}`),
+    element(
+      'div',
+      { class: 'bar', style: 'margin-top:12px' },
+      button(text('receipt.save'), save, { class: 'primary' }),
+    ),
   );
 }
 
@@ -81,16 +85,16 @@ const unknownCode = 'nothing is recorded under this code';
 
 /** Returns why there is no receipt. Without an answer, the server may have deleted everything nevertheless. */
 function failure(error: unknown, phrases: Phrases): string {
-  if (error instanceof ServerRefusal && error.message === unknownCode) return phrases.say('withdrawal.unknownCode');
+  if (error instanceof ServerRefusal && error.message === unknownCode) return phrases.text('withdrawal.unknownCode');
   const reason = reasonOf(error);
-  return phrases.say(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
+  return phrases.text(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
 }
 
 /** Asks for the code, and deletes everything after a confirmation. */
 function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
-  const { say } = phrases;
-  const study = field(say('withdrawal.study'), { name: 'study', value: asked ?? '', size: 30 });
-  const code = field(say('withdrawal.code'), {
+  const { text } = phrases;
+  const study = field(text('withdrawal.study'), { name: 'study', value: asked ?? '', size: 30 });
+  const code = field(text('withdrawal.code'), {
     name: 'code',
     placeholder: 'XXXX-XXXX-XXXX-XXXX',
     maxlength: 60,
@@ -99,7 +103,7 @@ function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
   const sure = element('input', { type: 'checkbox' });
   const complaint = paragraph('', { class: 'complaint', role: 'alert' });
   complaint.hidden = true;
-  const go = button(say('withdrawal.delete'), () => void withdraw(), { class: 'danger' });
+  const go = button(text('withdrawal.delete'), () => void withdraw(), { class: 'danger' });
   const changed = () => {
     go.disabled = !sure.checked || code.input.value.trim() === '' || study.input.value.trim() === '';
   };
@@ -123,16 +127,16 @@ function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
     'section',
     { class: 'card' },
     ...(about ? [element('h2', { style: 'margin-top:0' }, inLanguage(about.title, phrases.language))] : []),
-    paragraph(say('withdrawal.explained')),
+    paragraph(text('withdrawal.explained')),
     element('div', { class: 'bar', style: 'margin:14px 0' }, ...(about ? [] : [study.node]), code.node),
-    element('label', { class: 'inline' }, sure, element('span', {}, say('withdrawal.sure'))),
+    element('label', { class: 'inline' }, sure, element('span', {}, text('withdrawal.sure'))),
     complaint,
     element('div', { class: 'bar', style: 'margin-top:12px' }, go),
     element(
       'p',
       { class: 'soft', style: 'margin-top:14px' },
-      say('withdrawal.lookUp'),
-      ...(about?.contact ? [` ${say('withdrawal.contact', { contact: about.contact })}`] : []),
+      text('withdrawal.lookUp'),
+      ...(about?.contact ? [` ${text('withdrawal.contact', { contact: about.contact })}`] : []),
     ),
   );
 }
@@ -157,12 +161,12 @@ async function findStudy(): Promise<Found> {
 /** Shows the page in a language; another one can be chosen until everything is deleted. */
 function show({ about, fault }: Found, languages: readonly [string, ...string[]], language: string): void {
   const phrases = phrasesOf(about ?? {}, language);
-  const { say, spoken } = phrases;
-  document.documentElement.lang = spoken;
-  document.title = `${say('withdrawal.title')} · threepoint`;
-  pageElement('title', HTMLElement).textContent = say('withdrawal.title');
+  const { text, locale } = phrases;
+  document.documentElement.lang = locale;
+  document.title = `${text('withdrawal.title')} · threepoint`;
+  pageElement('title', HTMLElement).textContent = text('withdrawal.title');
   const choice = languageChoice(languages, language, (chosen) => show({ about, fault }, languages, chosen));
-  choice.label(say('language'));
+  choice.label(text('language'));
   const complaint = fault === null ? null : `“${asked}”: ${localizedReason(fault, phrases)}.`;
   content.replaceChildren(
     ...(languages.length > 1 ? [element('div', { class: 'bar', style: 'margin-bottom:14px' }, choice.node)] : []),

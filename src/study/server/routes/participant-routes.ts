@@ -79,7 +79,7 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
       return jsonResponse({ token, withdrawalCode, ...sessionOf(store, call) }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
-      store.places.reinvite(study, participant);
+      store.places.renewInvitation(study, participant);
       return noContent;
     }),
     route('POST', `${own}/release`, 'experimenter', 0, ({ study, participant }) => {

@@ -60,7 +60,7 @@ export class StudyPlaces {
     return invitation !== null && timingSafeEqual(hashOf(normalisedCode(code)), hashOf(invitation));
   }
 
-  reinvite(study: string, participant: string): void {
+  renewInvitation(study: string, participant: string): void {
     const isOpen = this.#plans.get(study).plan.entry === 'open';
     this.getPresent(study, participant);
     const code = newCode();

@@ -4,8 +4,8 @@ import { type Side, sides } from '../math/side';
 const centreBones = ['hips', 'spine', 'chest', 'upperChest', 'neck', 'head', 'jaw'] as const;
 const sideBones = ['Shoulder', 'UpperArm', 'LowerArm', 'Hand', 'UpperLeg', 'LowerLeg', 'Foot', 'Toes', 'Eye'] as const;
 /** The fingers as VRM's names of bones have them, from the thumb outwards. */
-export const fingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
-type Finger = (typeof fingerNames)[number];
+export const vrmFingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
+type Finger = (typeof vrmFingerNames)[number];
 
 /** VRM's name of a bone. The declarations of @pixiv/three-vrm do not resolve under Node's rules for modules. */
 export type BoneName =
@@ -18,7 +18,7 @@ export type BoneName =
 export type BoneMap = Readonly<Partial<Record<BoneName, string>>>;
 
 /** VRM's names of all bones of a hand's fingers, without the side. */
-export const handFingerBones: readonly string[] = fingerNames.flatMap(fingerBoneSuffixes);
+export const handFingerBones: readonly string[] = vrmFingerNames.flatMap(fingerBoneSuffixes);
 
 /** Every bone that a map may name. */
 export const boneNames: ReadonlySet<string> = new Set([

@@ -1,10 +1,10 @@
 import { fingerBoneSuffixes } from '../body/finger-bone-names';
 import { distance, dot, normalise, subtract, zero } from '../math/vec3';
-import { fingerNames } from './bones';
+import { vrmFingerNames } from './bones';
 import type { JointTree } from './joint-tree';
 import type { Part } from './name-votes';
 
-type Finger = (typeof fingerNames)[number];
+type Finger = (typeof vrmFingerNames)[number];
 
 interface Branch {
   /** The joints of the finger from the palm outwards, without the bone in the palm. */
@@ -26,7 +26,8 @@ const fingerPart = (finger: Finger): Part => finger.toLowerCase() as Part;
 
 function branchOf(tree: JointTree, first: number): Branch {
   const chain = tree.mainChain(first, 8).filter((joint) => !tree.joints[joint]!.end && !tree.auxiliary[joint]);
-  const named = fingerNames.find((finger) => chain.some((joint) => tree.vote(joint, fingerPart(finger)) > 0.5)) ?? null;
+  const named =
+    vrmFingerNames.find((finger) => chain.some((joint) => tree.vote(joint, fingerPart(finger)) > 0.5)) ?? null;
   const counted = chain.find((joint) => tree.vote(joint, 'finger') > 0.5);
   const words = chain.some((joint) => tree.vote(joint, 'metacarpal') > 0.4);
   const long = named === null && chain.length > 3 && tree.segments[chain[1]!]! > 1.3 * tree.segments[chain[2]!]!;
@@ -61,7 +62,7 @@ function byPlace(tree: JointTree, hand: number, branches: readonly Branch[]): re
     (a, b) => dot(normalise(subtract(first(b), at), zero), way) - dot(normalise(subtract(first(a), at), zero), way),
   );
   // A hand with three fingers beside its thumb lacks the ring finger.
-  const names = across.length === 3 ? fingerNames.filter((finger) => finger !== 'Ring') : fingerNames;
+  const names = across.length === 3 ? vrmFingerNames.filter((finger) => finger !== 'Ring') : vrmFingerNames;
   return [thumb, ...across].map((branch, i) => [names[i]!, branch] as const);
 }
 
@@ -76,7 +77,7 @@ export function matchFingers(tree: JointTree, hand: number): readonly FingerMatc
     // Some programs count fingers from 0, others from 1.
     const first = Math.min(1, ...counted.map(({ number }) => number!));
     pairs = counted.flatMap((branch) => {
-      const finger = fingerNames[branch.number! - first];
+      const finger = vrmFingerNames[branch.number! - first];
       return finger ? [[finger, branch] as const] : [];
     });
     [confidence, reason] = [0.8, 'the number in its name'];

@@ -7,7 +7,7 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { isNightly } from '../../../nightly';
 import { reportFigures } from '../../../reliability/report-figures';
 import { arrive, pause, until } from '../../../rooms/server/running-relay';
-import { heardFrom, kill } from '../../../server/child-process';
+import { kill, messageFrom } from '../../../server/child-process';
 import { installed } from '../../../server/installed';
 import { experimenterToken, forkServer } from '../../../server/server-child';
 import { directoryWith } from '../../../temporary-directory';
@@ -141,13 +141,13 @@ describe('a database that hangs', () => {
       stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
     });
     onTestFinished(() => kill(locker));
-    await heardFrom(locker);
+    await messageFrom(locker);
     const figures = await observed(server, study, async () => {
       locker.send('lock');
-      await heardFrom(locker);
+      await messageFrom(locker);
       await pause(lockedSeconds);
       locker.send('unlock');
-      await heardFrom(locker);
+      await messageFrom(locker);
     });
     reportFigures('study-lock', figures);
   });

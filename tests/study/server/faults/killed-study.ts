@@ -11,7 +11,7 @@ import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
 import { sourceResolution } from '../../../../scripts/source-condition.mjs';
-import { heardFrom, isAlive, kill } from '../../../server/child-process';
+import { isAlive, kill, messageFrom } from '../../../server/child-process';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
 
@@ -167,7 +167,7 @@ async function started(file: string, directory: string): Promise<Server> {
   const child = fork(file, [directory, './study-thread-worker.mjs'], {
     env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
   });
-  const { port } = await heardFrom<{ port: number }>(child);
+  const { port } = await messageFrom<{ port: number }>(child);
   const ask: Ask = (method, path, token, body) =>
     fetch(`http://127.0.0.1:${port}/api/studies${path}`, {
       method,

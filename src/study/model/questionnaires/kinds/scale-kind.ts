@@ -1,6 +1,6 @@
 import { ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import { type Words, words } from '../../phrases/localized-text';
+import { type LocalizedText, words } from '../../phrases/localized-text';
 
 /** Numbers at equal distances from one end to the other. */
 export interface SteppedScale {
@@ -59,7 +59,7 @@ const numberOn = (scale: SteppedScale) => {
 };
 
 /** Returns the texts below the ends with their paths. */
-export const endTexts = (texts: Ends | undefined): readonly (readonly [string, Words])[] =>
+export const endTexts = (texts: Ends | undefined): readonly (readonly [string, LocalizedText])[] =>
   texts
     ? [
         ['ends.low', texts.low],
@@ -67,15 +67,15 @@ export const endTexts = (texts: Ends | undefined): readonly (readonly [string, W
       ]
     : [];
 
-type EndLabels = { readonly low?: Words | undefined; readonly high?: Words | undefined };
+type EndLabels = { readonly low?: LocalizedText | undefined; readonly high?: LocalizedText | undefined };
 
 /** Describes a scale in words: "1 Very poor to 5 Excellent". */
 function scaleInWords(
   { from, to, step }: SteppedScale,
   { low, high }: EndLabels,
-  inWords: (text: Words) => string,
+  inWords: (text: LocalizedText) => string,
 ): string {
-  const end = (value: number, label: Words | undefined) =>
+  const end = (value: number, label: LocalizedText | undefined) =>
     label === undefined ? `${value}` : `${value} ${inWords(label)}`;
   return `${end(from, low)} to ${end(to, high)}${step === 1 ? '' : `, in steps of ${step}`}`;
 }
@@ -89,7 +89,7 @@ export const answeredOnScale = <Form extends Omit<SteppedScale, 'step'>>(
   range: ({ from, to }: Form) => [from, to] as const,
   options: () => null,
   ends,
-  columns: (form: Form, inWords: (text: Words) => string) => ({
+  columns: (form: Form, inWords: (text: LocalizedText) => string) => ({
     answers: scaleInWords(scaleOf(form), ends(form), inWords),
   }),
   simulate: (form: Form, part: number) => nearestOn(scaleOf(form), form.from + (form.to - form.from) * part),

@@ -34,7 +34,7 @@ export const sliderView: QuestionView<SliderForm, SliderField> = {
     answer: typeof given === 'number' ? given : null,
     choose,
   }),
-  card({ values, ends, answer, choose }, name, { say }) {
+  card({ values, ends, answer, choose }, name, { text }) {
     const middle = Math.floor(values.length / 2);
     const range = element('input', {
       type: 'range',
@@ -44,7 +44,7 @@ export const sliderView: QuestionView<SliderForm, SliderField> = {
       step: 1,
       value: answer === null ? middle : values.indexOf(answer),
       'data-id': 'answer',
-      'aria-label': say('question.range', ends),
+      'aria-label': text('question.range', ends),
       // Without an answer the line is empty: a mark in the middle would suggest one.
       class: answer === null ? 'open' : undefined,
     });

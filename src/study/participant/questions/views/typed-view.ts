@@ -30,18 +30,18 @@ declare module '../question-view' {
 const longestNumber = 12;
 
 /** Returns the properties that fields for numbers and for text share. */
-function typedParts({ phrases: { say }, given, typed, type }: FieldContext) {
+function typedParts({ phrases: { text }, given, typed, type }: FieldContext) {
   return {
     typed: typed ?? (given === undefined ? '' : String(given)),
-    keys: { rows: say('keys.rows').split(' '), space: say('keys.space'), delete: say('keys.delete') },
+    keys: { rows: text('keys.rows').split(' '), space: text('keys.space'), delete: text('keys.delete') },
     type,
   };
 }
 
-function card({ kind, typed, unit, maxLength, type }: TypedField, name: string, { say }: Phrases): readonly Node[] {
+function card({ kind, typed, unit, maxLength, type }: TypedField, name: string, { text }: Phrases): readonly Node[] {
   const attributes = {
     ...{ name, maxlength: maxLength, autocomplete: 'off' },
-    ...{ 'data-id': 'answer', 'aria-label': say('question.field') },
+    ...{ 'data-id': 'answer', 'aria-label': text('question.field') },
   };
   const input =
     kind === 'text'
@@ -125,7 +125,7 @@ export const numberView: QuestionView<NumberForm, TypedField<'number'>> = {
   }),
   card,
   sheet,
-  misread: ({ from, to, whole }, { say }) => say(whole ? 'question.wholeNumber' : 'question.number', { from, to }),
+  misread: ({ from, to, whole }, { text }) => text(whole ? 'question.wholeNumber' : 'question.number', { from, to }),
 };
 
 export const textView: QuestionView<TextForm, TypedField<'text'>> = {
@@ -133,5 +133,5 @@ export const textView: QuestionView<TextForm, TypedField<'text'>> = {
   field: ({ maxLength }, context) => ({ kind: 'text', unit: '', maxLength, ...typedParts(context) }),
   card,
   sheet,
-  misread: ({ maxLength }, { say }) => say('question.text', { count: maxLength }),
+  misread: ({ maxLength }, { text }) => text('question.text', { count: maxLength }),
 };
