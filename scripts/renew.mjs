@@ -34,9 +34,9 @@ export const steps = [
     takes: 'a quarter of an hour',
   },
   {
-    name: 'noticed',
+    name: 'online-calibration',
     script: 'train',
-    options: ['--noticed'],
+    options: ['--online-calibration'],
     renews: 'the estimation of calibration errors from minutes of motion, in docs/accuracy.md',
     takes: 'an hour',
   },

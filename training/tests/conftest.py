@@ -6,7 +6,7 @@ _NEED_TORCH = (
     "command_line",
     "lockbox",
     "model",
-    "noticed_wear",
+    "online_calibration",
     "differentiable_kinematics",
     "selection",
     "swivel_limiter",

@@ -25,7 +25,7 @@ def test_a_run_has_one_seed_for_both_networks():
 
 
 @pytest.mark.parametrize(
-    ("option", "task"), [("--select", "selection"), ("--noticed", "noticed wear"), ("--lockbox", "lockbox")]
+    ("option", "task"), [("--select", "selection"), ("--online-calibration", "online calibration"), ("--lockbox", "lockbox")]
 )
 def test_a_study_is_done_instead_of_the_training(option, task):
     assert config_of(["--generated", option]).task == task
@@ -48,5 +48,5 @@ def test_options_that_would_be_ignored_are_refused_in_a_sentence(options, senten
 
 def test_two_studies_at_once_are_refused_in_a_sentence(capsys):
     with pytest.raises(SystemExit):
-        config_of(["--generated", "--noticed", "--select"])
-    assert "--noticed and --select are runs of their own: give one of them" in capsys.readouterr().err
+        config_of(["--generated", "--online-calibration", "--select"])
+    assert "--online-calibration and --select are runs of their own: give one of them" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Facts about how far above its usual place a headset is noticed to sit;
+"""Facts about how far above its usual place a headset is estimated to sit;
 tests/threepoint/core/estimation/headset-rise.test.ts holds the page to it.
 """
 

@@ -14,8 +14,8 @@ from .training_config import Task, TrainConfig, quick
 # Options that ask for something else instead of training the networks, and what that is.
 _TASKS: dict[str, tuple[Task, str]] = {
     "--select": ("selection", "the recipe judged by the selection metric, and compared with earlier ones"),
-    "--noticed": (
-        "noticed wear",
+    "--online-calibration": (
+        "online calibration",
         "the estimation of calibration errors from minutes of motion, on people held out in four groups, for docs/accuracy.md",
     ),
     "--lockbox": (

@@ -1,4 +1,4 @@
-"""Hand tilts (hand_tilt) noticed while hands move; the twin of src/threepoint/core/estimation/online-calibration/estimate-hand-tilts.ts.
+"""Hand tilts (hand_tilt) estimated while hands move; the twin of src/threepoint/core/estimation/online-calibration/estimate-hand-tilts.ts.
 
 Inverse kinematics without tilts estimates where forearms point. The mean of these directions in the frames of their
 hands is the tilt, for errors of single postures average out.
@@ -44,13 +44,13 @@ def travel(positions: Array) -> Array:
     return np.linalg.norm(np.diff(from_head, axis=0, prepend=from_head[:1]), axis=-1)
 
 
-def noticed(
+def estimated_tilts(
     forearms: Array,
     metres: Array,
     calibrated: CalibratedTilts = NO_CALIBRATED_TILTS,
     seen: NDArray[np.bool_] | None = None,
 ) -> Array:
-    """The tilts [F, 2, 2] by which hands are turned in each frame, by what was noticed before it.
+    """The tilts [F, 2, 2] by which hands are turned in each frame, estimated from the frames before it.
 
     forearms [F, 2, 3] in the frames of the hands; metres [F, 2] that each hand travelled since the frame before
     (`travel`); seen [F, 2]: which hands are, all when None.
@@ -72,14 +72,14 @@ def noticed(
 def _prior_metres(prior: Array, calibrated: NDArray[np.bool_], total: Array) -> Array:
     """Returns the weight of each hand's prior direction [2, 3] in metres of travel [2].
 
-    total [2, 3]: the sum of noticed directions times metres; calibrated: whether the prior is a measured tilt.
+    total [2, 3]: the sum of observed directions times metres; calibrated: whether the prior is a measured tilt.
     """
     angle = np.arctan2(np.linalg.norm(np.cross(prior, total), axis=-1), np.sum(prior * total, axis=-1))
     doubted = np.minimum(1.0, (HAND_TILTS["doubtAngle"] / np.maximum(angle, 1e-9)) ** 2)
     return np.where(calibrated, HAND_TILTS["calibratedMetres"] * doubted, HAND_TILTS["usualMetres"])
 
 
-def with_noticed_hands(
+def with_estimated_hands(
     body: Body,
     positions: Array,
     rotations: Array,
@@ -91,6 +91,6 @@ def with_noticed_hands(
     """Returns the body with the estimated hand tilts of each frame, for one clip from its start.
 
     positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; metres, calibrated and seen as for
-    `noticed`.
+    `estimated_tilts`.
     """
-    return body.with_hands(noticed(ik_forearms(positions, rotations, body), metres, calibrated, seen))
+    return body.with_hands(estimated_tilts(ik_forearms(positions, rotations, body), metres, calibrated, seen))

@@ -1,4 +1,4 @@
-"""How far above its usual place a headset sits, noticed by arms that hang; the twin of
+"""How far above its usual place a headset sits, estimated from hanging arms; the twin of
 src/threepoint/core/estimation/online-calibration/estimate-headset-rise.ts.
 """
 
@@ -22,7 +22,7 @@ def reaches(positions: Array, rotations: Array, body: Body) -> Array:
 def hanging_reach(
     reach: Array, seconds: Array, usual: float = HEADSET_RISE["usualReach"], seen: NDArray[np.bool_] | None = None
 ) -> Array:
-    """How far wrists get from their shoulders while the arm hangs [F, 2], in arm lengths, by what was noticed until
+    """How far wrists get from their shoulders while the arm hangs [F, 2], in arm lengths, estimated until
     each frame.
 
     reach [F, 2, 3]; seconds [F] since the frame before; seen [F, 2]: which hands are, all when None. A quantile,
@@ -40,7 +40,7 @@ def hanging_reach(
 
 
 def rise(followed: Array, arm: Array, usual: float = HEADSET_RISE["usualReach"]) -> Array:
-    """How far above its usual place the headset sits [F] in metres, by what was noticed of both arms [F, 2] of this
+    """How far above its usual place the headset sits [F] in metres, estimated from both arms [F, 2] of this
     length [m].
     """
     further = followed.mean(axis=-1) - usual

@@ -94,7 +94,7 @@ def feature_vectors() -> list[dict[str, Any]]:
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
         metres = estimate_hand_tilts.travel(positions)
-        body = estimate_hand_tilts.with_noticed_hands(
+        body = estimate_hand_tilts.with_estimated_hands(
             person.body(), positions, rotations, metres, calibrated=person.calibrated(), seen=seen
         )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
@@ -124,7 +124,7 @@ def feature_vectors() -> list[dict[str, Any]]:
 
 
 def headset_rise_vectors() -> dict[str, Any]:
-    """Arms that hang, swing and are not seen now and then, and what is noticed of the headset by them."""
+    """Arms that hang, swing and are not seen now and then, and the headset rise estimated from them."""
     random = np.random.default_rng(31)
     arm, count = 0.61, 60
     reach = np.array([0.0, -1.0, 0.0]) * random.normal(1.02, 0.03, size=(count, 2, 1)) + random.normal(

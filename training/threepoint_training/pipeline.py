@@ -18,7 +18,7 @@ from . import (
     fitted_kinematics,
     golden,
     lockbox,
-    noticed_wear,
+    online_calibration,
     prepare,
     selection,
     train_learned,
@@ -119,10 +119,10 @@ def _select(run: TrainingRun) -> Rows:
     return {}
 
 
-def _notice(run: TrainingRun) -> Rows:
+def _online_calibration(run: TrainingRun) -> Rows:
     """Evaluates the estimation of calibration errors from minutes of motion; renews its table in docs/accuracy.md."""
-    noticed_wear.write(
-        noticed_wear.main(run.corpus, run.config.learned, run.config.ik, report=run.report.console.print)
+    online_calibration.write(
+        online_calibration.main(run.corpus, run.config.learned, run.config.ik, report=run.report.console.print)
     )
     return {}
 
@@ -137,7 +137,7 @@ def _open_lockbox(run: TrainingRun) -> Rows:
 _TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
     "train": _train,
     "selection": _select,
-    "noticed wear": _notice,
+    "online calibration": _online_calibration,
     "lockbox": _open_lockbox,
 }
 

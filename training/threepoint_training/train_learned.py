@@ -114,11 +114,11 @@ def clip_frames(
     calibrated: CalibratedTilts = NO_CALIBRATED_TILTS,
 ) -> HeldOut:
     """The first frames of a clip, as many as are tracked: positions [F, 3, 3] and rotations [F, 3, 4]. Hand tilts are
-    noticed on the way, from what is calibrated.
+    estimated on the way, from the calibrated ones.
     """
     positions, rotations = tracked
     count, start = len(positions), corpus.clip_slice(clip).start
-    turned = estimate_hand_tilts.with_noticed_hands(
+    turned = estimate_hand_tilts.with_estimated_hands(
         body, positions, rotations, estimate_hand_tilts.travel(positions), calibrated=calibrated
     )
     vector, _ = frame_features(positions, rotations, turned)

@@ -8,7 +8,7 @@ from . import fit_ik, lockbox_log, train_learned, train_paper
 from .shared_constants import REPOSITORY
 
 # What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
-Task = Literal["train", "selection", "noticed wear", "lockbox"]
+Task = Literal["train", "selection", "online calibration", "lockbox"]
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Errors under a misplaced headset or a wrong calibration, as worn and after correcting the headset's rise that the
-page notices over minutes.
+page estimates over minutes.
 
-`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is
-held out in turn, with usual reach, IK and network from everyone else.
+`npm run train -- --mocap DIR --online-calibration` calls this and renews the table of docs/accuracy.md. Each group of
+people is held out in turn, with usual reach, IK and network from everyone else.
 """
 
 import zlib
@@ -49,12 +49,12 @@ COLUMNS = ("IK", "corrected", "learned", "corrected", "learned, another laborato
 
 
 @dataclass(frozen=True)
-class NoticedWearConfig:
+class OnlineCalibrationConfig:
     """Groups that are held out, who has enough recording time, and which frames and simulated wearers are used."""
 
     # The number of groups that are held out in turn.
     groups: int = 4
-    # People with less recording time are left out: it takes minutes to notice anything.
+    # People with less recording time are left out: an estimate takes minutes of motion.
     fewest_minutes: float = 1.3
     # Every how many-th frame (of 60 a second) is used for reaches, and for errors.
     stride: int = 6
@@ -67,7 +67,7 @@ class NoticedWearConfig:
 
 
 def usual_reach(
-    corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()
+    corpus: PreparedCorpus, people: tuple[str, ...], config: OnlineCalibrationConfig = OnlineCalibrationConfig()
 ) -> float:
     """Mean distance from IK's shoulders to the wrists while arms hang [arm lengths], over these people's simulated
     wearers; without people of enough recording time that of headset-rise.json.
@@ -82,7 +82,7 @@ def main(
     corpus: PreparedCorpus,
     recipe: TrainLearnedConfig,
     ik: FitIkConfig,
-    config: NoticedWearConfig = NoticedWearConfig(),
+    config: OnlineCalibrationConfig = OnlineCalibrationConfig(),
     report: Callable[[str], None] = lambda _: None,
 ) -> list[list[str]]:
     """Rows of the table: mean errors in cm on people held out, as worn and corrected, each person weighing the same.
@@ -132,7 +132,7 @@ def _judged(
     group: tuple[str, ...],
     recipe: TrainLearnedConfig,
     ik: FitIkConfig,
-    config: NoticedWearConfig,
+    config: OnlineCalibrationConfig,
 ) -> Array:
     """Errors [P, faults, 2, 2] in cm for each person of `group` with enough recording time, with IK and network trained
     on everyone else; last axes: (IK, learned), (as worn, corrected).
@@ -160,15 +160,15 @@ def _key(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _draw_worn(name: str, fault: Fault, number: int, config: NoticedWearConfig) -> _Worn:
+def _draw_worn(name: str, fault: Fault, number: int, config: OnlineCalibrationConfig) -> _Worn:
     """The person's simulated wearer of this number, with this fault."""
     return _Worn(
         name, fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, _key(name), number]))), fault
     )
 
 
-def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: NoticedWearConfig) -> Array:
-    """The reach [2] of the left and the right hanging arm that is noticed after all clips of a person [arm lengths]."""
+def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: OnlineCalibrationConfig) -> Array:
+    """The reach [2] of the left and the right hanging arm estimated after all clips of a person [arm lengths]."""
     frames = corpus.frames_of({worn.name}, config.stride)
     tracked = simulate(
         corpus.positions[frames],
@@ -186,7 +186,7 @@ def _body(corpus: PreparedCorpus, name: str, fault: Fault) -> Body:
     return body_from_calibration(np.array(person.eye_height), np.array(person.arm_span * (1 + fault.arm_span)))
 
 
-def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:
+def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: OnlineCalibrationConfig) -> Array:
     """Mean errors [2] in cm of IK and of the network over all clips of the person."""
     name, body = worn.name, _body(corpus, worn.name, worn.fault)
     found = []
@@ -212,4 +212,4 @@ def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: Noticed
 
 def write(rows: list[list[str]], page: Path = PAGE) -> None:
     """Renews the page's table."""
-    page.write_text(renew(page.read_text(), {"noticed": table(["unknown error [cm]", *COLUMNS], rows)}))
+    page.write_text(renew(page.read_text(), {"online-calibration": table(["unknown error [cm]", *COLUMNS], rows)}))

@@ -5,13 +5,13 @@ from dataclasses import replace
 import pytest
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.shared_constants import HEADSET_RISE
-from threepoint_training.noticed_wear import FAULTS, NoticedWearConfig, main, usual_reach
+from threepoint_training.online_calibration import FAULTS, OnlineCalibrationConfig, main, usual_reach
 from threepoint_training.training_config import TrainConfig, quick
 
 pytestmark = pytest.mark.training
 
 CORPUS = generate_corpus(people=1, clips=1, frames=1200, seed=5)
-CONFIG = NoticedWearConfig(fewest_minutes=0.1, groups=2)
+CONFIG = OnlineCalibrationConfig(fewest_minutes=0.1, groups=2)
 
 
 def test_the_usual_reach_is_that_of_people_who_are_worn_long_enough():
