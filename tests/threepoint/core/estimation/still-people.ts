@@ -27,6 +27,8 @@ const maxTremble = 1e-4;
 const maxSettling = 5e-4;
 /** The largest distance of a hand within reach from its controller [m]. */
 const maxHandError = 1e-3;
+/** That distance under a trunk that the paper's network may draw upside down (docs/accuracy.md, Limits) [m]. */
+export const maxHandErrorOfPaper = 0.1;
 /**
  * A joint of a person whose hands move slowly goes at most this much further [m] in a frame than three times the hands.
  */
@@ -146,7 +148,11 @@ export const slowPerson = fc
  * Fails unless the joints of these frames, drawn of one still person after two seconds, are still and hands within
  * reach on their controllers.
  */
-export function expectStill(drawn: readonly Joints[], { withinReach, frame }: StillPerson): void {
+export function expectStill(
+  drawn: readonly Joints[],
+  { withinReach, frame }: StillPerson,
+  maxError = maxHandError,
+): void {
   for (const joint of jointNames) {
     const steps = drawn.slice(1).map((joints, i) => distance(joints[joint].position, drawn[i]![joint].position));
     const most = Math.max(...steps);
@@ -155,8 +161,8 @@ export function expectStill(drawn: readonly Joints[], { withinReach, frame }: St
   }
   if (!withinReach) return;
   const { leftHand, rightHand } = frame(0);
-  expect(distance(drawn[0]!.leftHand.position, leftHand!.position)).toBeLessThan(maxHandError);
-  expect(distance(drawn[0]!.rightHand.position, rightHand!.position)).toBeLessThan(maxHandError);
+  expect(distance(drawn[0]!.leftHand.position, leftHand!.position)).toBeLessThan(maxError);
+  expect(distance(drawn[0]!.rightHand.position, rightHand!.position)).toBeLessThan(maxError);
 }
 
 /**

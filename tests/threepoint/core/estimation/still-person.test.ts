@@ -2,7 +2,16 @@ import fc from 'fast-check';
 import { describe } from 'vitest';
 import { bodies, factIf, jointsOf, openSubject } from './contract-subjects';
 import { type Joints, show } from './drawn';
-import { expectSlow, expectStill, rate, settled, slowPerson, stillPerson, watched } from './still-people';
+import {
+  expectSlow,
+  expectStill,
+  maxHandErrorOfPaper,
+  rate,
+  settled,
+  slowPerson,
+  stillPerson,
+  watched,
+} from './still-people';
 
 describe.each(bodies)('$label draws a person', (subject) => {
   const { create, runs } = openSubject(subject);
@@ -16,7 +25,7 @@ describe.each(bodies)('$label draws a person', (subject) => {
         const drawn: Joints[] = [];
         for (let i = settled; i < settled + watched; i++)
           drawn.push(jointsOf(await show(estimator, frame(i * rate)), calibration));
-        expectStill(drawn, person);
+        expectStill(drawn, person, subject.name === 'paper' ? maxHandErrorOfPaper : undefined);
       }),
       runs(40),
     );
