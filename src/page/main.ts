@@ -72,9 +72,9 @@ async function openFromAddress({ activities, controls, mocap, recorder, switches
 async function joinStudyOfAddress(page: Page): Promise<void> {
   const asked = page.switches.study;
   if (!asked) return;
-  const joined = await joinStudy({ ...page, asked });
+  const joined = await joinStudy(page, asked);
   page.study.join(joined);
-  page.scene.add(joined.run.object);
+  page.stage.studio.scene.add(joined.run.object);
 }
 
 /**
@@ -92,8 +92,7 @@ async function start(): Promise<void> {
   reportFaults(notices);
   const loading = new PageLoading();
   loading.mark('script');
-  const context = readPageContext(notices);
-  const page = createPage({ ...context, notices, loading });
+  const page = createPage(readPageContext(notices), loading);
   const { switches, settings, store, writer, avatar, body, controls, headset, timing } = page;
 
   // The built-in avatar is shown until another one has been loaded, and stays if that fails.

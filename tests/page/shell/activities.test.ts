@@ -253,7 +253,7 @@ describe('a player who takes the headset off', () => {
       headset: { pictureRateHz: 72, visibility: 'none' },
       recorder: new Recorder(),
       timing: new FrameTiming(() => 0),
-      view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
+      stage: { view: { view: 'third-person', setView: nothing } } as unknown as SessionChangesOptions['stage'],
       body: { startSession: nothing, endSession: nothing, discontinuity: () => activities.current?.discontinuity?.() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
       activities,

@@ -66,7 +66,7 @@ function headset() {
     study,
     rays,
     pointers,
-    notices: { show: () => undefined, current: () => [] },
+    notices: { current: () => [] },
     body: { estimator: 'ik', unavailableEstimators: {}, calibration: { ...defaultCalibration, eyeHeight: 1.6 } },
     headset: {
       passthrough: null,
