@@ -70,11 +70,8 @@ async function openFromAddress({ activities, controls, mocap, recorder, switches
 
 /** Takes part in the study that the address asks for, if it does. */
 async function joinStudyOfAddress(page: Page): Promise<void> {
-  const asked = page.switches.study;
-  if (!asked) return;
-  const joined = await joinStudy(page, asked);
-  page.study.join(joined);
-  page.stage.studio.scene.add(joined.run.object);
+  const { study } = page.switches;
+  if (study) await joinStudy(page, study);
 }
 
 /**

@@ -33,7 +33,7 @@ import { exposeProbe, readProbe } from './probe';
 import { PassthroughHost } from './session/passthrough-host';
 import { SessionChanges } from './session/session-changes';
 import { Stage } from './stage';
-import { PageStudy } from './study/page-study';
+import type { PageStudy } from './study/page-study';
 import { UserAvatar } from './user-avatar';
 import { UserCalibration } from './user-calibration';
 
@@ -64,7 +64,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const headset = new Headset({ renderer, quality, switches, settings, notices });
   const pointers = new Pointers({ headset, settings });
 
-  const study = new PageStudy();
+  const study: PageStudy = { run: null, runners: {} };
   const server = new ServerPresence(pageFolder(), onChange);
   const base = { ...context, timing, body, stage, avatar, recorder, headset, pointers, study, server, onChange };
   const mouse = createMouseAim(canvas);

@@ -42,7 +42,7 @@ function handless(act: (time: number) => PlayerInput | null, settings = { gaze: 
     body: { userCalibration: defaultCalibration },
     actor: createActor(),
     activities: { current: null, act },
-    study: { idle: false },
+    study: { run: null },
     pointers,
   });
   let time = 10;

@@ -3,7 +3,7 @@ import { home } from '../activity-registry';
 import type { PageParts } from '../page-parts';
 import type { Switches } from '../switches';
 import { embody } from './embody';
-import type { JoinedStudy } from './page-study';
+import type { PageStudy } from './page-study';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
@@ -13,7 +13,7 @@ export async function createRunners({
   activities,
   settings,
   writer,
-}: Pick<PageParts, 'activities' | 'settings' | 'writer'>): Promise<JoinedStudy['runners']> {
+}: Pick<PageParts, 'activities' | 'settings' | 'writer'>): Promise<PageStudy['runners']> {
   const runners: Record<string, ActivityRunner> = {};
   for (const { name, createRunner } of activities.all) {
     const runner = await createRunner?.({
@@ -29,13 +29,13 @@ export async function createRunners({
 }
 
 /** Joins a study, which decides from then on what is played and with which body. */
-export async function joinStudy(parts: PageParts, asked: NonNullable<Switches['study']>): Promise<JoinedStudy> {
-  const { switches, settings, writer, headset, timing, body, userCalibration } = parts;
+export async function joinStudy(parts: PageParts, asked: NonNullable<Switches['study']>): Promise<void> {
+  const { switches, settings, writer, headset, timing, body, userCalibration, study, stage } = parts;
   const { createStudyRun } = await import('threepoint-study/participant/study-run');
   writer.change({ startSignal: true });
-  const runners = await createRunners(parts);
-  const run = createStudyRun(asked, {
-    runners,
+  study.runners = await createRunners(parts);
+  study.run = createStudyRun(asked, {
+    runners: study.runners,
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
     deviceFault: () => headset.fault,
@@ -58,5 +58,5 @@ export async function joinStudy(parts: PageParts, asked: NonNullable<Switches['s
     }),
     listenToFrames: (listener) => timing.listen(listener),
   });
-  return { run, runners };
+  stage.studio.scene.add(study.run.object);
 }
