@@ -20,11 +20,11 @@ import type { Settings } from './settings';
 export interface LazyMocapOptions {
   readonly scene: Object3D;
   readonly recorder: Recorder;
-  readonly settings: Pick<Settings, 'builtInBody' | 'palette'>;
-  readonly body: Pick<BodySolver, 'selectedEstimator' | 'setEstimator' | 'discontinuity'>;
+  readonly settings: Settings;
+  readonly body: BodySolver;
   readonly networks: BodySolverOptions['networks'];
-  readonly store: Pick<PreferenceStore, 'remember'>;
-  readonly notices: Pick<Notices, 'show'>;
+  readonly store: PreferenceStore;
+  readonly notices: Notices;
   readonly boneMaps: BoneMapStore;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;

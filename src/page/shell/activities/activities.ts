@@ -25,7 +25,7 @@ export interface ActivitiesOptions extends StagingOptions {
   /** The seed of the first layout. */
   readonly seed: number;
   readonly stage: StagingOptions['stage'] & { readonly studio: Pick<Stage['studio'], 'setMarkVisible'> };
-  readonly recorder: Pick<Recorder, 'mode' | 'endReplay'>;
+  readonly recorder: Recorder;
   readonly body: Pick<BodySolver, 'calibration'>;
   readonly study: PageStudy;
   /** The user is somewhere else now: filters and clocks restart. */

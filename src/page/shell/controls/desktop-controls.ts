@@ -16,7 +16,7 @@ import type { MotionExport } from './motion-export';
 
 export interface DesktopControlsOptions extends PageParts {
   readonly actions: PanelActions;
-  readonly motionExport: Pick<MotionExport, 'state'>;
+  readonly motionExport: MotionExport;
 }
 
 const centimetres = (metres: number): number => 100 * metres;

@@ -10,7 +10,7 @@ import type { MotionExport } from './motion-export';
 export interface PanelActionsOptions extends PageParts {
   readonly files: FileOpener;
   readonly motionExport: MotionExport;
-  readonly measuring: Pick<CalibrationControl, 'start'>;
+  readonly measuring: CalibrationControl;
 }
 
 function bodyActions({

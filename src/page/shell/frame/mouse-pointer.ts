@@ -4,7 +4,7 @@ import type { DesktopView } from '../../scene/desktop-view';
 import type { PageParts } from '../page-parts';
 
 /** Returns the mouse, pen or finger in the window as a pointer into the scene, as of now. */
-export function createMousePointer(mouse: MouseAim, view: Pick<DesktopView, 'rayThrough'>): () => Pointer {
+export function createMousePointer(mouse: MouseAim, view: DesktopView): () => Pointer {
   const pointer = new MutablePointer('mouse');
   return () => {
     const { origin, direction } = view.rayThrough(mouse.x, mouse.y);

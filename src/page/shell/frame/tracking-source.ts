@@ -18,9 +18,9 @@ type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<Tr
 export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
-  readonly recorder: Pick<Recorder, 'sample' | 'person' | 'endReplay'>;
+  readonly recorder: Recorder;
   readonly body: Pick<BodySolver, 'userCalibration'>;
-  readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
+  readonly actor: Actor;
   readonly activities: Pick<Activities, 'current' | 'act'>;
   readonly study: { readonly run: Pick<StudyRun, 'idle'> | null };
   readonly pointers: Pick<Pointers, 'follow' | 'steering'>;
