@@ -70,11 +70,8 @@ async function openFromAddress({ activities, controls, mocap, recorder, switches
 
 /** Takes part in the study that the address asks for, if it does. */
 async function joinStudyOfAddress(page: Page): Promise<void> {
-  const asked = page.switches.study;
-  if (!asked) return;
-  const joined = await joinStudy({ ...page, asked });
-  page.study.join(joined);
-  page.scene.add(joined.run.object);
+  const { study } = page.switches;
+  if (study) await joinStudy(page, study);
 }
 
 /**
@@ -92,8 +89,7 @@ async function start(): Promise<void> {
   reportFaults(notices);
   const loading = new PageLoading();
   loading.mark('script');
-  const context = readPageContext(notices);
-  const page = createPage({ ...context, notices, loading });
+  const page = createPage(readPageContext(notices), loading);
   const { switches, settings, store, writer, avatar, body, controls, headset, timing } = page;
 
   // The built-in avatar is shown until another one has been loaded, and stays if that fails.

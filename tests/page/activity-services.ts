@@ -1,4 +1,4 @@
-import { Scene } from 'three';
+import { Group, Scene } from 'three';
 import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { MutablePointer } from 'threepoint/core/input/pointer';
@@ -9,14 +9,29 @@ import type { ActivityServices } from 'threepoint-page/activity/activity-context
 import type { Surroundings } from 'threepoint-page/scene/surroundings';
 import { fetchBuiltInAvatar } from 'threepoint-page/shell/avatar-loader';
 import { createSettings, SettingsWriter, type StoredSettings } from 'threepoint-page/shell/settings';
-import { PageStudy } from 'threepoint-page/shell/study/page-study';
+import type { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
+import type { StudyRun } from 'threepoint-study/participant/study-run';
 import type { Notice } from 'threepoint-ui/notices';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 
 /** The pointers of a page without a session. */
 export const noPointers = { follow: () => undefined, steering: null };
+
+/** A study in which a participant plays, unless `members` say otherwise; it does nothing. */
+export const studyRun = (members: Partial<StudyRun> = {}): StudyRun => ({
+  object: new Group() as never,
+  idle: false,
+  paused: false,
+  frame: () => undefined,
+  point: () => undefined,
+  sessionChanged: () => undefined,
+  probe: () => {
+    throw new Error('not asked for here');
+  },
+  ...members,
+});
 
 /** The services of a page with this address, which draws nothing, and what activities did with them. */
 export function activityServices(address = '?seed=5&quality=low') {
@@ -44,7 +59,7 @@ export function activityServices(address = '?seed=5&quality=low') {
   };
   const mousePointer = new MutablePointer('mouse');
   mousePointer.setRay(vec3(0, 1.6, 0), vec3(0, 0, -1));
-  const study = new PageStudy();
+  const study: PageStudy = { run: null, runners: {} };
   const services = {
     quality: 'low',
     clock: createPageClock(() => 0),

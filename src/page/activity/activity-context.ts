@@ -7,6 +7,7 @@ import type { Side } from 'threepoint/core/math/side';
 import type { PageClock } from 'threepoint/core/tracking/page-clock';
 import type { ServerPresence } from 'threepoint-http/server-presence';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
+import type { StudyRun } from 'threepoint-study/participant/study-run';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Notices } from 'threepoint-ui/notices';
 import type { Quality } from '../scene/renderer';
@@ -82,11 +83,8 @@ export interface ActivityServices {
   fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
   readonly notices: Pick<Notices, 'show'>;
-  /**
-   * The study that the user takes part in. `run`: null without a study; `idle`: no trial is played now; `paused`: a
-   * trial is paused.
-   */
-  readonly study: { readonly run: object | null; readonly idle: boolean; readonly paused: boolean };
+  /** The study that the user takes part in; `run`: null without one. */
+  readonly study: { readonly run: Pick<StudyRun, 'idle' | 'paused'> | null };
   /** Shows a caption of a sound. */
   onCaption(text: string): void;
   /** Call after a change that a panel or a menu shows. */

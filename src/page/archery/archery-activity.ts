@@ -75,8 +75,8 @@ export class ArcheryActivity implements OpenActivity {
   update(frame: TrackingFrame, allButtons: Buttons): readonly HapticPulse[] | null {
     const { study, settings, writer, onChange } = this.#context;
     this.#newestFrame = frame;
-    if (study.paused) return null;
-    const buttons = study.idle ? nothingPressed : allButtons;
+    if (study.run?.paused) return null;
+    const buttons = study.run?.idle ? nothingPressed : allButtons;
     const { events, cues, haptics, bow } = this.play.follow(frame, buttons);
     const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
     this.#view.playEvents(events, cues);
@@ -89,7 +89,7 @@ export class ArcheryActivity implements OpenActivity {
   grasp(side: Side, wrist: Pose<'floor'>, holding: ObjectHolds, target: MutableHandShape): boolean {
     const { study, settings } = this.#context;
     const bow = this.play.newest?.bow;
-    if (!bow || study.idle) return false;
+    if (!bow || study.run?.idle) return false;
     if (bow.bowSide === side) {
       copyVec3(bow.bow.position, grip.at);
       rotate(bow.bow.orientation, up, grip.axis);
@@ -108,7 +108,7 @@ export class ArcheryActivity implements OpenActivity {
     const { newest } = this.play;
     if (!frame || !newest) return;
     this.#view.showScoreboard(this.#context.headset.worn);
-    this.#view.show(newest.state, this.#context.study.idle ? null : newest.bow, newest.time, frame.head);
+    this.#view.show(newest.state, this.#context.study.run?.idle ? null : newest.bow, newest.time, frame.head);
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {

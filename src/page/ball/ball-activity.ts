@@ -153,7 +153,7 @@ export class BallActivity implements OpenActivity {
 
   update(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] {
     this.#newestFrame = frame;
-    return this.#follow(frame.time, frame, this.#context.study.idle ? nothingPressed : buttons);
+    return this.#follow(frame.time, frame, this.#context.study.run?.idle ? nothingPressed : buttons);
   }
 
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {

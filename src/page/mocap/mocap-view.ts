@@ -9,6 +9,7 @@ import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { Replayable } from 'threepoint/core/tracking/recording';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { fileNameOf } from 'threepoint-ui/limited-files';
+import type { Notices } from 'threepoint-ui/notices';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
@@ -25,10 +26,12 @@ import type { TruthPlace } from './truth-places';
 export interface Replay extends ReplayState {
   readonly duration: number;
   /**
-   * Throws a sentence where another recording must not be lost to this one. `asked`: its place among the wishes;
+   * Loads a recording. Throws a sentence where another one must not be lost to it. `asked`: the number of the request;
    * absent: the newest.
    */
-  begin(name: string, recording: Replayable, asked?: number): void;
+  load(name: string, recording: Replayable, asked?: number): void;
+  /** Replays the loaded recording from its start. */
+  replay(): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
   stop(): void;
@@ -53,10 +56,14 @@ export interface MocapViewOptions {
   readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
   readonly networks: BodySolverOptions['networks'];
   readonly boneMaps: BoneMaps;
+  readonly notices: Pick<Notices, 'show'>;
   loadAvatar(): Promise<Avatar>;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
-  tell(level: 'info' | 'warning' | 'error', sentence: string): void;
+  /** The replay was started, stopped or moved to another second: the body's pose jumps. */
+  onJump(): void;
+  /** The replay was paused or resumed. */
+  onChange(): void;
 }
 
 /** Files to open. */
@@ -137,7 +144,7 @@ export class MocapView {
 
   /** Reads files with the user's map of their bones; null: with one that is stored, or without. */
   async #read(request: Request, bones: BoneMap | null): Promise<void> {
-    const { tell, boneMaps } = this.#options;
+    const { notices, boneMaps } = this.#options;
     const { sources } = request;
     this.#reading.abort();
     const reading = new AbortController();
@@ -155,8 +162,9 @@ export class MocapView {
       this.#show({ name: motion, sources, ...read }, request);
       if (bones && read.map.hash !== null) boneMaps.keep(read.map.hash, bones);
       this.#bones.close();
-      for (const note of read.prepared.notes) tell('info', `${motion}: ${note}.`);
-      if (others.length > 0) tell('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
+      for (const note of read.prepared.notes) notices.show('info', `${motion}: ${note}.`);
+      if (others.length > 0)
+        notices.show('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
     } catch (error) {
       if (!signal.aborted) this.#refuse(request, bones, error);
     } finally {
@@ -166,7 +174,7 @@ export class MocapView {
 
   /** Says why files could not be shown; bones that match no humanoid can be mapped. */
   #refuse(request: Request, bones: BoneMap | null, error: unknown): void {
-    const { tell } = this.#options;
+    const { notices } = this.#options;
     const name = fileNameOf(request.sources[0]!);
     const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
     if (error instanceof UnmatchedMotion) {
@@ -174,7 +182,7 @@ export class MocapView {
       const again = { sources: request.sources, outlook: request.outlook };
       this.#bones.offer({ name, request: again, joints, matched, confidence, hash, isShown: false, isOwnMap: false });
     } else if (bones) this.#bones.complain(bones, reason);
-    else tell('error', `${name} could not be shown: ${reason}`);
+    else notices.show('error', `${name} could not be shown: ${reason}`);
   }
 
   #correctBones(): void {
@@ -258,13 +266,15 @@ export class MocapView {
   }
 
   #actions(): CardActions {
-    const { replay, method } = this.#options;
+    const { replay, method, onJump, onChange } = this.#options;
     return {
       chooseClip: (index) => this.#chooseClip(index),
       setPaused: (on) => {
         // A replay that was stopped or has ended restarts.
-        if (replay.mode === 'replaying') replay.setPaused(on);
-        else this.#seek(0);
+        if (replay.mode === 'replaying') {
+          replay.setPaused(on);
+          onChange();
+        } else this.#seek(0);
         this.show();
       },
       seek: (seconds) => {
@@ -281,6 +291,7 @@ export class MocapView {
       cancel: () => this.#reading.abort(),
       close: () => {
         replay.stop();
+        onJump();
         this.close();
       },
     };
@@ -295,9 +306,11 @@ export class MocapView {
     const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
     const clip = clips[index]!;
     const recording = recordingOf(clip);
-    const { replay, networks } = this.#options;
+    const { replay, networks, onJump } = this.#options;
     // If this throws, the shown motion stays.
-    replay.begin(`${clip.name}.json`, recording, asked);
+    replay.load(`${clip.name}.json`, recording, asked);
+    replay.replay();
+    onJump();
     this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);
@@ -307,6 +320,7 @@ export class MocapView {
     if (outlook.at !== undefined) {
       replay.seek(outlook.at);
       replay.setPaused(true);
+      onJump();
     }
     this.show();
   }
@@ -317,7 +331,9 @@ export class MocapView {
   }
 
   #seek(seconds: number): void {
-    this.#options.replay.seek(seconds);
+    const { replay, onJump } = this.#options;
+    replay.seek(seconds);
+    onJump();
     this.#second?.discontinuity();
   }
 
@@ -334,7 +350,7 @@ export class MocapView {
     this.#drawn[1] = false;
     const clip = this.#opened?.prepared.clips[this.#opened.index];
     if (!clip || !estimator) return;
-    const { scene, networks, replay, loadAvatar, labels, tell } = this.#options;
+    const { scene, networks, replay, loadAvatar, labels, notices } = this.#options;
     this.#second = new SecondBody({
       scene,
       networks,
@@ -344,13 +360,13 @@ export class MocapView {
       calibration: clip.calibration,
       aside: secondAside,
       onFallback: (name, reason) =>
-        tell(
+        notices.show(
           'warning',
           `${labels[name]} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`,
         ),
     });
     this.#second.ready.catch((error: unknown) =>
-      tell('error', `The second body could not be shown: ${firstLine(reasonOf(error))}`),
+      notices.show('error', `The second body could not be shown: ${firstLine(reasonOf(error))}`),
     );
   }
 
@@ -362,7 +378,7 @@ export class MocapView {
 
   /** To this file, second and methods; the address of the page becomes it too. */
   async #copyLink(): Promise<void> {
-    const { replay, method, tell } = this.#options;
+    const { replay, method, notices } = this.#options;
     const opened = this.#opened;
     const addresses = opened && addressesOf(opened.sources);
     if (!addresses) return;
@@ -378,10 +394,10 @@ export class MocapView {
     history.replaceState(null, '', link);
     try {
       await navigator.clipboard.writeText(link.href);
-      tell('info', 'The link is copied.');
+      notices.show('info', 'The link is copied.');
     } catch {
       // reason: a browser may refuse; the address bar has the link then.
-      tell('info', 'The link is in the address bar.');
+      notices.show('info', 'The link is in the address bar.');
     }
   }
 }

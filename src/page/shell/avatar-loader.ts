@@ -46,7 +46,7 @@ export interface LoadedUserAvatar {
 
 export interface AvatarLoaderOptions {
   /** The bone maps that users gave for files. */
-  readonly boneMaps: Pick<BoneMapStore, 'of' | 'keep' | 'forget'>;
+  readonly boneMaps: BoneMapStore;
   /** Uploads an avatar to the graphics device before it is shown. */
   prepare(object: Avatar['object']): Promise<void>;
 }

@@ -7,9 +7,9 @@ const maxFiles = 20;
 
 /** The bone maps that users gave for files, by the files' SHA-256; on this device only. */
 export class BoneMapStore {
-  readonly #store: Pick<PreferenceStore, 'preferences' | 'remember'>;
+  readonly #store: PreferenceStore;
 
-  constructor(store: Pick<PreferenceStore, 'preferences' | 'remember'>) {
+  constructor(store: PreferenceStore) {
     this.#store = store;
   }
 

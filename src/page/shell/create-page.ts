@@ -4,7 +4,6 @@ import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradati
 import { ServerPresence } from 'threepoint-http/server-presence';
 import { pageElement } from 'threepoint-ui/element';
 import { createMouseAim } from 'threepoint-ui/mouse-aim';
-import type { Notices } from 'threepoint-ui/notices';
 import { pageFolder } from 'threepoint-ui/page-folder';
 import { createActor } from '../emulator/actor';
 import { OfflineCopy } from '../offline/offline-copy';
@@ -29,26 +28,23 @@ import { handleLostGraphics } from './lost-graphics';
 import { createPageBody } from './page-body';
 import type { PageContext } from './page-context';
 import type { PageLoading } from './page-loading';
+import type { PageParts } from './page-parts';
 import { exposeProbe, readProbe } from './probe';
 import { PassthroughHost } from './session/passthrough-host';
 import { SessionChanges } from './session/session-changes';
 import { Stage } from './stage';
-import { PageStudy } from './study/page-study';
+import type { PageStudy } from './study/page-study';
 import { UserAvatar } from './user-avatar';
 import { UserCalibration } from './user-calibration';
 
-export interface PageOptions extends PageContext {
-  readonly notices: Notices;
-  readonly loading: PageLoading;
-}
-
-/** Creates the stage with the user's body, avatar and headset. */
-function createBase(options: PageOptions) {
-  const { switches, settings, store, changes, loading } = options;
+/** Creates all parts of the page, each from those before it. */
+function createParts(context: PageContext, loading: PageLoading) {
+  const { switches, settings, store, changes, notices } = context;
+  const onChange = changes.emit;
   const timing = new FrameTiming(() => performance.now());
   // Downloads start before anything is built.
   const builtInAvatar = fetchBuiltInAvatar(settings.builtInBody, (part) => loading.report('the avatar', part));
-  const pageBody = createPageBody({ ...options, timing });
+  const { body, networks, clock, bodyEvents } = createPageBody(context, loading, timing);
 
   const canvas = pageElement('stage', HTMLCanvasElement);
   const quality = switches.quality ?? affordableQuality();
@@ -56,29 +52,23 @@ function createBase(options: PageOptions) {
   const stage = new Stage(canvas, quality);
   loading.mark('scene');
 
-  const { renderer, studio, view } = stage;
+  const { renderer, studio } = stage;
   const { scene } = studio;
   const prepare = (object: Object3D) => uploadToGpu(renderer, scene, object);
-  const onChange = changes.emit;
   const boneMaps = new BoneMapStore(store);
-  const drawn = { canvas, quality, stage, renderer, studio, view, scene, prepare };
-  const parts = { ...options, ...pageBody, ...drawn, timing, boneMaps };
-  const avatar = new UserAvatar({ ...parts, onChange });
+  const shown = { scene, settings, body, notices, boneMaps, prepare, onChange };
+  const avatar = new UserAvatar(shown);
   const avatarShown = avatar.openBuiltIn(builtInAvatar);
   const recorder = new Recorder(onChange);
-  return { ...parts, onChange, avatar, avatarShown, recorder, headset: new Headset(parts) };
-}
+  const mocap = new LazyMocap({ ...shown, recorder, networks, store });
+  const headset = new Headset({ renderer, quality, switches, settings, notices });
+  const pointers = new Pointers({ headset, settings });
 
-/** Creates the activities, and what moves the body in them. */
-function createPlay(base: ReturnType<typeof createBase>) {
-  const { switches, settings, canvas, view, avatar, headset, body, bodyEvents, onChange } = base;
-  const study = new PageStudy();
-  const degradation = new TrackingDegradation();
+  const study: PageStudy = { run: null, runners: {} };
   const server = new ServerPresence(pageFolder(), onChange);
-  const actor = createActor();
+  const base = { ...context, timing, body, stage, avatar, recorder, headset, pointers, study, server, onChange };
   const mouse = createMouseAim(canvas);
-  const mousePointer = createMousePointer(mouse, view);
-  const pointers = new Pointers(base);
+  const mousePointer = createMousePointer(mouse, stage.view);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
   const activities = new Activities({
@@ -86,20 +76,48 @@ function createPlay(base: ReturnType<typeof createBase>) {
     activities: registeredActivities,
     services: {
       ...base,
-      pointer: () => (headset.worn ? pointers.steering : settings.mouse ? mousePointer() : null),
+      clock,
+      quality,
       fetchBuiltInAvatar,
-      server,
-      study,
+      pointer: () => (headset.worn ? pointers.steering : settings.mouse ? mousePointer() : null),
       onCaption: captions.emit,
     },
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     mouse,
-    study,
     setPalette: (palette) => avatar.setSeatPalette(palette),
     onArrival: arrivals.emit,
   });
-  const userCalibration = new UserCalibration(base);
-  const source = new TrackingSource({ ...base, actor, activities, study, pointers });
+
+  const actor = createActor();
+  const parts: PageParts = {
+    ...base,
+    loading,
+    networks,
+    activities,
+    mocap,
+    source: new TrackingSource({ ...base, actor, activities }),
+    degradation: new TrackingDegradation(),
+    userCalibration: new UserCalibration(base),
+    difference: new DeviceDifference(),
+  };
+  const controls = new Controls(parts);
+  const passthrough = new PassthroughHost({
+    ...parts,
+    quality,
+    isCovered: () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken),
+  });
+  const frame = new PageFrame({ ...parts, controls, passthrough });
+  const kept = new OfflineCopy();
+  return { ...parts, controls, passthrough, frame, kept, avatarShown, actor, bodyEvents, captions, arrivals };
+}
+
+/** The parts of the page, none of them running yet. */
+export type Page = ReturnType<typeof createParts>;
+
+/** Connects what happens to the body, to the session and to the activities with the parts that it changes. */
+function connectParts(page: Page): void {
+  const { settings, changes, timing, stage, avatar, recorder, headset, body, bodyEvents, actor } = page;
+  const { degradation, activities, userCalibration, controls, captions, arrivals } = page;
   actor.calibrate(body.calibration);
   bodyEvents.calibrated.listen((calibration, from) => {
     userCalibration.measured(from);
@@ -112,27 +130,6 @@ function createPlay(base: ReturnType<typeof createBase>) {
     degradation.reset();
     activities.current?.discontinuity?.();
   });
-  return { ...base, study, degradation, server, activities, captions, arrivals, userCalibration, source, pointers };
-}
-
-/** Creates the controls, motion capture and the steps of a frame. */
-function createInterface(play: ReturnType<typeof createPlay>) {
-  const { headset } = play;
-  const difference = new DeviceDifference();
-  const mocap = new LazyMocap(play);
-  const controls = new Controls({ ...play, mocap, difference });
-  const passthrough = new PassthroughHost({
-    ...play,
-    isCovered: () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken),
-  });
-  const frame = new PageFrame({ ...play, passthrough, difference, controls, mocap });
-  return { ...play, mocap, controls, frame, passthrough, kept: new OfflineCopy() };
-}
-
-/** Creates all parts of the page and connects them. Nothing runs yet. */
-export function createPage(options: PageOptions) {
-  const page = createInterface(createPlay(createBase(options)));
-  const { settings, changes, stage, recorder, headset, body, timing, activities, controls, captions, arrivals } = page;
   const sessions = new SessionChanges(page);
   headset.listen(sessions);
   sessions.followWindow();
@@ -151,9 +148,12 @@ export function createPage(options: PageOptions) {
   });
   pressSheetsByMouse(page);
   handleLostGraphics(page);
+}
+
+/** Creates all parts of the page and connects them. Nothing runs yet. */
+export function createPage(context: PageContext, loading: PageLoading): Page {
+  const page = createParts(context, loading);
+  connectParts(page);
   exposeProbe(() => readProbe(page));
   return page;
 }
-
-/** The parts of the page, none of them running yet. */
-export type Page = ReturnType<typeof createPage>;

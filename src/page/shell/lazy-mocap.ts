@@ -9,7 +9,7 @@ import { recordOf } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { pageElement } from 'threepoint-ui/element';
 import type { Notices } from 'threepoint-ui/notices';
-import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
+import type { MocapView, Outlook } from '../mocap/mocap-view';
 import type { Recorder } from '../studio/recorder';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
@@ -20,11 +20,11 @@ import type { Settings } from './settings';
 export interface LazyMocapOptions {
   readonly scene: Object3D;
   readonly recorder: Recorder;
-  readonly settings: Pick<Settings, 'builtInBody' | 'palette'>;
-  readonly body: Pick<BodySolver, 'selectedEstimator' | 'setEstimator' | 'discontinuity'>;
+  readonly settings: Settings;
+  readonly body: BodySolver;
   readonly networks: BodySolverOptions['networks'];
-  readonly store: Pick<PreferenceStore, 'remember'>;
-  readonly notices: Pick<Notices, 'show'>;
+  readonly store: PreferenceStore;
+  readonly notices: Notices;
   readonly boneMaps: BoneMapStore;
   /** Brings what an object needs to the graphics device before it is seen. */
   prepare(object: Object3D): Promise<void>;
@@ -77,15 +77,12 @@ export class LazyMocap {
   }
 
   #build(View: typeof MocapView): MocapView {
-    const { scene, body, networks, store, notices, boneMaps, prepare, onChange } = this.#options;
+    const { body, recorder, store, onChange } = this.#options;
     return new View({
-      scene,
-      networks,
+      ...this.#options,
       labels,
-      boneMaps,
-      prepare,
       region: pageElement('play', HTMLElement),
-      replay: this.#replay(),
+      replay: recorder,
       method: {
         get wanted() {
           return body.selectedEstimator;
@@ -97,7 +94,10 @@ export class LazyMocap {
         },
       },
       loadAvatar: () => this.#loadAvatar(),
-      tell: (level, sentence) => notices.show(level, sentence),
+      onJump() {
+        body.discontinuity();
+        onChange();
+      },
     });
   }
 
@@ -108,43 +108,5 @@ export class LazyMocap {
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
     await this.#options.prepare(avatar.object);
     return avatar;
-  }
-
-  #replay(): Replay {
-    const { recorder, body, onChange } = this.#options;
-    const changed = (change: () => void): void => {
-      change();
-      body.discontinuity();
-      onChange();
-    };
-    return {
-      get recording() {
-        return recorder.recording;
-      },
-      get mode() {
-        return recorder.mode;
-      },
-      get paused() {
-        return recorder.paused;
-      },
-      get seconds() {
-        return recorder.seconds;
-      },
-      get duration() {
-        return recorder.duration;
-      },
-      begin(name, recording, asked) {
-        changed(() => {
-          recorder.load(name, recording, asked);
-          recorder.replay();
-        });
-      },
-      seek: (seconds) => changed(() => recorder.seek(seconds)),
-      setPaused(on) {
-        recorder.setPaused(on);
-        onChange();
-      },
-      stop: () => changed(() => recorder.stop()),
-    };
   }
 }

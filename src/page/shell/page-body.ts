@@ -2,7 +2,6 @@ import { BodySolver, type CalibrationSource } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import { firstLine } from 'threepoint/core/errors/reasons';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import type { Notices } from 'threepoint-ui/notices';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
 import type { FrameTiming } from './frame-timing';
@@ -10,17 +9,12 @@ import { createNetworkLoader } from './network-loading';
 import type { PageContext } from './page-context';
 import type { PageLoading } from './page-loading';
 
-export interface PageBodyOptions extends Pick<PageContext, 'switches' | 'store' | 'changes'> {
-  readonly notices: Notices;
-  readonly loading: PageLoading;
-  readonly timing: FrameTiming;
-}
-
 /**
  * Creates the body that head and hands move, with its networks and clock, and the events that other parts of the page
  * listen to.
  */
-export function createPageBody({ switches, store, changes, notices, loading, timing }: PageBodyOptions) {
+export function createPageBody(context: PageContext, loading: PageLoading, timing: FrameTiming) {
+  const { switches, store, changes, notices } = context;
   const clock = createPageClock(() => performance.now());
   const calibrated = new Emitter<[calibration: Calibration, source: CalibrationSource]>();
   /** The user is taller than their calibration by this much [m]. */

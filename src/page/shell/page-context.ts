@@ -4,12 +4,13 @@ import { browserStorage, createPreferenceStore, type PreferenceStore } from './p
 import { createSettings, type Settings, SettingsWriter } from './settings';
 import { readSwitches, type Switches } from './switches';
 
-/** The switches of the address, and the settings that this browser has stored. */
+/** The switches of the address, the settings that this browser has stored, and the page's notices. */
 export interface PageContext {
   readonly switches: Switches;
   readonly store: PreferenceStore;
   readonly settings: Settings;
   readonly writer: SettingsWriter;
+  readonly notices: Notices;
   /** Something changed that is on the screen. */
   readonly changes: Emitter;
 }
@@ -21,5 +22,5 @@ export function readPageContext(notices: Notices): PageContext {
   for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);
   const settings = createSettings(switches, store);
   const changes = new Emitter();
-  return { switches, store, settings, changes, writer: new SettingsWriter(settings, store, changes.emit) };
+  return { switches, store, settings, changes, notices, writer: new SettingsWriter(settings, store, changes.emit) };
 }

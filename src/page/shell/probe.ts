@@ -1,43 +1,21 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Side } from 'threepoint/core/math/side';
 import type { Vec3 } from 'threepoint/core/math/vec3';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { Notices } from 'threepoint-ui/notices';
 import type { PlayerProbe } from '../activity/activity';
 import type { OfflineCopy } from '../offline/offline-copy';
-import type { Recorder } from '../studio/recorder';
-import type { Activities } from './activities/activities';
 import type { GameProbe } from './activity-registry';
-import type { TrackingSource } from './frame/tracking-source';
-import type { FrameTiming } from './frame-timing';
-import type { Headset } from './headset';
-import type { PageLoading } from './page-loading';
+import type { PageFrame } from './frame/page-frame';
+import type { PageParts } from './page-parts';
 import type { PassthroughHost } from './session/passthrough-host';
-import type { Settings } from './settings';
-import type { Stage } from './stage';
-import type { PageStudy } from './study/page-study';
-import type { UserAvatar } from './user-avatar';
 
 /** A point of the floor frame [m]. */
 type Triple = readonly [number, number, number];
 
 /** The parts of the page that a probe reads. */
-export interface ProbeParts {
-  readonly loading: PageLoading;
-  readonly kept: Pick<OfflineCopy, 'state'>;
-  readonly settings: Pick<Settings, 'calibrationSource'>;
-  readonly notices: Pick<Notices, 'current'>;
-  readonly timing: Pick<FrameTiming, 'summary'>;
-  readonly frame: { readonly count: number };
-  readonly source: Pick<TrackingSource, 'newest'>;
-  readonly body: Pick<BodySolver, 'estimator' | 'provider' | 'calibration'>;
-  readonly avatar: Pick<UserAvatar, 'current' | 'name'>;
-  readonly headset: Pick<Headset, 'worn' | 'visibility' | 'emulator'>;
-  readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;
-  readonly activities: Pick<Activities, 'current'>;
-  readonly study: Pick<PageStudy, 'run'>;
-  readonly stage: Pick<Stage, 'renderer' | 'view' | 'vignette' | 'drawn' | 'savings'>;
-  readonly passthrough: Pick<PassthroughHost, 'room'>;
+export interface ProbeParts extends PageParts {
+  readonly frame: PageFrame;
+  readonly passthrough: PassthroughHost;
+  readonly kept: OfflineCopy;
 }
 
 const triple = ({ x, y, z }: Vec3): Triple => [x, y, z];

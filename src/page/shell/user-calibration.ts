@@ -1,10 +1,10 @@
 import type { BodySolver, CalibrationSource } from 'threepoint/api/body-solver';
 import type { Calibration } from 'threepoint/core/body/calibration';
 import type { Notices } from 'threepoint-ui/notices';
-import type { DesktopView } from '../scene/desktop-view';
 import type { Headset } from './headset';
 import type { PreferenceStore } from './preferences';
 import type { SettingsWriter } from './settings';
+import type { Stage } from './stage';
 
 /** The sources of measurements that the headset suggests, in words. */
 const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
@@ -13,12 +13,12 @@ const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
 };
 
 export interface UserCalibrationOptions {
-  readonly body: Pick<BodySolver, 'calibrate' | 'discontinuity'>;
-  readonly headset: Pick<Headset, 'worn' | 'recentre'>;
-  readonly view: Pick<DesktopView, 'recentre'>;
-  readonly writer: Pick<SettingsWriter, 'change'>;
-  readonly store: Pick<PreferenceStore, 'remember'>;
-  readonly notices: Pick<Notices, 'show'>;
+  readonly body: BodySolver;
+  readonly headset: Headset;
+  readonly stage: Stage;
+  readonly writer: SettingsWriter;
+  readonly store: PreferenceStore;
+  readonly notices: Notices;
 }
 
 /** The user of the page: where their measures come from, in words, whether those last, and where they stand. */
@@ -72,10 +72,10 @@ export class UserCalibration {
 
   /** Moves the user, or the desktop camera, back to the start. */
   recentre(): void {
-    const { headset, view, body } = this.#options;
+    const { headset, stage, body } = this.#options;
     if (headset.worn) headset.recentre();
     else {
-      view.recentre();
+      stage.view.recentre();
       body.discontinuity();
     }
   }

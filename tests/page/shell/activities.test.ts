@@ -1,4 +1,3 @@
-import { Group } from 'three';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { unknownFingers } from 'threepoint/core/body/hand-shape';
 import { allReleased, nothingPressed } from 'threepoint/core/input/button-presses';
@@ -19,10 +18,9 @@ import { createRunners } from 'threepoint-page/shell/study/join-study';
 import { menuButtons, type VrMenuActions } from 'threepoint-page/shell/vr-menu/menu-buttons';
 import { menuStateOf } from 'threepoint-page/shell/vr-menu/menu-state';
 import { Recorder } from 'threepoint-page/studio/recorder';
-import type { StudyRun } from 'threepoint-study/participant/study-run';
 import { describe, expect, test, vi } from 'vitest';
 import { posed } from '../../games/archery/bowman';
-import { activityServices, noPointers } from '../activity-services';
+import { activityServices, noPointers, studyRun } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();
@@ -100,22 +98,6 @@ async function range() {
   await opened.activities.goTo('archery');
   const archery = () => opened.activities.openedOf('archery') as ArcheryActivity;
   return { ...opened, archery, layout: () => archery().play.targets };
-}
-
-/** A study that this page has joined, in which a participant plays, or waits. */
-function joinedStudy({ idle = false } = {}) {
-  const run: StudyRun = {
-    object: new Group() as never,
-    idle,
-    paused: false,
-    frame: () => undefined,
-    point: () => undefined,
-    sessionChanged: () => undefined,
-    probe: () => {
-      throw new Error('not asked for here');
-    },
-  };
-  return { run, runners: {} };
 }
 
 describe('going to a game', () => {
@@ -253,7 +235,7 @@ describe('a player who takes the headset off', () => {
       headset: { pictureRateHz: 72, visibility: 'none' },
       recorder: new Recorder(),
       timing: new FrameTiming(() => 0),
-      view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
+      stage: { view: { view: 'third-person', setView: nothing } } as unknown as SessionChangesOptions['stage'],
       body: { startSession: nothing, endSession: nothing, discontinuity: () => activities.current?.discontinuity?.() },
       controls: { show: nothing, setWorn: nothing, layOut: nothing },
       activities,
@@ -310,7 +292,7 @@ describe('a round in a study', () => {
   test('is started by the study alone, with its layout, its time and its signal', async () => {
     const { activities, archery, settings, study, layout } = await opened;
     const begun = layout();
-    study.join(joinedStudy());
+    study.run = studyRun();
     archery().restart();
     archery().setRules({ everyHitCounts: true });
     expect(layout()).toBe(begun);
@@ -331,7 +313,7 @@ describe('a round in a study', () => {
       open: async () => archery(),
       leave: () => undefined,
     });
-    study.join({ ...joinedStudy(), runners: { archery: runner } });
+    study.runners = { archery: runner };
     runner.start({ seed: 3, seconds: 1 });
     for (let time = 2; time < 4; time += 1 / 30) activities.play(wearer(time, 1.6), nothingPressed);
     expect(runner.end).toMatchObject({ ended: 'time', score: 0 });
@@ -339,9 +321,9 @@ describe('a round in a study', () => {
 
   test('has no built-in archer while its participant does not play', async () => {
     const { activities, study } = await opened;
-    study.join(joinedStudy());
+    study.run = studyRun();
     expect(activities.act(5)).not.toBeNull();
-    study.join(joinedStudy({ idle: true }));
+    study.run = studyRun({ idle: true });
     expect(activities.act(5.1)).toBeNull();
   });
 });
@@ -467,7 +449,7 @@ describe('a third activity', () => {
     const { activities, settings, writer, study, done } = dartsPage();
     const runners = await createRunners({ activities, settings, writer });
     expect(Object.keys(runners)).toEqual(['archery', 'ball', 'darts']);
-    study.join({ ...joinedStudy(), runners });
+    Object.assign(study, { run: studyRun(), runners });
     const { darts } = runners;
     await darts?.prepare({
       participant: 'P02',

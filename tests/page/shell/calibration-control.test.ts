@@ -69,7 +69,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
     recorder,
     actor: createActor(),
     activities: { current: null, act: () => null },
-    study: { idle: false },
+    study: { run: null },
     pointers: noPointers,
   });
   let now = 0;

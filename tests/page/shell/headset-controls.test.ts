@@ -14,7 +14,7 @@ import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
 import { activities as registered } from 'threepoint-page/shell/activity-registry';
 import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls';
 import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
-import { PageStudy } from 'threepoint-page/shell/study/page-study';
+import type { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import { type ComfortActions, type ComfortState, comfortSheet } from 'threepoint-page/shell/vr-menu/comfort-sheet';
 import {
@@ -27,6 +27,7 @@ import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
 import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { describe, expect, test, vi } from 'vitest';
 import { allocatedPerFrame } from '../../allocated-bytes';
+import { studyRun } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, studioMenu } from './menu-parts';
 
@@ -53,7 +54,7 @@ function headset() {
   const settings = createSettings(readSwitches('').switches, { preferences: {} });
   const writer = new SettingsWriter(settings, { remember: () => undefined }, () => undefined);
   const done: string[] = [];
-  const study = new PageStudy();
+  const study: PageStudy = { run: null, runners: {} };
   const hands: Pointer[] = [];
   let step: CalibrationStep | null = null;
   const rays = createVrPointers();
@@ -66,7 +67,7 @@ function headset() {
     study,
     rays,
     pointers,
-    notices: { show: () => undefined, current: () => [] },
+    notices: { current: () => [] },
     body: { estimator: 'ik', unavailableEstimators: {}, calibration: { ...defaultCalibration, eyeHeight: 1.6 } },
     headset: {
       passthrough: null,
@@ -132,22 +133,6 @@ function headset() {
   };
 }
 
-/** A study whose sheet writes down the hands that point at it. */
-function studyOf(pointed: (readonly Pointer[])[]) {
-  const run = {
-    object: new Group() as never,
-    idle: true,
-    paused: false,
-    frame: () => undefined,
-    point: (pointers: readonly Pointer[]) => void pointed.push(pointers),
-    sessionChanged: () => undefined,
-    probe: () => {
-      throw new Error('not asked for here');
-    },
-  };
-  return { run, runners: {} };
-}
-
 describe('in the headset', () => {
   test('the menu is there while it is worn, and hands point', () => {
     const { controls, menu, rays } = headset();
@@ -172,7 +157,7 @@ describe('in the headset', () => {
   test('a study’s sheet takes the place of the menu: it alone hears the hands', () => {
     const { controls, study, menu, rays, hands, done, onMenu } = headset();
     const pointed: (readonly Pointer[])[] = [];
-    study.join(studyOf(pointed));
+    study.run = studyRun({ point: (pointers) => void pointed.push(pointers) });
     controls.setWorn(true);
     controls.show();
     expect([menu.visible, rays.objects.visible]).toEqual([false, true]);
@@ -185,7 +170,7 @@ describe('in the headset', () => {
   test('a study that is joined in a session takes the menu away', () => {
     const { controls, study, menu } = headset();
     controls.setWorn(true);
-    study.join(studyOf([]));
+    study.run = studyRun();
     controls.show();
     expect(menu.visible).toBe(false);
   });

@@ -42,7 +42,7 @@ function handless(act: (time: number) => SimulatedInput | null, settings = { gaz
     body: { userCalibration: defaultCalibration },
     actor: createActor(),
     activities: { current: null, act },
-    study: { idle: false },
+    study: { run: null },
     pointers,
   });
   let time = 10;

@@ -25,7 +25,7 @@ function player(recorder = new Recorder()) {
     headset,
     recorder,
     timing: new FrameTiming(() => 0),
-    view: { view: 'third-person', setView: nothing } as unknown as SessionChangesOptions['view'],
+    stage: { view: { view: 'third-person', setView: nothing } } as unknown as SessionChangesOptions['stage'],
     body,
     activities: {
       sessionChanged: nothing,

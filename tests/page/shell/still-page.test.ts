@@ -69,7 +69,7 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     body,
     actor: createActor(),
     activities,
-    study: { idle: false },
+    study: { run: null },
     pointers: noPointers,
   });
   const faults: unknown[] = [];

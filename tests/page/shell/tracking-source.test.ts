@@ -32,7 +32,7 @@ function worn() {
     body,
     actor: createActor(),
     activities: { current: null, act: () => null },
-    study: { idle: false },
+    study: { run: null },
     pointers: noPointers,
   });
   const wristAt = (time: number) => {
@@ -57,7 +57,7 @@ test('with the actor off before a real headset is put on, the body stands still'
         return null;
       },
     },
-    study: { idle: false },
+    study: { run: null },
     pointers: noPointers,
   });
   const [earlier, later] = [source.read(10, undefined), source.read(13, undefined)];

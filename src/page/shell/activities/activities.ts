@@ -25,9 +25,9 @@ export interface ActivitiesOptions extends StagingOptions {
   /** The seed of the first layout. */
   readonly seed: number;
   readonly stage: StagingOptions['stage'] & { readonly studio: Pick<Stage['studio'], 'setMarkVisible'> };
-  readonly recorder: Pick<Recorder, 'mode' | 'endReplay'>;
+  readonly recorder: Recorder;
   readonly body: Pick<BodySolver, 'calibration'>;
-  readonly study: Pick<PageStudy, 'idle' | 'runnerOf'>;
+  readonly study: PageStudy;
   /** The user is somewhere else now: filters and clocks restart. */
   onArrival(): void;
 }
@@ -143,7 +143,7 @@ export class Activities {
   }
 
   act(time: number): SimulatedInput | null {
-    if (this.#options.study.idle) return null;
+    if (this.#options.study.run?.idle) return null;
     return this.#current?.act(time) ?? null;
   }
 
@@ -151,7 +151,7 @@ export class Activities {
   play(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] {
     const pulses = this.#current?.update(frame, buttons) ?? null;
     if (pulses === null) return [];
-    this.#options.study.runnerOf(this.#name)?.played();
+    this.#options.study.runners[this.#name]?.played();
     return pulses;
   }
 

@@ -4,7 +4,7 @@ import { home } from '../activity-registry';
 import type { Activities } from './activities';
 
 /** The choice of an activity, the panel of the current one, and the banner about the connection to other players. */
-export function createPlayBar(activities: Pick<Activities, 'all' | 'name' | 'current' | 'arriving' | 'goTo'>) {
+export function createPlayBar(activities: Activities) {
   const region = pageElement('play', HTMLElement);
   const banner = pageElement('banner', HTMLElement);
   const places = [{ name: home, title: 'Mirror' }, ...activities.all].map(({ name, title }) => ({

@@ -18,7 +18,7 @@ export interface CalibrationControlOptions {
   readonly body: Pick<BodySolver, 'userCalibration'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly settings: Pick<Settings, 'actor'>;
-  readonly recorder: Pick<Recorder, 'mode'>;
+  readonly recorder: Recorder;
   readonly notices: Pick<Notices, 'show'>;
   readonly userCalibration: Pick<UserCalibration, 'calibrateForGood'>;
 }

@@ -5,8 +5,8 @@ import { createVrPointers } from 'threepoint-ui/vr-pointers';
 import { createPlayBar, type PlayBar } from '../activities/play-bar';
 import { estimatorTexts } from '../estimator-texts';
 import { stageNames } from '../frame-timing';
+import type { PageParts } from '../page-parts';
 import { CalibrationControl } from './calibration-control';
-import type { ControlledParts } from './controlled-parts';
 import { DesktopControls } from './desktop-controls';
 import { acceptDroppedFiles, FileOpener } from './file-opener';
 import { HeadsetControls } from './headset-controls';
@@ -21,7 +21,7 @@ const reportEveryMs = 250;
  * Everything a person can press, read or type, on the desktop and in the headset; it keeps no state of the page's own.
  */
 export class Controls {
-  readonly #parts: ControlledParts;
+  readonly #parts: PageParts;
   readonly #measuring: CalibrationControl;
   readonly #files: FileOpener;
   readonly #play: PlayBar;
@@ -32,7 +32,7 @@ export class Controls {
   /** Whether the panel was open when the headset was put on. */
   #panelOpenBefore = false;
 
-  constructor(parts: ControlledParts) {
+  constructor(parts: PageParts) {
     const { stage } = parts;
     const panelRegion = pageElement('controls', HTMLElement);
     this.#parts = parts;

@@ -9,14 +9,14 @@ import {
 import { listenToShortcuts, type Shortcuts } from 'threepoint-ui/shortcuts';
 import { viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../estimator-texts';
+import type { PageParts } from '../page-parts';
 import { createPanel, type Panel, type PanelActions } from '../panel/panel';
 import type { PanelState } from '../panel/panel-state';
-import type { ControlledParts } from './controlled-parts';
 import type { MotionExport } from './motion-export';
 
-export interface DesktopControlsOptions extends ControlledParts {
+export interface DesktopControlsOptions extends PageParts {
   readonly actions: PanelActions;
-  readonly motionExport: Pick<MotionExport, 'state'>;
+  readonly motionExport: MotionExport;
 }
 
 const centimetres = (metres: number): number => 100 * metres;

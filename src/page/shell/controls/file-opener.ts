@@ -13,7 +13,7 @@ const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface FileOpenerOptions {
   readonly avatar: Pick<UserAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name' | 'waiting'>;
-  readonly recorder: Pick<Recorder, 'nextRequest' | 'open' | 'replay'>;
+  readonly recorder: Recorder;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
   readonly mocap: Pick<LazyMocap, 'open'>;

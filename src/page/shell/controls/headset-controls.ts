@@ -2,10 +2,12 @@ import type { BodySolver } from 'threepoint/api/body-solver';
 import type { Pointer } from 'threepoint/core/input/pointer';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { FrameReport } from 'threepoint-ui/frame-times-overlay';
+import type { Notices } from 'threepoint-ui/notices';
 import type { VrPointers } from 'threepoint-ui/vr-pointers';
 import type { Activities } from '../activities/activities';
 import type { Pointers } from '../frame/pointers';
 import type { Headset } from '../headset';
+import type { PageParts } from '../page-parts';
 import type { PanelActions } from '../panel/panel';
 import type { UserCalibration } from '../user-calibration';
 import { type ComfortActions, comfortSheet } from '../vr-menu/comfort-sheet';
@@ -15,13 +17,13 @@ import { menuStateOf } from '../vr-menu/menu-state';
 import { VrMenu } from '../vr-menu/vr-menu';
 import { WristButtons } from '../vr-menu/wrist-buttons';
 import type { CalibrationControl } from './calibration-control';
-import type { ControlledParts } from './controlled-parts';
 import { UserHeight } from './user-height';
 
 /** The scale of the menu in the headset for a user who wants larger text. */
 const largerMenu = 1.3;
 
-export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {
+export interface HeadsetControlsOptions extends Pick<PageParts, 'settings' | 'writer' | 'study'> {
+  readonly notices: Pick<Notices, 'current'>;
   /** Draws the pointers. */
   readonly rays: VrPointers;
   readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;

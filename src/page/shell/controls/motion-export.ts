@@ -1,31 +1,19 @@
-import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
 import type { MotionFormat, MotionWriter } from 'threepoint/api/motion-file';
 import { decoders } from 'threepoint/avatar/decoders/decoders';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import { offerDownload } from 'threepoint-ui/downloads';
-import type { Notices } from 'threepoint-ui/notices';
-import type { Recorder } from '../../studio/recorder';
 import { estimatorTexts } from '../estimator-texts';
+import type { PageParts } from '../page-parts';
 import type { ExportChoice, ExportState } from '../panel/panel-state';
-import type { UserAvatar } from '../user-avatar';
-
-export interface MotionExportOptions {
-  readonly recorder: Pick<Recorder, 'recording' | 'name'>;
-  readonly body: Pick<BodySolver, 'selectedEstimator' | 'userCalibration'>;
-  readonly avatar: Pick<UserAvatar, 'name' | 'file'>;
-  readonly networks: BodySolverOptions['networks'];
-  readonly notices: Pick<Notices, 'show'>;
-  onChange(): void;
-}
 
 /** Exports the current recording to files for other programs, one at a time. Its code is loaded on first use. */
 export class MotionExport {
-  readonly #options: MotionExportOptions;
+  readonly #parts: PageParts;
   #state: ExportState | null = null;
   #cancellation = new AbortController();
 
-  constructor(options: MotionExportOptions) {
-    this.#options = options;
+  constructor(parts: PageParts) {
+    this.#parts = parts;
   }
 
   /** The progress of the export; null: none is in progress. */
@@ -43,7 +31,7 @@ export class MotionExport {
    * notices.
    */
   async begin(choice: ExportChoice): Promise<void> {
-    const { recorder, body, notices } = this.#options;
+    const { recorder, body, notices } = this.#parts;
     const { recording, name } = recorder;
     if (!recording || !name || this.#state) return;
     const estimator = body.selectedEstimator;
@@ -58,7 +46,7 @@ export class MotionExport {
         format: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
         estimator,
-        networks: this.#options.networks,
+        networks: this.#parts.networks,
         calibration: recording.calibration ?? body.userCalibration,
         signal,
         onProgress: (progress) => this.#setState({ name: stem, method: label, ...progress }),
@@ -75,13 +63,13 @@ export class MotionExport {
 
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
-    const { avatar } = this.#options;
+    const { avatar } = this.#parts;
     const { createAvatarMotionWriter } = await import('threepoint/avatar/avatar-motion-writer');
     return createAvatarMotionWriter(await avatar.file(), avatar.name, { decoders });
   }
 
   #setState(state: ExportState | null): void {
     this.#state = state;
-    this.#options.onChange();
+    this.#parts.onChange();
   }
 }

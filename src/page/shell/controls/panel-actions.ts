@@ -1,16 +1,16 @@
 import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } from 'threepoint/core/body/calibration';
 import { offerDownload } from 'threepoint-ui/downloads';
+import type { PageParts } from '../page-parts';
 import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from '../panel/panel-state';
 import type { CalibrationControl } from './calibration-control';
-import type { ControlledParts } from './controlled-parts';
 import type { FileOpener } from './file-opener';
 import type { MotionExport } from './motion-export';
 
-export interface PanelActionsOptions extends ControlledParts {
+export interface PanelActionsOptions extends PageParts {
   readonly files: FileOpener;
   readonly motionExport: MotionExport;
-  readonly measuring: Pick<CalibrationControl, 'start'>;
+  readonly measuring: CalibrationControl;
 }
 
 function bodyActions({

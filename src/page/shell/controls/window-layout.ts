@@ -1,4 +1,5 @@
 import { pageElement } from 'threepoint-ui/element';
+import type { Settings } from '../settings';
 import type { Stage } from '../stage';
 
 /** The window width up to which the open controls leave the picture little room beside them [CSS pixels]. */
@@ -14,8 +15,8 @@ const textScale = 1.3;
 export const isNarrow = (): boolean => window.innerWidth <= narrowest;
 
 export interface WindowLayoutOptions {
-  readonly stage: Pick<Stage, 'layOut'>;
-  readonly settings: { readonly largerText: boolean };
+  readonly stage: Stage;
+  readonly settings: Settings;
   /** Emits the event `toggle` when the panel opens or closes. */
   readonly panelRegion: HTMLElement;
   panelOpen(): boolean;

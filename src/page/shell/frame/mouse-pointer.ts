@@ -1,12 +1,10 @@
 import { MutablePointer, type Pointer } from 'threepoint/core/input/pointer';
 import type { MouseAim } from 'threepoint-ui/mouse-aim';
 import type { DesktopView } from '../../scene/desktop-view';
-import type { Activities } from '../activities/activities';
-import type { Headset } from '../headset';
-import type { PageStudy } from '../study/page-study';
+import type { PageParts } from '../page-parts';
 
 /** Returns the mouse, pen or finger in the window as a pointer into the scene, as of now. */
-export function createMousePointer(mouse: MouseAim, view: Pick<DesktopView, 'rayThrough'>): () => Pointer {
+export function createMousePointer(mouse: MouseAim, view: DesktopView): () => Pointer {
   const pointer = new MutablePointer('mouse');
   return () => {
     const { origin, direction } = view.rayThrough(mouse.x, mouse.y);
@@ -18,16 +16,11 @@ export function createMousePointer(mouse: MouseAim, view: Pick<DesktopView, 'ray
   };
 }
 
-export interface SheetPointingOptions {
-  readonly canvas: HTMLCanvasElement;
-  readonly view: Pick<DesktopView, 'rayThrough'>;
-  readonly headset: Pick<Headset, 'worn'>;
-  readonly study: Pick<PageStudy, 'run'>;
-  readonly activities: Pick<Activities, 'current'>;
-}
-
 /** The mouse presses what the sheets of a game offer. A study's participant plays with the headset alone. */
-export function pressSheetsByMouse({ canvas, view, headset, study, activities }: SheetPointingOptions): void {
+export function pressSheetsByMouse({ stage, headset, study, activities }: PageParts): void {
+  const { view } = stage;
+  const canvas = stage.renderer.domElement;
+
   /** Whether the mouse is on a button of a sheet. */
   function pointAt({ clientX, clientY }: MouseEvent, press: boolean): boolean {
     if (headset.worn || study.run) return false;

@@ -1,48 +1,21 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import { ReplayedBody, type ReplayState } from 'threepoint/api/replayed-body';
+import { ReplayedBody } from 'threepoint/api/replayed-body';
 import { handShapeFromButtons } from 'threepoint/avatar/hands/button-fingers';
 import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
 import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
 import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
 import type { Side } from 'threepoint/core/math/side';
 import type { Mutable } from 'threepoint/core/records';
-import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { defaultSavings } from 'threepoint/xr/frame-rate';
-import type { Notices } from 'threepoint-ui/notices';
-import type { Recorder } from '../../studio/recorder';
-import type { Activities } from '../activities/activities';
 import type { Controls } from '../controls/controls';
-import type { FrameTiming } from '../frame-timing';
-import type { Headset } from '../headset';
-import type { LazyMocap } from '../lazy-mocap';
+import type { PageParts } from '../page-parts';
 import type { PassthroughHost } from '../session/passthrough-host';
-import type { Settings } from '../settings';
-import type { Picture, Stage } from '../stage';
-import type { PageStudy } from '../study/page-study';
-import type { UserAvatar } from '../user-avatar';
-import type { DeviceDifference } from './device-difference';
+import type { Picture } from '../stage';
 import type { FrameParts } from './frame-loop';
-import type { TrackingSource } from './tracking-source';
 
-export interface PageFrameOptions {
-  readonly settings: Pick<Settings, 'mirror' | 'beside'>;
-  readonly notices: Pick<Notices, 'show'>;
-  readonly timing: Pick<FrameTiming, 'lastMs'>;
-  readonly source: TrackingSource;
-  /** Between what is tracked and the body, where a study wants the body worse than it could be. */
-  readonly degradation: Pick<TrackingDegradation, 'apply' | 'reset'>;
-  readonly body: Pick<BodySolver, 'update' | 'warmUp' | 'pose' | 'estimator' | 'discontinuity' | 'calibration'>;
-  readonly recorder: Pick<Recorder, 'observe'> & ReplayState;
-  readonly difference: Pick<DeviceDifference, 'observe'>;
-  readonly avatar: Pick<UserAvatar, 'current'>;
-  readonly headset: Headset;
-  readonly activities: Activities;
-  readonly controls: Pick<Controls, 'observe' | 'point'>;
-  readonly study: Pick<PageStudy, 'run'>;
-  readonly stage: Pick<Stage, 'look' | 'draw' | 'vignette'>;
-  readonly mocap: Pick<LazyMocap, 'frame' | 'aside'>;
-  readonly passthrough: Pick<PassthroughHost, 'update'>;
+export interface PageFrameOptions extends PageParts {
+  readonly controls: Controls;
+  readonly passthrough: PassthroughHost;
 }
 
 /** How far to the right of its user the avatar stands that is seen from beside [m]. */

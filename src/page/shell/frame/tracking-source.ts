@@ -4,12 +4,12 @@ import { type Buttons, nothingPressed } from 'threepoint/core/input/button-press
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { SimulatedInput } from 'threepoint-games/simulated-input';
+import type { StudyRun } from 'threepoint-study/participant/study-run';
 import type { Actor } from '../../emulator/actor';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';
 import type { Headset } from '../headset';
 import type { Settings } from '../settings';
-import type { PageStudy } from '../study/page-study';
 import type { Pointers } from './pointers';
 
 /** The part of a session's tracking that is read. */
@@ -18,11 +18,11 @@ type SessionTracking = Pick<TrackedSession, 'read'> & { readonly inputs: Pick<Tr
 export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'emulator'> & { readonly tracking: SessionTracking | null };
-  readonly recorder: Pick<Recorder, 'sample' | 'person' | 'endReplay'>;
+  readonly recorder: Recorder;
   readonly body: Pick<BodySolver, 'userCalibration'>;
-  readonly actor: Pick<Actor, 'frameAt' | 'standAt'>;
+  readonly actor: Actor;
   readonly activities: Pick<Activities, 'current' | 'act'>;
-  readonly study: Pick<PageStudy, 'idle'>;
+  readonly study: { readonly run: Pick<StudyRun, 'idle'> | null };
   readonly pointers: Pick<Pointers, 'follow' | 'steering'>;
 }
 
@@ -74,7 +74,7 @@ export class TrackingSource {
     const { headset, settings, study, recorder, pointers } = this.#options;
     // A file may arrive in a session: the wearer's body neither follows its replay nor stands still with it.
     recorder.endReplay();
-    if (headset.emulator && settings.actor && !study.idle) {
+    if (headset.emulator && settings.actor && !study.run?.idle) {
       // What the actor does now is seen with the next frame: the device froze this one before it called.
       const performed = this.#perform(time);
       headset.emulator.drive(performed.frame, performed.buttons);

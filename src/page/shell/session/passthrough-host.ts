@@ -6,9 +6,9 @@ import type { PreferenceStore } from '../preferences';
 import type { Stage } from '../stage';
 
 export interface PassthroughHostOptions extends Pick<PassthroughOptions, 'quality' | 'notices' | 'isCovered'> {
-  readonly headset: Pick<Headset, 'passthrough' | 'room' | 'tracking'>;
-  readonly stage: Pick<Stage, 'studio' | 'standMirror' | 'placeMirror'>;
-  readonly activities: Pick<Activities, 'all' | 'name' | 'current'>;
+  readonly headset: Headset;
+  readonly stage: Stage;
+  readonly activities: Activities;
   readonly store: PreferenceStore;
 }
 

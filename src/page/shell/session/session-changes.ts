@@ -1,18 +1,18 @@
 import type { BodySolver } from 'threepoint/api/body-solver';
-import type { DesktopView } from '../../scene/desktop-view';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';
 import type { Controls } from '../controls/controls';
 import type { FrameTiming } from '../frame-timing';
 import type { Headset, HeadsetListener } from '../headset';
+import type { Stage } from '../stage';
 import type { PageStudy } from '../study/page-study';
 import type { PassthroughHost } from './passthrough-host';
 
 export interface SessionChangesOptions {
   readonly headset: Pick<Headset, 'pictureRateHz' | 'visibility'>;
-  readonly recorder: Pick<Recorder, 'mode' | 'stop'>;
+  readonly recorder: Recorder;
   readonly timing: FrameTiming;
-  readonly view: DesktopView;
+  readonly stage: Pick<Stage, 'view'>;
   readonly body: Pick<BodySolver, 'startSession' | 'endSession' | 'discontinuity'>;
   readonly activities: Pick<Activities, 'current' | 'sessionChanged'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
@@ -37,12 +37,12 @@ export class SessionChanges implements HeadsetListener {
   }
 
   left(): void {
-    const { recorder, controls, view, body } = this.#options;
+    const { recorder, controls, stage, body } = this.#options;
     // Another source moves the body now, which the recording's header does not name.
     if (recorder.mode === 'recording') recorder.stop();
     body.endSession();
     controls.setWorn(false);
-    view.setView(view.view);
+    stage.view.setView(stage.view.view);
     controls.layOut();
     this.#changed();
   }

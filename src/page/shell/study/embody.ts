@@ -10,7 +10,7 @@ export interface EmbodyingParts {
   readonly writer: Pick<SettingsWriter, 'change'>;
   readonly avatar: Pick<UserAvatar, 'openBuiltIn' | 'builtInBody'>;
   readonly body: Pick<BodySolver, 'setEstimator' | 'estimator'>;
-  readonly degradation: Pick<TrackingDegradation, 'configure'>;
+  readonly degradation: TrackingDegradation;
 }
 
 /**

@@ -1,36 +1,19 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
 import type { ActivityRunner } from '../../activity/activity';
-import type { Activities } from '../activities/activities';
 import { home } from '../activity-registry';
-import type { FrameTiming } from '../frame-timing';
-import type { Headset } from '../headset';
-import type { Settings, SettingsWriter } from '../settings';
+import type { PageParts } from '../page-parts';
 import type { Switches } from '../switches';
-import type { UserCalibration } from '../user-calibration';
-import { type EmbodyingParts, embody } from './embody';
-import type { JoinedStudy } from './page-study';
+import { embody } from './embody';
+import type { PageStudy } from './page-study';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
-
-export interface JoinStudyOptions extends EmbodyingParts {
-  readonly asked: NonNullable<Switches['study']>;
-  readonly switches: Pick<Switches, 'actor'>;
-  readonly settings: Settings;
-  readonly writer: SettingsWriter;
-  readonly headset: Headset;
-  readonly activities: Activities;
-  readonly timing: FrameTiming;
-  readonly body: EmbodyingParts['body'] & Pick<BodySolver, 'userCalibration'>;
-  readonly userCalibration: Pick<UserCalibration, 'calibrate' | 'forget'>;
-}
 
 /** Makes the tasks that studies run, by the names of their activities. */
 export async function createRunners({
   activities,
   settings,
   writer,
-}: Pick<JoinStudyOptions, 'activities' | 'settings' | 'writer'>): Promise<JoinedStudy['runners']> {
+}: Pick<PageParts, 'activities' | 'settings' | 'writer'>): Promise<PageStudy['runners']> {
   const runners: Record<string, ActivityRunner> = {};
   for (const { name, createRunner } of activities.all) {
     const runner = await createRunner?.({
@@ -46,13 +29,13 @@ export async function createRunners({
 }
 
 /** Joins a study, which decides from then on what is played and with which body. */
-export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
-  const { asked, switches, settings, writer, headset, timing, body, userCalibration } = options;
+export async function joinStudy(parts: PageParts, asked: NonNullable<Switches['study']>): Promise<void> {
+  const { switches, settings, writer, headset, timing, body, userCalibration, study, stage } = parts;
   const { createStudyRun } = await import('threepoint-study/participant/study-run');
   writer.change({ startSignal: true });
-  const runners = await createRunners(options);
-  const run = createStudyRun(asked, {
-    runners,
+  study.runners = await createRunners(parts);
+  study.run = createStudyRun(asked, {
+    runners: study.runners,
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
     deviceFault: () => headset.fault,
@@ -62,7 +45,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
       if (calibration) userCalibration.calibrate(calibration, 'measured');
       else userCalibration.forget();
     },
-    embody: (embodiment, seed) => embody(options, embodiment, seed),
+    embody: (embodiment, seed) => embody(parts, embodiment, seed),
     estimator: () => body.estimator,
     setActor(on) {
       writer.change({ actor: on && switches.actor });
@@ -75,5 +58,5 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     }),
     listenToFrames: (listener) => timing.listen(listener),
   });
-  return { run, runners };
+  stage.studio.scene.add(study.run.object);
 }
