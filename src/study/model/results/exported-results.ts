@@ -1,6 +1,5 @@
 import { cohortsByParticipant } from '../plan/allocation';
-import { questionnairesOf, type StudyPlan } from '../plan/plan';
-import type { Questionnaire } from '../questionnaires/questionnaires';
+import type { StudyPlan } from '../plan/plan';
 import type { StudyRecord } from '../records/study-record';
 import { answersIn, scalesIn, trialsIn } from '../tables/study-tables';
 import type { Table } from '../tables/tidy-csv';
@@ -8,15 +7,8 @@ import { compareAll } from './compare-all';
 import { type ComparedCohorts, compareCohorts } from './compare-cohorts';
 import { compareConditions } from './compare-conditions';
 import { frameTimes } from './frame-times';
-import { answerMeasures, type CohortOf, isPlanned, type Measure, type Measured, scoreMeasures } from './measures';
-import { cohortsTable, conditionsTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
-
-/** Returns the subject of a question or the name of a scale; empty: none. */
-export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<Measured, 'asked'>): string {
-  const found = asked.find(({ id }) => id === of?.questionnaire);
-  const scale = found?.scales.find(({ id }) => id === of?.question);
-  return scale?.label ?? found?.questions.find(({ id }) => id === of?.question)?.about ?? '';
-}
+import { answerMeasures, type CohortOf, isPlanned, type Measure, scoreMeasures } from './measures';
+import { cohortsTable, conditionsTable, frameTimeTable, overallTable } from './result-tables';
 
 /** Returns a function from participants to the cohorts of the plan; empty: it has none. */
 export function cohortIn(plan: StudyPlan): CohortOf {
@@ -79,16 +71,10 @@ const cohortComparisonsOf = (plan: StudyPlan): readonly ComparedCohorts[] =>
  */
 export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
   const measures = measuresIn(records, plan);
-  const asked = questionnairesOf(plan);
-  const factsFor = (family: TableFacts['family']): TableFacts => ({
-    family,
-    simulated: records[0]?.simulated ?? false,
-    aboutOf: (one) => aboutIn(asked, one),
-    isPlanned: (one) => isPlanned(one, plan),
-  });
+  const simulated = records[0]?.simulated ?? false;
   /** Returns three tables of the same measures; p is adjusted within each family. */
   const tablesOf = (name: string, families: readonly (readonly Measure[])[]): readonly Table[] => {
-    const facts = factsFor(name === 'planned' ? 'planned' : 'explored');
+    const facts = { family: name === 'planned' ? 'planned' : 'explored', simulated, plan } as const;
     const pairs = pairsOf(plan.conditions).flatMap((sides) =>
       families.map((family) => ({ sides, comparisons: compareConditions(family, sides).comparisons })),
     );
@@ -106,6 +92,6 @@ export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): 
     ...tablesOf('answers', [measures.answers]),
     ...tablesOf('scales', [measures.scales]),
     ...tablesOf('scores', [measures.points, measures.percent]),
-    frameTimeTable(frameTimes(records, cohortIn(plan)), factsFor('explored')),
+    frameTimeTable(frameTimes(records, cohortIn(plan)), { simulated }),
   ];
 }

@@ -4,6 +4,7 @@ import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
+import { askedOf } from '../../model/results/measures';
 import { barChart, type Chart, figure, pairedChart, stripChart } from './charts';
 import type { Compared } from './shown-results';
 
@@ -43,12 +44,12 @@ const paperFigures: Readonly<Record<string, string>> = {
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
 export function questionCharts({ results, answers }: Compared): readonly NamedChart[] {
-  const { asked } = results;
-  const [language] = languagesOf(results.study.plan);
+  const { plan } = results.study;
+  const [language] = languagesOf(plan);
   const charts = new Map<string, NamedChart>();
   for (const one of answers) {
-    const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
-    const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
+    const { questionnaire, question } = askedOf(one, plan);
+    const form = question?.answer;
     const range = form && questionKind(form).range(form);
     if (!questionnaire || !one.asked || !range) continue;
     const axis = axisOf(form, range, language);
@@ -76,11 +77,9 @@ export function questionCharts({ results, answers }: Compared): readonly NamedCh
 
 /** Returns a chart for each scale, with all tasks side by side. */
 export function scaleCharts({ results, scales }: Compared): readonly NamedChart[] {
-  const { asked } = results;
   const charts = new Map<string, NamedChart>();
   for (const one of scales) {
-    const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
-    const scale = questionnaire?.scales.find(({ id }) => id === one.asked?.question);
+    const { questionnaire, scale } = askedOf(one, results.study.plan);
     if (!questionnaire || !scale) continue;
     const key = `${questionnaire.id}-${scale.id}`;
     const domain = scaleRange(questionnaire, scale);

@@ -56,7 +56,7 @@ function familyParts(
   { file, caption }: { readonly file: string; readonly caption: (count: number) => string },
   measures: readonly Measure[],
 ): readonly Node[] {
-  const { study, factsOf, fileOf } = results;
+  const { study, fileOf } = results;
   const compared = overallComparisons(measures, study.plan);
   if (compared.length === 0) return [];
   const planned = file.startsWith('planned');
@@ -68,7 +68,7 @@ function familyParts(
       compared.flatMap((one) => rowsOf(results, one, !planned)),
       'dense',
     ),
-    bar(csvButton(overallTable(file, compared, factsOf(planned ? 'planned' : 'explored')), fileOf(file))),
+    bar(csvButton(overallTable(file, compared, { ...study, family: planned ? 'planned' : 'explored' }), fileOf(file))),
     ...(leftOut.length === 0
       ? []
       : [

@@ -57,7 +57,10 @@ function familyParts(compared: Compared, sides: Sides, family: Family): readonly
   const isPlanned = name === 'planned';
   const file = `${name}-${between ? 'cohorts' : 'compared'}`;
   const csv = between ? cohortsTable : conditionsTable;
-  const table = csv(file, [{ ...sides, comparisons }], results.factsOf(isPlanned ? 'planned' : 'explored'));
+  const table = csv(file, [{ ...sides, comparisons }], {
+    ...results.study,
+    family: isPlanned ? 'planned' : 'explored',
+  });
   return [
     element('h3', {}, heading),
     ...figures,
