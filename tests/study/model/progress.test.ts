@@ -5,6 +5,7 @@ import {
   begin,
   clockText,
   elapsedSeconds,
+  isLater,
   remainingSeconds,
   reported,
   resumed,
@@ -386,6 +387,18 @@ describe('a stored session', () => {
     ['with a broken clock', { since: 'noon' }, 'since: '],
   ])('%s is refused', (_, change, message) => {
     expect(() => resumed(schedule, JSON.stringify({ ...begin(schedule), ...change }))).toThrow(message);
+  });
+
+  test('is later than one at an earlier step, and later still once its block is voided', () => {
+    const one = session(schedule);
+    const early = one.progress;
+    one.doUntil(({ kind }) => kind === 'questionnaire');
+    const late = one.progress;
+    expect(isLater(schedule, late, early)).toBe(true);
+    expect(isLater(schedule, early, late)).toBe(false);
+    expect(isLater(schedule, late, late)).toBe(false);
+    one.tell({ type: 'void-block', reason: 'the phone rang', repeat: true });
+    expect(isLater(schedule, one.progress, late)).toBe(true);
   });
 
   test('that is no JSON is refused', () => {
