@@ -16,15 +16,18 @@ export function cohortIn(plan: StudyPlan): CohortOf {
   return (participant) => cohorts.get(participant)?.id ?? '';
 }
 
-/** The measures of a study by families of Holm's correction in exploratory analyses. */
-export interface StudyMeasures {
-  readonly answers: readonly Measure[];
-  readonly scales: readonly Measure[];
-  readonly points: readonly Measure[];
-  readonly percent: readonly Measure[];
-  /** The measures that the plan names: answers, scales and points, a separate family. */
-  readonly planned: readonly Measure[];
+/** A part of the results for each family of Holm's correction. */
+export interface ByFamily<T> {
+  readonly answers: T;
+  readonly scales: T;
+  readonly points: T;
+  readonly percent: T;
+  /** The answers, scales and points that the plan names; all other families are exploratory. */
+  readonly planned: T;
 }
+
+/** The measures of a study. */
+export type StudyMeasures = ByFamily<readonly Measure[]>;
 
 /** Returns the measures of a study; throws if simulated records and records of people are mixed. */
 export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): StudyMeasures {

@@ -8,15 +8,8 @@ import { askedOf } from '../../model/results/measures';
 import { barChart, type Chart, figure, pairedChart, stripChart } from './charts';
 import type { Compared } from './shown-results';
 
-/** A chart of the page with the name of its files. */
-interface NamedChart extends Chart {
-  readonly file: string;
-  /** A note after the caption of the means of two conditions. */
-  readonly note: string;
-}
-
 /** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
-export function chartFigures({ results, labels, between }: Compared, chart: NamedChart): HTMLElement {
+export function chartFigures({ results, labels, between }: Compared, chart: Chart): HTMLElement {
   const { title, note, each } = chart;
   const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
   const legend = { labels, simulated: results.study.simulated };
@@ -43,10 +36,10 @@ const paperFigures: Readonly<Record<string, string>> = {
 };
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
-export function questionCharts({ results, answers }: Compared): readonly NamedChart[] {
+export function questionCharts({ results, answers }: Compared): readonly Chart[] {
   const { plan } = results.study;
   const [language] = languagesOf(plan);
-  const charts = new Map<string, NamedChart>();
+  const charts = new Map<string, Chart>();
   for (const one of answers) {
     const { questionnaire, question } = askedOf(one, plan);
     const form = question?.answer;
@@ -76,8 +69,8 @@ export function questionCharts({ results, answers }: Compared): readonly NamedCh
 }
 
 /** Returns a chart for each scale, with all tasks side by side. */
-export function scaleCharts({ results, scales }: Compared): readonly NamedChart[] {
-  const charts = new Map<string, NamedChart>();
+export function scaleCharts({ results, scales }: Compared): readonly Chart[] {
+  const charts = new Map<string, Chart>();
   for (const one of scales) {
     const { questionnaire, scale } = askedOf(one, results.study.plan);
     if (!questionnaire || !scale) continue;
@@ -98,7 +91,7 @@ export function scaleCharts({ results, scales }: Compared): readonly NamedChart[
 }
 
 /** Returns a chart for each task that has scores. */
-export const scoreCharts = ({ results, percent }: Compared): readonly NamedChart[] =>
+export const scoreCharts = ({ results, percent }: Compared): readonly Chart[] =>
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);

@@ -1,7 +1,7 @@
 import { taskTitle } from '../../model/plan/plan';
 import type { PlanVersion } from '../../model/progress/study-api';
 import type { Comparison } from '../../model/results/compare-conditions';
-import { measuresIn, type StudyMeasures } from '../../model/results/exported-results';
+import { type ByFamily, measuresIn, type StudyMeasures } from '../../model/results/exported-results';
 import { aboutOf, askedOf, type Measured } from '../../model/results/measures';
 import type { OpenedStudy } from '../study-file';
 
@@ -25,18 +25,11 @@ export interface ShownResults {
 }
 
 /** Two compared sides as they are shown: first − second. */
-export interface Compared {
+export interface Compared extends ByFamily<readonly Comparison[]> {
   readonly results: ShownResults;
   /** Whether the sides are cohorts, of different participants; otherwise they are conditions. */
   readonly between: boolean;
   readonly labels: { readonly first: string; readonly second: string };
-  readonly answers: readonly Comparison[];
-  /** The comparisons of scales, which are a separate family. */
-  readonly scales: readonly Comparison[];
-  readonly points: readonly Comparison[];
-  readonly percent: readonly Comparison[];
-  /** The comparisons that the plan names: answers, scales and points. */
-  readonly planned: readonly Comparison[];
 }
 
 /** Returns the measures of a study. Throws if simulated records and records of people are mixed. */
