@@ -2,7 +2,7 @@
 // starts the program once all packages are there. The program gets the options as JSON, unless `argumentsOf` says
 // otherwise.
 import { basename, join } from 'node:path';
-import { passedOn, readOptions } from './command-line.mjs';
+import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, runProgram, SetupError, typedPath } from './run-command.mjs';
 
@@ -98,7 +98,7 @@ const programs = {
     argumentsOf(given) {
       const [plan = join(root, 'public/studies/paper.json')] = planOf(given);
       const { out = typedPath(`SIMULATED-${basename(plan, '.json')}`) } = given;
-      return passedOn({ ...given, plan, out }, ['participants', 'seed', 'effect', 'score-effect', 'out', 'plan']);
+      return [JSON.stringify({ ...given, plan, out })];
     },
   },
   /** Recomputes an exported study from its raw records and prints the differences. */

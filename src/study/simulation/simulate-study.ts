@@ -107,9 +107,9 @@ export function* simulatedParticipants(
   seed: number,
   at: number,
 ): Generator<SimulatedParticipant> {
-  const rounds = new SimulatedRounds(plan, models.performance, seed);
+  const rounds = new SimulatedRounds(plan, models, seed);
   for (const [index, participant] of participantsOf(plan).entries()) {
-    yield new SimulatedSession(rounds, models, participant, at + index * slotSeconds).run();
+    yield new SimulatedSession(rounds, participant, at + index * slotSeconds).run();
   }
 }
 
@@ -121,20 +121,20 @@ export const simulateStudy = (...study: Parameters<typeof simulatedParticipants>
 /** Draws the players of a study and the results of their trials. */
 class SimulatedRounds {
   readonly plan: StudyPlan;
+  readonly models: SimulationModels;
   readonly seed: number;
-  readonly #performance: PerformanceModel;
   readonly #players: ReadonlyMap<string, Player>;
   readonly #cohorts: ReturnType<typeof cohortsByParticipant>;
 
-  constructor(plan: StudyPlan, performance: PerformanceModel, seed: number) {
+  constructor(plan: StudyPlan, models: SimulationModels, seed: number) {
     this.plan = plan;
+    this.models = models;
     this.seed = seed;
-    this.#performance = performance;
     this.#cohorts = cohortsByParticipant(plan);
     this.#players = new Map(
       participantsOf(plan).map((participant) => [
         participant,
-        drawPlayer(performance, randomSource(seed, `player ${participant}`)),
+        drawPlayer(models.performance, randomSource(seed, `player ${participant}`)),
       ]),
     );
   }
@@ -152,6 +152,7 @@ class SimulatedRounds {
     const task = this.plan.tasks.find(({ id }) => id === step.task);
     const group = groups[step.task];
     if (!task || !group) throw new Error(`the plan has no task "${step.task}"`);
+    const { performance } = this.models;
     const circumstances = {
       estimator: step.embodiment.estimator,
       condition: step.kind === 'trial' ? step.condition : null,
@@ -161,19 +162,18 @@ class SimulatedRounds {
     };
     if (task.game === 'archery') {
       const random = randomSource(this.seed, `${participant} ${step.id} ${run} ${attempt}`);
-      return drawArchery(this.#performance, this.playerOf(participant), circumstances, random);
+      return drawArchery(performance, this.playerOf(participant), circumstances, random);
     }
     const { members } = group;
     const playing = members.map((member) => this.playerOf(member));
     const random = randomSource(this.seed, `${members.join(' ')} ${step.id}`);
-    return drawBall(this.#performance, playing, circumstances, random)[members.indexOf(participant)] as TrialOutcome;
+    return drawBall(performance, playing, circumstances, random)[members.indexOf(participant)] as TrialOutcome;
   }
 }
 
 /** Simulates a participant from consent to the end. */
 class SimulatedSession {
   readonly #rounds: SimulatedRounds;
-  readonly #models: SimulationModels;
   readonly #schedule: Schedule;
   readonly #random: RandomSource;
   /** The constant deviation of this participant's answers. */
@@ -183,10 +183,9 @@ class SimulatedSession {
   /** Seconds since 1970. */
   #now: number;
 
-  constructor(rounds: SimulatedRounds, models: SimulationModels, participant: string, at: number) {
-    const { plan, seed } = rounds;
+  constructor(rounds: SimulatedRounds, participant: string, at: number) {
+    const { plan, models, seed } = rounds;
     this.#rounds = rounds;
-    this.#models = models;
     this.#schedule = scheduleFor(plan, participant);
     this.#random = randomSource(seed, `session ${participant}`);
     this.#person = drawPerson(models.answers, randomSource(seed, `person ${participant}`));
@@ -240,7 +239,7 @@ class SimulatedSession {
   }
 
   #play(step: PlayedStep): void {
-    const { mishaps } = this.#models.performance;
+    const { mishaps } = this.#rounds.models.performance;
     this.#apply({ type: 'start' });
     if (this.#random.uniform() < mishaps.reload) {
       this.#now += 10;
@@ -262,7 +261,7 @@ class SimulatedSession {
   #answer({ condition, block, questionnaire }: QuestionnaireStep): void {
     const cohort = this.#rounds.cohortOf(this.#schedule.participant);
     const about = { person: this.#person, condition, cohort, block };
-    const drawn = drawAnswers(this.#models.answers, questionnaire, about, this.#random);
+    const drawn = drawAnswers(this.#rounds.models.answers, questionnaire, about, this.#random);
     for (const [question, value] of Object.entries(drawn)) {
       this.#now += 4 + Math.round(8 * this.#random.uniform());
       this.#apply({ type: 'answer', question, value });

@@ -1,5 +1,5 @@
 import { fTail, noncentralityOfF } from './noncentral';
-import { type Interval, meanOf } from './summaries';
+import { type Interval, meanOf, sumOf } from './summaries';
 
 /** One effect of an analysis of variance. */
 export interface Effect {
@@ -67,20 +67,18 @@ function contrasts(count: number): readonly (readonly number[])[] {
 }
 
 const dotOf = (a: readonly number[], b: readonly number[]) =>
-  a.reduce((sum, value, index) => sum + value * (b[index] as number), 0);
+  sumOf(a.map((value, index) => value * (b[index] as number)));
 
 /** Returns the squares of one contrast: of its mean, between cohorts, and the residuals within them. */
 function squaresOf(cohorts: readonly (readonly number[])[]) {
-  const n = cohorts.reduce((sum, { length }) => sum + length, 0);
   const means = cohorts.map(meanOf);
   const weighted = meanOf(cohorts.flat());
   // Cohorts have equal weights regardless of their size (type III).
   const unweighted = meanOf(means);
-  const inverse = cohorts.reduce((sum, { length }) => sum + 1 / length, 0) / cohorts.length ** 2;
+  const inverse = sumOf(cohorts.map(({ length }) => 1 / length)) / cohorts.length ** 2;
   return {
-    n,
     mean: unweighted ** 2 / inverse,
-    between: cohorts.reduce((sum, { length }, index) => sum + length * ((means[index] as number) - weighted) ** 2, 0),
+    between: sumOf(cohorts.map(({ length }, index) => length * ((means[index] as number) - weighted) ** 2)),
     residuals: cohorts.flatMap((values, index) => values.map((value) => value - (means[index] as number))),
   };
 }
@@ -91,8 +89,8 @@ function squaresOf(cohorts: readonly (readonly number[])[]) {
  */
 function greenhouseGeisser(residuals: readonly (readonly number[])[]): number {
   const covariance = residuals.map((a) => residuals.map((b) => dotOf(a, b)));
-  const trace = covariance.reduce((sum, row, index) => sum + (row[index] as number), 0);
-  const squares = covariance.flat().reduce((sum, value) => sum + value * value, 0);
+  const trace = sumOf(covariance.map((row, index) => row[index] as number));
+  const squares = sumOf(covariance.flat().map((value) => value * value));
   return trace ** 2 / (residuals.length * squares);
 }
 
@@ -108,8 +106,8 @@ export function varianceAnalysis(cohorts: readonly (readonly (readonly number[])
   if (participants.some(({ length }) => length !== conditions)) throw new Error('a participant lacks a condition');
   const n = participants.length;
   const groups = cohorts.length;
-  const scale = participants.flat().reduce((sum, value) => sum + value * value, 0);
-  const common = { epsilon: null, scale };
+  const values = participants.flat();
+  const scale = dotOf(values, values);
 
   const size = Math.sqrt(conditions);
   const sums = squaresOf(cohorts.map((members) => members.map((values) => meanOf(values) * size)));
@@ -117,10 +115,11 @@ export function varianceAnalysis(cohorts: readonly (readonly (readonly number[])
     groups < 2
       ? null
       : effectOf({
-          ...common,
           effect: sums.between,
           error: dotOf(sums.residuals, sums.residuals),
           df: [groups - 1, n - groups],
+          epsilon: null,
+          scale,
         });
   if (conditions < 2) return { n, within: null, between, interaction: null };
 
@@ -128,11 +127,11 @@ export function varianceAnalysis(cohorts: readonly (readonly (readonly number[])
     squaresOf(cohorts.map((members) => members.map((values) => dotOf(values, contrast)))),
   );
   const residuals = parts.map((part) => part.residuals);
-  const error = residuals.reduce((sum, one) => sum + dotOf(one, one), 0);
+  const error = sumOf(residuals.map((one) => dotOf(one, one)));
   const epsilon = error <= constantBelow * scale ? null : greenhouseGeisser(residuals);
   const effect = (squares: (part: (typeof parts)[number]) => number, df: number) =>
     effectOf({
-      effect: parts.reduce((sum, part) => sum + squares(part), 0),
+      effect: sumOf(parts.map(squares)),
       error,
       df: [df * (conditions - 1), (n - groups) * (conditions - 1)],
       epsilon,

@@ -1,6 +1,6 @@
 import { noncentralityOfT } from './noncentral';
 import { approximateP, cubesOf, exactBelow, type RankTest, rankBiserialInterval, ranksOf } from './ranks';
-import { confidence, criticalT, deviationOf, meanOf, roundingOf, type TTest, twoSidedP } from './summaries';
+import { confidence, criticalT, deviationOf, meanOf, roundingOf, sumOf, type TTest, twoSidedP } from './summaries';
 
 function refuseEmpty(first: readonly number[], second: readonly number[]): void {
   if (first.length === 0 || second.length === 0) throw new Error('two groups: one of them is empty');
@@ -68,7 +68,7 @@ export function rankSumCounts(first: number, second: number): readonly number[] 
 /** Returns a function from W to its exact two-sided p, which counts once for all W. */
 function exactPs(first: number, second: number): (w: number) => number {
   const counts = rankSumCounts(first, second);
-  const all = counts.reduce((sum, count) => sum + count, 0);
+  const all = sumOf(counts);
   let sum = 0;
   const upTo = counts.map((count) => {
     sum += count;
@@ -88,7 +88,7 @@ export function rankSumTest(first: readonly number[], second: readonly number[])
   refuseEmpty(first, second);
   const [m, n] = [first.length, second.length];
   const { ranks, ties } = ranksOf([...first, ...second]);
-  const w = ranks.slice(0, m).reduce((sum, rank) => sum + rank, 0) - (m * (m + 1)) / 2;
+  const w = sumOf(ranks.slice(0, m)) - (m * (m + 1)) / 2;
   const effect = (2 * w) / (m * n) - 1;
   const exact = ties.length === 0 && m < exactBelow && n < exactBelow;
   const effectInterval = rankBiserialInterval(effect, Math.sqrt((m + n + 1) / (3 * m * n)));

@@ -83,3 +83,13 @@ export function signedRankCdf(v: number, n: number): number {
   }
   return ways.subarray(0, Math.floor(v) + 1).reduce((total, share) => total + share, 0);
 }
+
+/** Returns a function that computes each value once. */
+export function cached(compute: (at: number) => number): (at: number) => number {
+  const known = new Map<number, number>();
+  return (at) => {
+    const value = known.get(at) ?? compute(at);
+    known.set(at, value);
+    return value;
+  };
+}

@@ -1,5 +1,5 @@
 import { bisect } from 'threepoint/core/math/bisection';
-import { incompleteBeta, normalCdf } from './distributions';
+import { cached, incompleteBeta, normalCdf } from './distributions';
 import { confidence, type Interval } from './summaries';
 
 /** The confidence of the interval of a share of variance, which is one-sided. */
@@ -12,15 +12,6 @@ const halvings = 80;
 export const fTail = (f: number, df1: number, df2: number): number =>
   f <= 0 ? 1 : incompleteBeta(df2 / (df2 + df1 * f), df2 / 2, df1 / 2);
 
-/** Caches a function of whole numbers, because the search for a noncentrality repeats its arguments. */
-function cached(value: (index: number) => number): (index: number) => number {
-  const values: number[] = [];
-  return (index) => {
-    values[index] ??= value(index);
-    return values[index];
-  };
-}
-
 /**
  * Returns the distribution function at t of the noncentral t with df degrees of freedom, as a function of the
  * noncentrality (Lenth 1989, AS 243).
@@ -31,6 +22,7 @@ export function noncentralT(t: number, df: number): (noncentrality: number) => n
     return (noncentrality) => 1 - mirrored(-noncentrality);
   }
   const x = (t * t) / (t * t + df);
+  // The search for a noncentrality repeats the arguments.
   const even = cached((j) => incompleteBeta(x, j + 0.5, df / 2));
   const odd = cached((j) => incompleteBeta(x, j + 1, df / 2));
   return (noncentrality) => {

@@ -1,8 +1,9 @@
 import { createNormalRandom } from 'threepoint/core/math/random';
 import { rankSumPs, standardError } from './between-tests';
+import { cached } from './distributions';
 import { signedRankP } from './paired-tests';
 import { ranksOf } from './ranks';
-import { criticalT, deviationOf, meanOf, twoSidedP } from './summaries';
+import { criticalT, deviationOf, meanOf, sumOf, twoSidedP } from './summaries';
 
 /** A planned study of two conditions or two cohorts. */
 export interface PlannedTest {
@@ -35,16 +36,6 @@ interface Finding {
   readonly wilcoxon: boolean;
 }
 
-/** Caches the p of each value of a statistic. */
-function cached(pOf: (statistic: number) => number): (statistic: number) => number {
-  const known = new Map<number, number>();
-  return (statistic) => {
-    const p = known.get(statistic) ?? pOf(statistic);
-    known.set(statistic, p);
-    return p;
-  };
-}
-
 /** Drawn values are not rounded, since the p of a statistic holds without ties. */
 const untied = 0;
 
@@ -68,7 +59,7 @@ function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => n
     const { error, df } = standardError([deviationOf(first) ** 2, deviationOf(second) ** 2], [n, n]);
     const t = (meanOf(first) - meanOf(second)) / error;
     const { ranks } = ranksOf([...first, ...second], untied);
-    const w = ranks.slice(0, n).reduce((sum, rank) => sum + rank, 0) - (n * (n + 1)) / 2;
+    const w = sumOf(ranks.slice(0, n)) - (n * (n + 1)) / 2;
     return { t: twoSidedP(t, df) <= alpha, wilcoxon: pOf(w) <= alpha };
   };
 }

@@ -1,6 +1,6 @@
 import { gammaTail } from './distributions';
 import { cubesOf, ranksOf } from './ranks';
-import { roundingOf } from './summaries';
+import { roundingOf, sumOf } from './summaries';
 
 /** A test of several conditions or cohorts by ranks, by its χ² approximation. */
 export interface RankAnalysis {
@@ -24,12 +24,12 @@ export function friedmanTest(participants: readonly (readonly number[])[]): Rank
   if (n === 0 || k < 2) throw new Error("Friedman's test needs participants and two conditions");
   const rounding = roundingOf(participants.flat());
   const ranked = participants.map((own) => ranksOf(own, rounding));
-  const sums = Array.from({ length: k }, (_, at) => ranked.reduce((sum, { ranks }) => sum + (ranks[at] as number), 0));
-  const spread = n * k * (k + 1) - ranked.reduce((sum, { ties }) => sum + cubesOf(ties), 0) / (k - 1);
+  const sums = Array.from({ length: k }, (_, at) => sumOf(ranked.map(({ ranks }) => ranks[at] as number)));
+  const spread = n * k * (k + 1) - sumOf(ranked.map(({ ties }) => cubesOf(ties))) / (k - 1);
   const df = k - 1;
   if (spread === 0) return { chiSquared: null, df, p: null, effect: null };
   const expected = (n * (k + 1)) / 2;
-  const chiSquared = (12 * sums.reduce((sum, value) => sum + (value - expected) ** 2, 0)) / spread;
+  const chiSquared = (12 * sumOf(sums.map((value) => (value - expected) ** 2))) / spread;
   return { chiSquared, df, p: upperTail(chiSquared, df), effect: chiSquared / (n * df) };
 }
 
@@ -46,7 +46,7 @@ export function kruskalWallisTest(cohorts: readonly (readonly number[])[]): Rank
   let start = 0;
   let squares = 0;
   for (const { length } of cohorts) {
-    const sum = ranks.slice(start, start + length).reduce((total, rank) => total + rank, 0);
+    const sum = sumOf(ranks.slice(start, start + length));
     squares += (sum * sum) / length;
     start += length;
   }

@@ -35,13 +35,15 @@ export interface TTest {
   readonly dInterval: Interval | null;
 }
 
+export const sumOf = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0);
+
 /** Returns the arithmetic mean, NaN for no values. */
-export const meanOf = (values: readonly number[]) => values.reduce((sum, value) => sum + value, 0) / values.length;
+export const meanOf = (values: readonly number[]): number => sumOf(values) / values.length;
 
 /** Returns the standard deviation of the sample, divided by n − 1; NaN for fewer than two values. */
 export function deviationOf(values: readonly number[]): number {
   const mean = meanOf(values);
-  return Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (values.length - 1));
+  return Math.sqrt(sumOf(values.map((value) => (value - mean) ** 2)) / (values.length - 1));
 }
 
 /** Returns the t between −t and t of which this share of Student's distribution lies. */

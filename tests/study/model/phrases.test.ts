@@ -1,5 +1,4 @@
-import type { Phrase } from 'threepoint-study/model/phrases/catalogue';
-import { english } from 'threepoint-study/model/phrases/english';
+import { english, type Phrase } from 'threepoint-study/model/phrases/english';
 import { german } from 'threepoint-study/model/phrases/german';
 import {
   missingKeys,

@@ -5,6 +5,7 @@ import {
   begin,
   clockText,
   elapsedSeconds,
+  isLater,
   remainingSeconds,
   reported,
   resumed,
@@ -49,7 +50,9 @@ describe('a session', () => {
 
   test('does not take consent to another text', () => {
     const one = session(schedule);
-    expect(one.tell({ type: 'consent', version: 'old', motion: false })).toContain('version');
+    expect(one.tell({ type: 'consent', version: 'old', motion: false })).toBe(
+      `version: consent was given to text old, but the study shows ${schedule.consentVersion}`,
+    );
     expect(one.step.kind).toBe('consent');
   });
 
@@ -384,6 +387,18 @@ describe('a stored session', () => {
     ['with a broken clock', { since: 'noon' }, 'since: '],
   ])('%s is refused', (_, change, message) => {
     expect(() => resumed(schedule, JSON.stringify({ ...begin(schedule), ...change }))).toThrow(message);
+  });
+
+  test('is later than one at an earlier step, and later still once its block is voided', () => {
+    const one = session(schedule);
+    const early = one.progress;
+    one.doUntil(({ kind }) => kind === 'questionnaire');
+    const late = one.progress;
+    expect(isLater(schedule, late, early)).toBe(true);
+    expect(isLater(schedule, early, late)).toBe(false);
+    expect(isLater(schedule, late, late)).toBe(false);
+    one.tell({ type: 'void-block', reason: 'the phone rang', repeat: true });
+    expect(isLater(schedule, one.progress, late)).toBe(true);
   });
 
   test('that is no JSON is refused', () => {

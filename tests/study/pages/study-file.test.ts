@@ -55,7 +55,7 @@ test.each<[string, Uint8Array, RegExp]>([
 
 test('the table of comparisons has a row per question and full precision, and says that it is simulated', () => {
   const { comparisons } = compareAnswers(answersIn(records, plan));
-  const facts = { family: 'explored', simulated: true, aboutOf: () => '', isPlanned: () => false } as const;
+  const facts = { family: 'explored', simulated: true, plan } as const;
   const csv = tidyCsv(conditionsTable('answers', [{ sides: ['learned', 'ik'], comparisons }], facts))
     .trimEnd()
     .split('\r\n');

@@ -10,8 +10,8 @@ import { visitor } from '../../rooms/client/people';
 import { testSecret, until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
+import { experimenter as experimenterToken } from '../server/running-studies';
 
-const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const trial = { step: 'ball/1/trial-1', run: 1 };
 const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
 

@@ -1,5 +1,4 @@
 import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { isLater } from 'threepoint-study/model/progress/progress';
 import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
 import { calibration, device, fillDevice, toTheFirstQuestion, toTheFirstRest } from './participant-device';
@@ -177,22 +176,6 @@ test('a session that an older page kept follows no command again', async () => {
   const second = await reload();
   await second.exchange();
   expect(second.progress.paused).toBe(false);
-});
-
-test('what the server knows later than a device with full storage is where the session goes on', async () => {
-  const server = await studyServer();
-  const { store } = server;
-  const { first } = await device(server);
-  const early = first.progress;
-  toTheFirstQuestion(first);
-  await first.exchange();
-  const known = store.places.progress('paper', 'P01');
-  if (!known) throw new Error('nothing was reported');
-  expect(isLater(first.schedule, known, early)).toBe(true);
-  expect(isLater(first.schedule, early, known)).toBe(false);
-  expect(isLater(first.schedule, known, known)).toBe(false);
-  first.apply({ type: 'void-block', reason: 'the phone rang', repeat: true });
-  expect(isLater(first.schedule, first.progress, known)).toBe(true);
 });
 
 test('a record that the server refuses is reported and kept, and does not hold up the others', async () => {

@@ -5,7 +5,8 @@ import { screenOf, uploadStatusText } from 'threepoint-study/participant/screens
 import type { ScreenActions, StudySituation } from 'threepoint-study/participant/screens/study-situation';
 import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
-import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
+import { aWomanOf26, paperPlan } from '../model/studies';
+import { toTheFirstRest } from './participant-device';
 
 const plan = paperPlan();
 const consent = { type: 'consent', version: plan.consent.version, motion: false } as const;
@@ -57,18 +58,11 @@ function participant(...events: readonly ProgressEvent[]) {
 
 /** A participant who has played the practice and the first round and sits before the questions. */
 function beforeTheQuestions() {
-  const one = participant(consent, demographics, measured);
-  for (let step = 0; one.session.step.kind !== 'questionnaire' && step < 20; step++) {
-    if (one.session.step.kind === 'calibration') one.apply(measured);
-    else if (one.session.step.kind === 'rest') {
-      one.pass(one.session.step.seconds);
-      one.apply({ type: 'tick' });
-    } else {
-      one.apply({ type: 'start' });
-      one.pass(42);
-      one.apply({ type: 'trial-finished', outcome: outcomeOf() });
-    }
-  }
+  const one = participant();
+  toTheFirstRest(one.session);
+  one.pass(60);
+  one.apply({ type: 'tick' });
+  expect(one.session.step.kind).toBe('questionnaire');
   return one;
 }
 

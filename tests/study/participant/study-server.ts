@@ -8,15 +8,13 @@ import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
-import { studiesInThisThread } from '../server/running-studies';
+import { experimenter, studiesInThisThread } from '../server/running-studies';
 
 /** The place of the first participant of the paper's study. */
 export const place = { study: 'paper', participant: 'P01' } as const;
 
 /** The contents of records by kind. */
 type Bodies = { readonly [One in StudyRecord as One['kind']]: One['body'] };
-
-const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 /**
  * The real server with the paper's study, changed or not, on a port; it can be taken away and put back on the same
@@ -44,7 +42,7 @@ export async function studyServer(changes: Partial<StudyPlan> = {}) {
     origin,
     plan,
     store,
-    experimenter: createExperimenterClient(experimenterToken, origin),
+    experimenter: createExperimenterClient(experimenter, origin),
     /** What the link of P01 says. */
     invitation: store.overview(plan.id, 1e9)[0]?.invitation as string,
     stop,

@@ -1,7 +1,6 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { parseArgs } from 'node:util';
 import { ValidationError } from 'threepoint/core/validation/validation';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { readSoftwareVersion } from 'threepoint-http/software-version';
@@ -18,6 +17,18 @@ import { effectsInWords, modelsWith, simulatedPlan, simulateStudy } from '../../
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 /** The start of the first simulated participant, a fixed day so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
+
+/** The options of the npm script study:simulate. */
+interface Options {
+  /** The full path of the folder for the files. */
+  readonly out: string;
+  /** The full path of the plan. */
+  readonly plan: string;
+  readonly participants?: string;
+  readonly seed?: string;
+  readonly effect?: readonly string[];
+  readonly 'score-effect'?: readonly string[];
+}
 
 /** Throws a ValidationError with the name of the option. */
 function wholeNumber(name: string, given: string | undefined): number | null {
@@ -89,14 +100,8 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
   return lines;
 }
 
-function run(): void {
-  const text = { type: 'string' } as const;
-  const several = { type: 'string', multiple: true } as const;
-  const { values } = parseArgs({
-    options: { participants: text, out: text, seed: text, plan: text, effect: several, 'score-effect': several },
-  });
+function run(values: Options): void {
   const { out, plan: planFile } = values;
-  if (!out || !planFile) throw new ValidationError('', 'both --out and --plan are needed');
   const participants = wholeNumber('participants', values.participants);
   const givenSeed = wholeNumber('seed', values.seed);
   if (existsSync(out) && readdirSync(out).length > 0) {
@@ -153,10 +158,9 @@ function run(): void {
 
 try {
   await loadStudyPlugins(process.env);
-  run();
+  run(JSON.parse(process.argv[2] ?? '{}'));
 } catch (error) {
-  const known = error instanceof ValidationError || error instanceof ConfigurationError;
-  if (!known && !(error instanceof TypeError && 'code' in error)) throw error;
-  console.error((error as Error).message);
+  if (!(error instanceof ValidationError || error instanceof ConfigurationError)) throw error;
+  console.error(error.message);
   process.exitCode = 1;
 }

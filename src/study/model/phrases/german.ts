@@ -1,4 +1,4 @@
-import type { Catalogue } from './catalogue';
+import type { Catalogue } from './english';
 
 /** The German phrases of the page. */
 export const german = {

@@ -1,7 +1,6 @@
 import { text, ValidationError } from 'threepoint/core/validation/validation';
 import * as v from 'valibot';
-import type { GivenPhrases, Phrase, PhraseKey } from './catalogue';
-import { english } from './english';
+import { english, type GivenPhrases, type Phrase, type PhraseKey } from './english';
 import { languageTag } from './localized-text';
 import { phraseKeys, placeholdersIn } from './phrases';
 

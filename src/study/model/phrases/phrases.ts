@@ -1,5 +1,4 @@
-import type { Catalogue, GivenPhrases, PhraseKey } from './catalogue';
-import { english } from './english';
+import { type Catalogue, english, type GivenPhrases, type PhraseKey } from './english';
 import { german } from './german';
 
 type TextsOf<Said> = Said extends string ? Said : Said[keyof Said];

@@ -4,7 +4,6 @@ import { isPlayed, type PlayedStep, type Schedule, type StudyStep, trialOf } fro
 import type { Answer } from '../questionnaires/question-kind';
 import { checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';
 import { reachedRule } from '../questionnaires/stopping-rule';
-import { checkedConsent } from '../records/consent';
 import { checkedDemographics } from '../records/demographics';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from '../records/study-record';
 import { checkedOutcome, type TrialOutcome } from '../records/trial-log';
@@ -165,11 +164,12 @@ class SessionAtEvent {
 
 function consent(session: SessionAtEvent, { version, motion, language }: EventOf<'consent'>): EventResult | null {
   if (session.step.kind !== 'consent') return null;
+  const shown = session.schedule.consentVersion;
+  if (version !== shown) {
+    throw new ValidationError('version', `consent was given to text ${version}, but the study shows ${shown}`);
+  }
   const chosen = language === undefined ? {} : { language };
-  const body = checkedConsent(
-    { version, given: true, motion, at: session.now, ...chosen },
-    session.schedule.consentVersion,
-  );
+  const body = { version, given: true, motion, at: session.now, ...chosen } as const;
   return session.moveOn({ ...session.progress, motion, ...chosen }, [
     { ...session.recordFields, kind: 'consent', id: 'consent', body },
   ]);

@@ -12,7 +12,6 @@ import * as v from 'valibot';
 import { languageTag } from '../phrases/localized-text';
 import type { StudyPlan } from '../plan/plan';
 import { checkedAnswers, questionnaireNamed } from '../questionnaires/questionnaires';
-import { consentSchema } from './consent';
 import { demographicsSchema } from './demographics';
 import { calibrationEntries, outcomeSchema } from './trial-log';
 
@@ -68,6 +67,19 @@ const eventSchema = v.variant('type', [
   v.object({ type: v.literal('reload') }),
   v.object({ type: v.literal('finished') }),
 ]);
+
+/** The consent to a version of the text. A refusal is not recorded. */
+const consentSchema = v.object({
+  /** The version of the text that was shown. */
+  version: text(40),
+  given: v.literal(true, 'nothing is recorded without consent'),
+  /** Whether tracking frames may be kept. */
+  motion: v.boolean('expected true or false'),
+  /** The time on the participant's device, in seconds since 1970. */
+  at: numberBetween(0, 1e11),
+  /** The language of the text; absent: the study has only one. */
+  language: v.exactOptional(languageTag),
+});
 
 /** The types of events in a session, apart from questions and trials. */
 export const eventTypes = eventSchema.options.map(({ entries }) => entries.type.literal);

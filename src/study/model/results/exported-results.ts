@@ -1,6 +1,5 @@
 import { cohortsByParticipant } from '../plan/allocation';
-import { questionnairesOf, type StudyPlan } from '../plan/plan';
-import type { Questionnaire } from '../questionnaires/questionnaires';
+import type { StudyPlan } from '../plan/plan';
 import type { StudyRecord } from '../records/study-record';
 import { answersIn, scalesIn, trialsIn } from '../tables/study-tables';
 import type { Table } from '../tables/tidy-csv';
@@ -8,15 +7,8 @@ import { compareAll } from './compare-all';
 import { type ComparedCohorts, compareCohorts } from './compare-cohorts';
 import { compareConditions } from './compare-conditions';
 import { frameTimes } from './frame-times';
-import { answerMeasures, type CohortOf, isPlanned, type Measure, type MeasureName, scoreMeasures } from './measures';
-import { cohortsTable, conditionsTable, frameTimeTable, overallTable, type TableFacts } from './result-tables';
-
-/** Returns the subject of a question or the name of a scale; empty: none. */
-export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Pick<MeasureName, 'asked'>): string {
-  const found = asked.find(({ id }) => id === of?.questionnaire);
-  const scale = found?.scales.find(({ id }) => id === of?.question);
-  return scale?.label ?? found?.questions.find(({ id }) => id === of?.question)?.about ?? '';
-}
+import { answerMeasures, type CohortOf, isPlanned, type Measure, scoreMeasures } from './measures';
+import { cohortsTable, conditionsTable, frameTimeTable, overallTable } from './result-tables';
 
 /** Returns a function from participants to the cohorts of the plan; empty: it has none. */
 export function cohortLookup(plan: StudyPlan): CohortOf {
@@ -24,15 +16,18 @@ export function cohortLookup(plan: StudyPlan): CohortOf {
   return (participant) => cohorts.get(participant)?.id ?? '';
 }
 
-/** The measures of a study by families of Holm's correction in exploratory analyses. */
-export interface StudyMeasures {
-  readonly answers: readonly Measure[];
-  readonly scales: readonly Measure[];
-  readonly points: readonly Measure[];
-  readonly percent: readonly Measure[];
-  /** The measures that the plan names: answers, scales and points, a separate family. */
-  readonly planned: readonly Measure[];
+/** A part of the results for each family of Holm's correction. */
+export interface ByFamily<T> {
+  readonly answers: T;
+  readonly scales: T;
+  readonly points: T;
+  readonly percent: T;
+  /** The answers, scales and points that the plan names; all other families are exploratory. */
+  readonly planned: T;
 }
+
+/** The measures of a study. */
+export type StudyMeasures = ByFamily<readonly Measure[]>;
 
 /** Returns the measures of a study; throws if simulated records and records of people are mixed. */
 export function measuresIn(records: readonly StudyRecord[], plan: StudyPlan): StudyMeasures {
@@ -79,16 +74,10 @@ const cohortComparisonsOf = (plan: StudyPlan): readonly ComparedCohorts[] =>
  */
 export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
   const measures = measuresIn(records, plan);
-  const asked = questionnairesOf(plan);
-  const factsFor = (family: TableFacts['family']): TableFacts => ({
-    family,
-    simulated: records[0]?.simulated ?? false,
-    aboutOf: (one) => aboutIn(asked, one),
-    isPlanned: (one) => isPlanned(one, plan),
-  });
+  const simulated = records[0]?.simulated ?? false;
   /** Returns three tables of the same measures; p is adjusted within each family. */
   const tablesOf = (name: string, families: readonly (readonly Measure[])[]): readonly Table[] => {
-    const facts = factsFor(name === 'planned' ? 'planned' : 'explored');
+    const facts = { family: name === 'planned' ? 'planned' : 'explored', simulated, plan } as const;
     const pairs = pairsOf(plan.conditions).flatMap((sides) =>
       families.map((family) => ({ sides, comparisons: compareConditions(family, sides).comparisons })),
     );
@@ -106,6 +95,6 @@ export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): 
     ...tablesOf('answers', [measures.answers]),
     ...tablesOf('scales', [measures.scales]),
     ...tablesOf('scores', [measures.points, measures.percent]),
-    frameTimeTable(frameTimes(records, cohortLookup(plan)), factsFor('explored')),
+    frameTimeTable(frameTimes(records, cohortLookup(plan)), { simulated }),
   ];
 }

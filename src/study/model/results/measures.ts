@@ -1,5 +1,6 @@
 import { meanOf } from '../../statistics/summaries';
 import type { StudyPlan } from '../plan/plan';
+import { questionnaireNamed } from '../questionnaires/questionnaires';
 import { type AnswerRow, refuseMixture, type TrialRow } from '../tables/study-tables';
 
 /** A participant or an answer that is left out of the results, and the reason. */
@@ -26,6 +27,22 @@ export interface MeasureName {
 export function isPlanned({ of, asked, unit }: MeasureName, { planned = [] }: Pick<StudyPlan, 'planned'>): boolean {
   const name = asked ? `${asked.task}/${asked.questionnaire}/${asked.question}` : `${of}/score`;
   return unit !== 'percent' && planned.includes(name);
+}
+
+/** Returns the questionnaire of a measure, and the question or scale of it that is measured; nothing for scores. */
+export function askedOf({ asked }: Pick<MeasureName, 'asked'>, plan: Pick<StudyPlan, 'questionnaires'>) {
+  const questionnaire = asked ? questionnaireNamed(plan, asked.questionnaire) : undefined;
+  return {
+    questionnaire,
+    question: questionnaire?.questions.find(({ id }) => id === asked?.question),
+    scale: questionnaire?.scales.find(({ id }) => id === asked?.question),
+  };
+}
+
+/** Returns the subject of a question or the name of a scale; empty: none. */
+export function aboutOf(measured: MeasureName, plan: Pick<StudyPlan, 'questionnaires'>): string {
+  const { question, scale } = askedOf(measured, plan);
+  return scale?.label ?? question?.about ?? '';
 }
 
 /** The values of a measure. */

@@ -1,10 +1,11 @@
 import type { Effect, VarianceAnalysis } from '../../statistics/analysis-of-variance';
 import type { Interval } from '../../statistics/summaries';
+import type { StudyPlan } from '../plan/plan';
 import { boolean, type Cell, type Column, number, type Table, text } from '../tables/tidy-csv';
 import type { OverallComparison } from './compare-all';
 import type { Comparison } from './compare-conditions';
 import type { FrameTimeRow } from './frame-times';
-import type { MeasureName } from './measures';
+import { aboutOf, isPlanned, type MeasureName } from './measures';
 import { checkedPaperRows } from './paper-tables';
 
 /** The facts that tables of results state next to their figures. */
@@ -12,9 +13,7 @@ export interface TableFacts {
   /** planned: p is adjusted over the measures that the plan names only. */
   readonly family: 'planned' | 'explored';
   readonly simulated: boolean;
-  /** Returns the subject of a question in a word or two; empty: none. */
-  readonly aboutOf: (one: MeasureName) => string;
-  readonly isPlanned: (one: MeasureName) => boolean;
+  readonly plan: StudyPlan;
 }
 
 const simulatedColumn = boolean(
@@ -45,12 +44,12 @@ const measureColumns: readonly Column[] = [
 ];
 
 /** Returns the first cells of every row. */
-const measureCells = (one: MeasureName, { simulated, aboutOf, isPlanned }: TableFacts) => ({
+const measureCells = (one: MeasureName, { simulated, plan }: TableFacts) => ({
   simulated,
   of: one.of,
-  about: aboutOf(one),
+  about: aboutOf(one, plan),
   unit: one.unit,
-  planned: isPlanned(one),
+  planned: isPlanned(one, plan),
 });
 
 /** Returns the columns of the ends of an interval; `none` says when both are empty. */

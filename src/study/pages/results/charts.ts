@@ -15,6 +15,10 @@ export interface Chart {
   readonly domain: readonly [number, number];
   /** The unit that has one value each. */
   readonly each: 'participant' | 'group';
+  /** The name of its files, without extension. */
+  readonly file: string;
+  /** A note after the caption of the means of two conditions. */
+  readonly note: string;
 }
 
 /** The labels of two conditions or cohorts, and whether the pictures are marked as simulated. */

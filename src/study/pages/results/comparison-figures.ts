@@ -4,18 +4,12 @@ import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
+import { askedOf } from '../../model/results/measures';
 import { barChart, type Chart, figure, pairedChart, stripChart } from './charts';
 import type { ShownComparison } from './shown-results';
 
-/** A chart of the page with the name of its files. */
-interface NamedChart extends Chart {
-  readonly file: string;
-  /** A note after the caption of the means of two conditions. */
-  readonly note: string;
-}
-
 /** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
-export function chartFigures({ results, labels, between }: ShownComparison, chart: NamedChart): HTMLElement {
+export function chartFigures({ results, labels, between }: ShownComparison, chart: Chart): HTMLElement {
   const { title, note, each } = chart;
   const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
   const legend = { labels, simulated: results.study.simulated };
@@ -42,13 +36,13 @@ const paperFigures: Readonly<Record<string, string>> = {
 };
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
-export function questionCharts({ results, answers }: ShownComparison): readonly NamedChart[] {
-  const { asked } = results;
-  const [language] = languagesOf(results.study.plan);
-  const charts = new Map<string, NamedChart>();
+export function questionCharts({ results, answers }: ShownComparison): readonly Chart[] {
+  const { plan } = results.study;
+  const [language] = languagesOf(plan);
+  const charts = new Map<string, Chart>();
   for (const one of answers) {
-    const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
-    const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
+    const { questionnaire, question } = askedOf(one, plan);
+    const form = question?.answer;
     const range = form && questionKind(form).range(form);
     if (!questionnaire || !one.asked || !range) continue;
     const axis = axisOf(form, range, language);
@@ -75,12 +69,10 @@ export function questionCharts({ results, answers }: ShownComparison): readonly 
 }
 
 /** Returns a chart for each scale, with all tasks side by side. */
-export function scaleCharts({ results, scales }: ShownComparison): readonly NamedChart[] {
-  const { asked } = results;
-  const charts = new Map<string, NamedChart>();
+export function scaleCharts({ results, scales }: ShownComparison): readonly Chart[] {
+  const charts = new Map<string, Chart>();
   for (const one of scales) {
-    const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
-    const scale = questionnaire?.scales.find(({ id }) => id === one.asked?.question);
+    const { questionnaire, scale } = askedOf(one, results.study.plan);
     if (!questionnaire || !scale) continue;
     const key = `${questionnaire.id}-${scale.id}`;
     const domain = scaleRange(questionnaire, scale);
@@ -99,7 +91,7 @@ export function scaleCharts({ results, scales }: ShownComparison): readonly Name
 }
 
 /** Returns a chart for each task that has scores. */
-export const scoreCharts = ({ results, percent }: ShownComparison): readonly NamedChart[] =>
+export const scoreCharts = ({ results, percent }: ShownComparison): readonly Chart[] =>
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);

@@ -21,7 +21,7 @@ const frameTimeHeads = [
 ] as const;
 
 /** Returns the work per frame, separately for each cohort. */
-export function frameTimeParts({ study, titleOf, labelOf, fileOf, factsOf }: ShownResults): readonly Node[] {
+export function frameTimeParts({ study, titleOf, labelOf, fileOf }: ShownResults): readonly Node[] {
   const { plan, records } = study;
   const times = frameTimes(records, cohortLookup(plan));
   const several = plan.cohorts !== undefined;
@@ -48,6 +48,6 @@ export function frameTimeParts({ study, titleOf, labelOf, fileOf, factsOf }: Sho
         ],
       })),
     ),
-    bar(csvButton(frameTimeTable(times, factsOf('explored')), fileOf('frame-times'))),
+    bar(csvButton(frameTimeTable(times, study), fileOf('frame-times'))),
   ];
 }

@@ -1,7 +1,6 @@
 import { element } from 'threepoint-ui/element';
 import type { OverallComparison } from '../../model/results/compare-all';
 import { hasOverallAnalysis, overallComparisons } from '../../model/results/exported-results';
-import type { Measure } from '../../model/results/measures';
 import { effectsOf, overallTable } from '../../model/results/result-tables';
 import { type TableRow, tableNode } from '../table';
 import { bar, csvButton, fixed, meanCell, measureCell, none, plannedNote, pText } from './result-cells';
@@ -50,54 +49,45 @@ function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean):
   });
 }
 
-/** Returns the table of one family of tests with the participants that are left out. */
-function familyParts(
-  results: ShownResults,
-  { file, caption }: { readonly file: string; readonly caption: (count: number) => string },
-  measures: readonly Measure[],
-): readonly Node[] {
-  const { study, factsOf, fileOf } = results;
-  const compared = overallComparisons(measures, study.plan);
-  if (compared.length === 0) return [];
-  const planned = file.startsWith('planned');
-  const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
-  return [
-    tableNode(
-      caption(compared.length),
-      heads,
-      compared.flatMap((one) => rowsOf(results, one, !planned)),
-      'dense',
-    ),
-    bar(csvButton(overallTable(file, compared, factsOf(planned ? 'planned' : 'explored')), fileOf(file))),
-    ...(leftOut.length === 0
-      ? []
-      : [
-          element(
-            'p',
-            { class: 'soft' },
-            `Left out of some analyses because a value is missing:  ${leftOut.join(', ')}.`,
-          ),
-        ]),
-    ...(planned ? [plannedNote()] : []),
-  ];
-}
-
 const analyses = 'analyses of variance, and tests by ranks';
 
 /**
- * Returns the analyses of all conditions and cohorts at once; nothing for two conditions without cohorts, which are
- * compared in pairs.
+ * Returns the analyses of all conditions and cohorts at once, with the participants that are left out; nothing for two
+ * conditions without cohorts, which are compared in pairs.
  */
 export function overallResults(results: ShownResults): readonly Node[] {
-  const { study, measures } = results;
+  const { study, measures, fileOf } = results;
   if (!hasOverallAnalysis(study.plan)) return [];
-  const explored = (name: string) => () => `Exploratory: ${name}: ${analyses}`;
-  const plannedCaption = (count: number) => `Planned: ${analyses}; Holm over these ${count} alone`;
+  const families = [
+    ['planned', measures.planned, ''],
+    ['answers', measures.answers, 'questions'],
+    ['scales', measures.scales, 'scales'],
+    ['scores', measures.points, 'scores in points'],
+  ] as const;
+  const parts = families.flatMap(([name, measured, what]) => {
+    const compared = overallComparisons(measured, study.plan);
+    if (compared.length === 0) return [];
+    const planned = name === 'planned';
+    const file = `${name}-overall`;
+    const table = overallTable(file, compared, { ...study, family: planned ? 'planned' : 'explored' });
+    const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
+    const missing = `Left out of some analyses because a value is missing:  ${leftOut.join(', ')}.`;
+    return [
+      tableNode(
+        planned
+          ? `Planned: ${analyses}; Holm over these ${compared.length} alone`
+          : `Exploratory: ${what}: ${analyses}`,
+        heads,
+        compared.flatMap((one) => rowsOf(results, one, !planned)),
+        'dense',
+      ),
+      bar(csvButton(table, fileOf(file))),
+      ...(leftOut.length === 0 ? [] : [element('p', { class: 'soft' }, missing)]),
+      ...(planned ? [plannedNote()] : []),
+    ];
+  });
   return [
     element('h2', {}, study.plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
-    ...familyParts(results, { file: 'planned-overall', caption: plannedCaption }, measures.planned),
-    ...familyParts(results, { file: 'answers-overall', caption: explored('questions') }, measures.answers),
-    ...familyParts(results, { file: 'scales-overall', caption: explored('scales') }, measures.scales),
-    ...familyParts(results, { file: 'scores-overall', caption: explored('scores in points') }, measures.points),
+    ...parts,
   ];
 }

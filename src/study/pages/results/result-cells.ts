@@ -1,7 +1,7 @@
 import { offerDownload } from 'threepoint-ui/downloads';
 import { button, element } from 'threepoint-ui/element';
 import { shippedQuestionnaires } from '../../model/questionnaires/questionnaires';
-import type { MeasureName } from '../../model/results/measures';
+import { isPlanned, type MeasureName } from '../../model/results/measures';
 import { type Table, tidyCsv } from '../../model/tables/tidy-csv';
 import type { Interval } from '../../statistics/summaries';
 import type { ShownResults } from './shown-results';
@@ -18,12 +18,12 @@ export const meanCell = (mean: number | null | undefined, between: Interval | nu
   element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
 
 /** Returns the name of a measure, marked if it is planned and the table also has others. */
-export const measureCell = ({ nameOf, factsOf }: ShownResults, measure: MeasureName, tagged: boolean): Node =>
+export const measureCell = ({ nameOf, study }: ShownResults, measure: MeasureName, tagged: boolean): Node =>
   element(
     'span',
     {},
     nameOf(measure),
-    ...(tagged && factsOf('explored').isPlanned(measure)
+    ...(tagged && isPlanned(measure, study.plan)
       ? [' ', element('span', { class: 'badge', title: 'Its planned test is in the table above' }, 'planned')]
       : []),
   );

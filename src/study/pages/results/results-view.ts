@@ -2,9 +2,10 @@ import { element } from 'threepoint-ui/element';
 import { type Choice, chooser } from 'threepoint-ui/fields';
 import type { StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
-import { cohortViews } from '../../model/results/exported-results';
+import { cohortViews, hasOverallAnalysis } from '../../model/results/exported-results';
 import type { Exclusion } from '../../model/results/measures';
 import { studyTables } from '../../model/tables/study-tables';
+import { meanSummary } from '../../statistics/summaries';
 import { frameTimeParts } from './frame-time-results';
 import { overallResults } from './overall-results';
 import { bar, csvButton } from './result-cells';
@@ -44,12 +45,10 @@ function exclusionList(all: readonly Exclusion[]): readonly string[] {
 function demographicsText(records: readonly StudyRecord[]): string {
   const people = records.flatMap((record) => (record.kind === 'demographics' ? [record.body] : []));
   if (people.length === 0) return 'No participant has answered the questions about themselves yet.';
-  const ages = people.map(({ age }) => age);
-  const mean = ages.reduce((sum, age) => sum + age, 0) / ages.length;
-  const deviation = Math.sqrt(ages.reduce((sum, age) => sum + (age - mean) ** 2, 0) / Math.max(1, ages.length - 1));
+  const { mean, standardDeviation } = meanSummary(people.map(({ age }) => age));
   const count = (test: (one: (typeof people)[number]) => boolean) => people.filter(test).length;
   return (
-    `${people.length} people, ${mean.toFixed(1)} years old on average (SD ${deviation.toFixed(1)}): ` +
+    `${people.length} people, ${mean.toFixed(1)} years old on average (SD ${(standardDeviation ?? 0).toFixed(1)}): ` +
     `${count(({ gender }) => gender === 'woman')} women, ${count(({ gender }) => gender === 'man')} men, ${count(({ gender }) => gender !== 'woman' && gender !== 'man')} others or not said; ` +
     `${count(({ handedness }) => handedness === 'right')} right-handed; ` +
     `${count(({ vision }) => vision !== 'normal')} with corrected or impaired vision; ` +
@@ -111,19 +110,16 @@ function conditionParts(results: ShownResults, selection: Selection, choose: Cho
     const { answers, scales, points } = results.measures;
     return { nodes: [], excluded: [...answers, ...scales, ...points].flatMap(({ voided }) => voided) };
   }
+  const head = [
+    element('h2', {}, hasOverallAnalysis(plan) ? 'Two conditions' : 'Both conditions'),
+    ...pairChooser('condition', plan.conditions, conditions, (pair) => choose({ ...selection, conditions: pair })),
+  ];
+  if (conditions[0] === conditions[1]) {
+    const complaint = element('p', { class: 'complaint' }, 'Choose two different conditions.');
+    return { nodes: [...head, complaint], excluded: [] };
+  }
   const { nodes, excluded } = pairResults(results, conditions);
-  const choosing = pairChooser('condition', plan.conditions, conditions, (pair) =>
-    choose({ ...selection, conditions: pair }),
-  );
-  const same = conditions[0] === conditions[1];
-  return {
-    nodes: [
-      element('h2', {}, plan.conditions.length > 2 || plan.cohorts ? 'Two conditions' : 'Both conditions'),
-      ...choosing,
-      ...(same ? [element('p', { class: 'complaint' }, 'Choose two different conditions.')] : nodes),
-    ],
-    excluded: same ? [] : excluded,
-  };
+  return { nodes: [...head, ...nodes], excluded };
 }
 
 function cohortParts(results: ShownResults, selection: Selection, choose: Choose): readonly Node[] {

@@ -1,35 +1,23 @@
 import { element } from 'threepoint-ui/element';
 import { type ComparedCohorts, compareCohorts } from '../../model/results/compare-cohorts';
 import { type Comparison, compareConditions, type Results } from '../../model/results/compare-conditions';
-import type { StudyMeasures } from '../../model/results/exported-results';
-import { cohortsTable, conditionsTable } from '../../model/results/result-tables';
+import type { ByFamily } from '../../model/results/exported-results';
+import { type ComparedSides, cohortsTable, conditionsTable } from '../../model/results/result-tables';
 import { comparedTable } from './compared-tables';
 import { chartFigures, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';
 import type { ShownComparison, ShownResults } from './shown-results';
 
-type Sides = Omit<ComparedCohorts, 'conditions'> & Partial<Pick<ComparedCohorts, 'conditions'>>;
-
-/** A family of comparisons on the page: its name in files, its heading and the caption of its table. */
-interface Family {
-  readonly name: 'planned' | 'answers' | 'scales' | 'scores';
-  readonly heading: string;
-  readonly caption: string;
-  readonly comparisons: readonly Comparison[];
-  readonly figures: readonly HTMLElement[];
-}
-
 const withIntervals = 'means with 95 % confidence intervals, and tests';
 
-/** Returns the families; the exploratory ones show planned measures again. */
-function familiesOf(compared: ShownComparison): readonly Family[] {
-  const { between, planned, answers, scales, points, percent } = compared;
+/** Returns the captions of the tables; the exploratory ones show planned measures again. */
+function captionsOf({ between, planned }: ShownComparison) {
   const alone = `Holm over these ${planned.length} alone`;
   const explored = (what: string, ofPairs: string) =>
     between
       ? `Exploratory: ${what}, ${withIntervals} between participants`
       : `Exploratory: paired comparisons of the ${what}: ${ofPairs}`;
-  const captions = {
+  return {
     planned: between
       ? `Planned: ${withIntervals} between participants; ${alone}`
       : `Planned comparisons: ${withIntervals}; ${alone}`,
@@ -37,34 +25,33 @@ function familiesOf(compared: ShownComparison): readonly Family[] {
     scales: explored('scales', `${withIntervals}; Holm over the scales of this table`),
     scores: explored('scores', 'means of the blocks’ trials with 95 % confidence intervals, and tests'),
   };
+}
+
+type Sides = Omit<ComparedSides, 'comparisons'>;
+
+/** Returns the figures and the table of every family with comparisons, with buttons that save them. */
+function familyParts(compared: ShownComparison, sides: Sides): readonly Node[] {
+  const { results, between, planned, answers, scales, points, percent } = compared;
+  const captions = captionsOf(compared);
   const families = [
     ['planned', 'Planned', planned, []],
     ['answers', 'Questionnaires', answers, questionCharts(compared)],
     ['scales', 'Scales', scales, scaleCharts(compared)],
     ['scores', 'Scores', [...points, ...percent], scoreCharts(compared)],
   ] as const;
-  return families.map(([name, heading, comparisons, charts]) => ({
-    ...{ name, heading: between ? `${heading}, between cohorts` : heading, caption: captions[name], comparisons },
-    figures: charts.map((chart) => chartFigures(compared, chart)),
-  }));
-}
-
-/** Returns the figures and the table of a family with its download button. */
-function familyParts(compared: ShownComparison, sides: Sides, family: Family): readonly Node[] {
-  const { name, heading, caption, comparisons, figures } = family;
-  if (comparisons.length === 0) return [];
-  const { results, between } = compared;
-  const isPlanned = name === 'planned';
-  const file = `${name}-${between ? 'cohorts' : 'compared'}`;
-  const csv = between ? cohortsTable : conditionsTable;
-  const table = csv(file, [{ ...sides, comparisons }], results.factsOf(isPlanned ? 'planned' : 'explored'));
-  return [
-    element('h3', {}, heading),
-    ...figures,
-    comparedTable(compared, caption, comparisons),
-    bar(csvButton(table, results.fileOf(file))),
-    ...(isPlanned ? [plannedNote()] : []),
-  ];
+  return families.flatMap(([name, heading, comparisons, charts]) => {
+    if (comparisons.length === 0) return [];
+    const file = `${name}-${between ? 'cohorts' : 'compared'}`;
+    const facts = { ...results.study, family: name === 'planned' ? 'planned' : 'explored' } as const;
+    const table = (between ? cohortsTable : conditionsTable)(file, [{ ...sides, comparisons }], facts);
+    return [
+      element('h3', {}, between ? `${heading}, between cohorts` : heading),
+      ...charts.map((chart) => chartFigures(compared, chart)),
+      comparedTable(compared, captions[name], comparisons),
+      bar(csvButton(table, results.fileOf(file))),
+      ...(name === 'planned' ? [plannedNote()] : []),
+    ];
+  });
 }
 
 /** Returns two sides as they are shown: a note about them, and every family of `comparisons`. */
@@ -77,13 +64,8 @@ function twoSidedParts(
   const [first, second] = sides.sides.map(results.labelOf) as [string, string];
   const compared = { results, between: sides.conditions !== undefined, labels: { first, second }, ...comparisons };
   const note = `Differences are ${first} − ${second}, ${within}. Tests are two-sided; * marks Holm’s p below .05, adjusted over its table (scores: points and per cent separately).`;
-  return [
-    element('p', { class: 'soft' }, note),
-    ...familiesOf(compared).flatMap((family) => familyParts(compared, sides, family)),
-  ];
+  return [element('p', { class: 'soft' }, note), ...familyParts(compared, sides)];
 }
-
-type ByFamily<T> = Readonly<Record<keyof StudyMeasures, T>>;
 
 const mapFamilies = <A, B>({ answers, scales, points, percent, planned }: ByFamily<A>, of: (one: A) => B) => ({
   ...{ answers: of(answers), scales: of(scales), points: of(points), percent: of(percent), planned: of(planned) },

@@ -24,9 +24,7 @@ class PreviewPage {
   readonly #card = createStudyCard(this.#stage);
   readonly #sheet = createDrawnSheet();
   readonly #playing = element('p', { class: 'playing' });
-  #plan: StudyPlan | null = null;
   #name = '';
-  #participant = '';
   #walk: PreviewWalk | null = null;
   /** The key of the form that is on the card. A form is not rebuilt while it is filled in. */
   #builtForm = '';
@@ -66,26 +64,22 @@ class PreviewPage {
       return;
     }
     this.#name = name;
-    this.#plan = read.plan;
-    this.#begin(participantsOf(read.plan)[0] as string);
+    this.#begin(read.plan, participantsOf(read.plan)[0] as string);
   }
 
   #complain(name: string, complaints: readonly string[]): void {
     this.#name = name;
-    this.#plan = null;
     this.#walk = null;
     this.#render(complaints);
   }
 
-  #begin(participant: string): void {
-    if (!this.#plan) return;
+  #begin(plan: StudyPlan, participant: string): void {
     const before = this.#walk;
-    this.#participant = participant;
     this.#builtForm = '';
     const walk = new PreviewWalk({
-      plan: this.#plan,
+      plan,
       participant,
-      withdrawalPage: new URL(withdrawalLink(this.#plan.id), `${pageFolder()}/`).href,
+      withdrawalPage: new URL(withdrawalLink(plan.id), `${pageFolder()}/`).href,
       onChange: () => this.#render(),
     });
     this.#walk = walk;
@@ -105,7 +99,7 @@ class PreviewPage {
   #render(complaints: readonly string[] = []): void {
     const walk = this.#walk;
     this.#bar.replaceChildren(...this.#controls());
-    this.#messages.replaceChildren(...this.#words(complaints));
+    this.#messages.replaceChildren(...this.#messageNodes(complaints));
     this.#list.replaceChildren(
       ...(walk ? walk.stops.map((stop, index) => this.#stopButton(walk, index, stop.label)) : []),
     );
@@ -158,8 +152,8 @@ class PreviewPage {
         if (name) void this.#read(`${pageFolder()}/studies/${name}`);
       }),
     ];
-    if (!walk || !this.#plan) return source;
-    const plan = this.#plan;
+    if (!walk) return source;
+    const { plan } = walk;
     const at = (place: 'desk' | 'headset', label: string) =>
       button(label, () => walk.showAt(place), {
         'aria-pressed': String(walk.place === place),
@@ -168,8 +162,8 @@ class PreviewPage {
     const languages = languagesOf(plan);
     return [
       ...source,
-      chooser('Participant', participantsOf(plan).map(choiceOf), this.#participant, (participant) =>
-        this.#begin(participant),
+      chooser('Participant', participantsOf(plan).map(choiceOf), walk.participant, (participant) =>
+        this.#begin(plan, participant),
       ),
       ...(languages.length > 1
         ? [chooser('Language', languages.map(choiceOf), walk.language, (language) => walk.setLanguage(language))]
@@ -190,7 +184,7 @@ class PreviewPage {
     ];
   }
 
-  #words(complaints: readonly string[]): readonly Node[] {
+  #messageNodes(complaints: readonly string[]): readonly Node[] {
     if (complaints.length > 0) {
       const count = complaints.length === 1 ? 'One mistake' : `${complaints.length} mistakes`;
       const where = this.#name ? ` in ${this.#name}` : '';
@@ -199,22 +193,22 @@ class PreviewPage {
         element('ul', { class: 'complaints', role: 'alert' }, ...complaints.map((text) => element('li', {}, text))),
       ];
     }
-    if (!this.#plan) {
+    if (!this.#walk) {
       return [
         element('p', {}, 'Choose or drop a study file: every screen of it is shown here. Nothing is recorded or sent.'),
       ];
     }
-    const { id } = this.#plan;
-    const { played, rests, questionnaires } = durationOf(this.#plan);
+    const { plan } = this.#walk;
+    const { played, rests, questionnaires } = durationOf(plan);
     const minutes = Math.round((played + rests + questionnaires) / 60);
     return [
-      element('h2', {}, studyTitle(this.#plan)),
+      element('h2', {}, studyTitle(plan)),
       element(
         'p',
         {},
-        `${id}, from ${this.#name}: at most ${minutes} min for a participant. Nothing is recorded here.`,
+        `${plan.id}, from ${this.#name}: at most ${minutes} min for a participant. Nothing is recorded here.`,
       ),
-      ...remarksOn(this.#plan).map((remark) => element('p', { class: 'remark' }, remark)),
+      ...remarksOn(plan).map((remark) => element('p', { class: 'remark' }, remark)),
     ];
   }
 }

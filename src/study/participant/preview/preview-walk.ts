@@ -37,14 +37,14 @@ class PreviewSession implements ShownSession {
   readonly plan: StudyPlan;
   readonly simulated = false;
   readonly uploadStatus = allSaved;
-  readonly #schedule: Schedule;
+  readonly schedule: Schedule;
   readonly #drafts = new Map<string, Progress['draft']>();
   #progress: Progress;
 
   constructor(plan: StudyPlan, participant: string, language: string) {
     this.plan = plan;
-    this.#schedule = scheduleFor(plan, participant);
-    this.#progress = { ...begin(this.#schedule), motion: false, language };
+    this.schedule = scheduleFor(plan, participant);
+    this.#progress = { ...begin(this.schedule), motion: false, language };
   }
 
   get progress(): Progress {
@@ -56,7 +56,7 @@ class PreviewSession implements ShownSession {
   }
 
   get step(): StudyStep {
-    return currentStep(this.#schedule, this.#progress);
+    return currentStep(this.schedule, this.#progress);
   }
 
   /** The clock always shows the beginning of a step. */
@@ -75,7 +75,7 @@ class PreviewSession implements ShownSession {
   }
 
   apply(event: ProgressEvent): string | null {
-    const { progress, refusal } = applyEvent(this.#schedule, this.#progress, event, 0);
+    const { progress, refusal } = applyEvent(this.schedule, this.#progress, event, 0);
     if (refusal !== null) return refusal;
     this.#drafts.set(this.#progress.step, event.type === 'answer' ? progress.draft : this.#progress.draft);
     this.#progress = { ...progress, draft: this.#drafts.get(progress.step) ?? {} };
@@ -99,7 +99,6 @@ export class PreviewWalk {
   readonly #questionnaire: QuestionnaireState;
   readonly #onChange: () => void;
   readonly #actions: ScreenActions;
-  readonly #participant: string;
   readonly #withdrawalPage: string;
   #at = 0;
   #place: 'desk' | 'headset' = 'headset';
@@ -108,7 +107,6 @@ export class PreviewWalk {
 
   constructor({ plan, participant, withdrawalPage, onChange }: PreviewWalkOptions) {
     this.stops = previewStops(plan, participant);
-    this.#participant = participant;
     this.#withdrawalPage = withdrawalPage;
     this.#session = new PreviewSession(plan, participant, languagesOf(plan)[0]);
     this.#questionnaire = new QuestionnaireState(this.#session);
@@ -130,6 +128,14 @@ export class PreviewWalk {
     };
   }
 
+  get plan(): StudyPlan {
+    return this.#session.plan;
+  }
+
+  get participant(): string {
+    return this.#session.schedule.participant;
+  }
+
   get index(): number {
     return this.#at;
   }
@@ -139,7 +145,7 @@ export class PreviewWalk {
   }
 
   get language(): string {
-    return this.#session.progress.language ?? languagesOf(this.#session.plan)[0];
+    return this.#session.progress.language ?? languagesOf(this.plan)[0];
   }
 
   /** The place at which the stop is shown: most stops have only one. */
@@ -169,21 +175,18 @@ export class PreviewWalk {
 
   /** Moves to a stop by its index, clamped to the list. */
   goTo(index: number): void {
-    const { step } = this.stops[this.#nearest(index)] as PreviewStop;
+    const at = Math.min(this.stops.length - 1, Math.max(0, index));
+    const { step } = this.stops[at] as PreviewStop;
     const { paused, unwell } = this.#session.progress;
     const leaves = this.#session.step.id !== step;
     if (leaves || paused || unwell) this.#session.goTo(step);
     if (leaves) this.#questionnaire.enterStep();
-    this.#moveTo(index);
-  }
-
-  #nearest(index: number): number {
-    return Math.min(this.stops.length - 1, Math.max(0, index));
+    this.#moveTo(at);
   }
 
   /** Moves to a stop within the present step. */
   #moveTo(index: number): void {
-    this.#at = this.#nearest(index);
+    this.#at = index;
     this.#stopping = false;
     this.#questionnaire.goTo(this.stop.question);
     this.#showRefusal(null);
@@ -211,7 +214,7 @@ export class PreviewWalk {
           return null;
         };
         const { language } = this;
-        return { kind: 'consent', phrases, language, study, participant: this.#participant, agree, decline: next };
+        return { kind: 'consent', phrases, language, study, participant: this.participant, agree, decline: next };
       }
       case 'code':
         return {
@@ -257,9 +260,9 @@ export class PreviewWalk {
   }
 
   #others(): readonly string[] {
-    const { step, plan } = this.#session;
-    const members = 'task' in step ? (scheduleFor(plan, this.#participant).groups[step.task]?.members ?? []) : [];
-    return members.filter((member) => member !== this.#participant);
+    const { step, schedule } = this.#session;
+    const members = 'task' in step ? (schedule.groups[step.task]?.members ?? []) : [];
+    return members.filter((member) => member !== this.participant);
   }
 
   #playedText(): string {

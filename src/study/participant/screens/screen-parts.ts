@@ -1,4 +1,4 @@
-import type { PhraseKey } from '../../model/phrases/catalogue';
+import type { PhraseKey } from '../../model/phrases/english';
 import type { Phrases } from '../../model/phrases/phrases';
 import type { ScreenButton, StudyScreen } from '../questions/study-screen';
 import type { ScreenActions } from './study-situation';

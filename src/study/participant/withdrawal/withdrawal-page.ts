@@ -13,6 +13,9 @@ import { localizedReason } from '../localized-reasons';
 import { openStudyVault } from '../session/study-vault';
 
 const client = createWithdrawalClient(pageFolder());
+const content = pageElement('content', HTMLElement);
+/** The study in the address; null: none. */
+const asked = new URLSearchParams(location.search).get('study');
 
 const paragraph = (text: string, attributes = {}) => element('p', attributes, text);
 
@@ -71,15 +74,6 @@ function receiptCard(receipt: Receipt, about: PublicStudy | null, phrases: Phras
   );
 }
 
-interface Asking {
-  /** The study in the address; null: none. */
-  readonly asked: string | null;
-  /** null: the server has no such study. */
-  readonly about: PublicStudy | null;
-  readonly phrases: Phrases;
-  readonly done: (card: HTMLElement) => void;
-}
-
 /** The message of the server about an unknown code. */
 const unknownCode = 'nothing is recorded under this code';
 
@@ -90,8 +84,11 @@ function failure(error: unknown, phrases: Phrases): string {
   return phrases.text(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
 }
 
-/** Asks for the code, and deletes everything after a confirmation. */
-function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
+/**
+ * Returns the form for the code, which deletes everything after a confirmation and shows the receipt. `about` null: the
+ * server has no such study.
+ */
+function withdrawalForm(about: PublicStudy | null, phrases: Phrases): HTMLElement {
   const { text } = phrases;
   const study = field(text('withdrawal.study'), { name: 'study', value: asked ?? '', size: 30 });
   const code = field(text('withdrawal.code'), {
@@ -115,7 +112,7 @@ function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
     complaint.hidden = true;
     try {
       const receipt = await client.withdraw(study.input.value.trim(), code.input.value.trim());
-      done(receiptCard(receipt, about, phrases, await forgottenHere(receipt, phrases)));
+      content.replaceChildren(receiptCard(receipt, about, phrases, await forgottenHere(receipt, phrases)));
     } catch (error) {
       complaint.textContent = failure(error, phrases);
       complaint.hidden = false;
@@ -140,9 +137,6 @@ function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
     ),
   );
 }
-
-const content = pageElement('content', HTMLElement);
-const asked = new URLSearchParams(location.search).get('study');
 
 interface Found {
   readonly about: PublicStudy | null;
@@ -171,7 +165,7 @@ function show({ about, fault }: Found, languages: readonly [string, ...string[]]
   content.replaceChildren(
     ...(languages.length > 1 ? [element('div', { class: 'bar', style: 'margin-bottom:14px' }, choice.node)] : []),
     ...(complaint === null ? [] : [paragraph(complaint, { class: 'complaint', role: 'alert' })]),
-    withdrawalForm({ asked, about, phrases, done: (card) => content.replaceChildren(card) }),
+    withdrawalForm(about, phrases),
   );
 }
 

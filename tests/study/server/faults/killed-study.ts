@@ -14,8 +14,8 @@ import { sourceResolution } from '../../../../scripts/source-condition.mjs';
 import { isAlive, kill, messageFrom } from '../../../server/child-process';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
+import { experimenter } from '../running-studies';
 
-const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 
 /** The result of the kills; empty lists: nothing was lost. */

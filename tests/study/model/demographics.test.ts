@@ -1,4 +1,3 @@
-import { checkedConsent } from 'threepoint-study/model/records/consent';
 import { checkedDemographics, demographicFields } from 'threepoint-study/model/records/demographics';
 import { describe, expect, test } from 'vitest';
 import { aWomanOf26 } from './studies';
@@ -26,20 +25,5 @@ describe('demographics', () => {
     ['handedness', undefined],
   ])('%s = %o is refused by name', (field, value) => {
     expect(() => checkedDemographics({ ...aWomanOf26, [field]: value })).toThrow(`${field}: `);
-  });
-});
-
-describe('consent', () => {
-  const given = { version: 'v1', given: true, motion: false, at: 1_800_000_000 };
-
-  test('counts for the text that was shown', () => {
-    expect(checkedConsent(given, 'v1')).toEqual(given);
-    expect(() => checkedConsent(given, 'v2')).toThrow('version: consent was given to text v1, but the study shows v2');
-  });
-
-  test('is given or is none', () => {
-    expect(() => checkedConsent({ ...given, given: false }, 'v1')).toThrow(
-      'given: nothing is recorded without consent',
-    );
   });
 });
