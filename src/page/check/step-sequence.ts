@@ -11,8 +11,8 @@ export interface StepListener {
 }
 
 /**
- * Runs the opening steps and the remaining ones by the times of frames. The remaining steps depend on the results of the
- * opening steps: they are requested at first for a preview, and again when the opening steps are over.
+ * Runs the opening steps and the remaining ones by the times of frames. The remaining steps depend on the results of
+ * the opening steps: they are requested at first for a preview, and again when the opening steps are over.
  */
 export class StepSequence {
   readonly #listener: StepListener;
