@@ -50,9 +50,9 @@ test('the pace shortens leads and steps alike', () => {
 });
 
 test('a body that appears during the first steps adds its steps; one that appears later changes nothing', () => {
-  let asked = 0;
-  // The preview is asked for first, the answer that counts after the first steps.
-  const { steps } = run(() => remainingSteps(asked++ > 0), 0.1);
+  let requests = 0;
+  // The first request is for the preview, the second one follows the opening steps.
+  const { steps } = run(() => remainingSteps(requests++ > 0), 0.1);
   expect(steps.map(({ measured }) => measured?.kind)).toContain('body');
-  expect(asked).toBe(2);
+  expect(requests).toBe(2);
 });
