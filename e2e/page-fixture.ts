@@ -9,6 +9,7 @@ import { createPageHandler } from '../server/page-handler';
 import { drawSeldom, screenshot } from './draw-seldom';
 import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
+import { provideServers, type Serve } from './study-server';
 
 export { expect };
 
@@ -301,14 +302,28 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
   ],
 });
 
+interface FreshFixtures {
+  /** Starts a server with rooms and studies, which the page may access. It closes when the test ends. */
+  readonly serve: Serve;
+}
+
 /** Like `test`, with a new browser context for each test: nothing is stored or replaced by another test. */
-export const freshTest = test.extend({
+export const freshTest = test.extend<FreshFixtures>({
   page: async ({ browser, origin, viewport }, use) => {
     const page = await newPage(browser, origin);
     if (viewport) await page.setViewportSize(viewport);
     await use(page);
     await page.context().close();
   },
+
+  serve: ({ complaints }, use) =>
+    provideServers((serve) =>
+      use(async (settings) => {
+        const server = await serve(settings);
+        complaints.allow(new RegExp(`asked ${server.origin}:`));
+        return server;
+      }),
+    ),
 });
 
 /** Returns whether the boxes of two parts of the page overlap. */

@@ -18,7 +18,7 @@ const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta
 /**
  * Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes.
  */
-export async function serveStudies(settings: Readonly<Record<string, string>> = {}) {
+export async function serveStudies(settings: Settings = {}) {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
   const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {
     cwd: atRoot('.'),
@@ -43,6 +43,20 @@ export async function serveStudies(settings: Readonly<Record<string, string>> = 
       rmSync(directory, { recursive: true, force: true });
     },
   };
+}
+
+type Settings = Readonly<Record<string, string>>;
+export type Serve = (settings?: Settings) => ReturnType<typeof serveStudies>;
+
+/** A fixture that starts servers, each with these and its own settings. They close when the test ends. */
+export async function provideServers(use: (serve: Serve) => Promise<void>, shared: Settings = {}): Promise<void> {
+  const servers: Awaited<ReturnType<Serve>>[] = [];
+  await use(async (settings = {}) => {
+    const server = await serveStudies({ ...shared, ...settings });
+    servers.push(server);
+    return server;
+  });
+  for (const server of servers) await server.close();
 }
 
 /** Returns the paper's study with shortened times and archery alone. */

@@ -6,7 +6,7 @@ import type { VoicesProbe } from 'threepoint-page/ball/voices/voices';
 import { drawSeldom } from './draw-seldom';
 import { writeFakeVoice } from './fake-voice';
 import { joinedRoom, probe } from './page-fixture';
-import { serveStudies } from './study-server';
+import { provideServers, type Serve } from './study-server';
 
 export interface Talker {
   readonly page: Page;
@@ -49,11 +49,9 @@ function computeSeldom(): void {
 /** Flags that draw 2D canvases on the CPU: on a software GPU the text of the game's boards costs most of a frame. */
 const withoutGraphics = ['--disable-accelerated-2d-canvas', '--disable-gpu-compositing', '--disable-gpu-rasterization'];
 
-type Server = Awaited<ReturnType<typeof serveStudies>>;
-
 interface VoicesFixtures {
   /** Starts a server with these settings, which closes when the test ends. */
-  serve(settings?: Readonly<Record<string, string>>): Promise<Server>;
+  readonly serve: Serve;
   /**
    * Starts a browser whose page joins the room of the server at this origin, with a fake microphone that plays a voice.
    */
@@ -75,15 +73,7 @@ export const test = base.extend<VoicesFixtures, { voiceFile: string }>({
   ],
 
   // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
-  serve: async ({}, use) => {
-    const servers: Server[] = [];
-    await use(async (settings = {}) => {
-      const server = await serveStudies({ THREEPOINT_JOINS_PER_MINUTE: '60', ...settings });
-      servers.push(server);
-      return server;
-    });
-    for (const server of servers) await server.close();
-  },
+  serve: ({}, use) => provideServers(use, { THREEPOINT_JOINS_PER_MINUTE: '60' }),
 
   // The dependency on `serve` closes browsers before the servers of their pages.
   talker: async ({ serve: _, voiceFile, launchOptions }, use) => {

@@ -4,7 +4,6 @@ import { driveTime, holdAt, pass } from '../driven-time';
 import { card, choose, errors } from '../mocap-card';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
-import { serveStudies } from '../study-server';
 
 // The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as
 // JPEG when it was looked at. That of our bodies is all.png of `npm run avatars:try -- public/avatars`.
@@ -43,28 +42,23 @@ test('archery: an archer at full draw, one target hit @nightly', async ({ page }
 });
 
 // A page of its own, from a server with rooms: a host without them says so.
-freshTest('the ball game: a ball in flight between three players @nightly', async ({ page, complaints }) => {
+freshTest('the ball game: a ball in flight between three players @nightly', async ({ page, serve }) => {
   freshTest.setTimeout(600_000);
-  const server = await serveStudies();
-  complaints.allow(new RegExp(`asked ${server.origin}:`));
-  try {
-    await page.goto(`${server.origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
-    // Driven frames leave no time to a request: the server answers before they start.
-    await expect(page.getByRole('button', { name: 'Play with others' })).toBeEnabled({ timeout: 120_000 });
-    await driveTime(page);
-    await holdAt<BallActivityProbe>(page, { phase: 'running', score: 2 });
-    await expect
-      .poll(async () => {
-        await pass(page, 4);
-        const { game } = await probe(page);
-        return game?.name === 'ball' && game.balls.air > 0;
-      }, patience)
-      .toBe(true);
-    await pass(page, 8);
-    await keepPicture(page, 'readme-ball');
-  } finally {
-    await server.close();
-  }
+  const { origin } = await serve();
+  await page.goto(`${origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
+  // Driven frames leave no time to a request: the server answers before they start.
+  await expect(page.getByRole('button', { name: 'Play with others' })).toBeEnabled({ timeout: 120_000 });
+  await driveTime(page);
+  await holdAt<BallActivityProbe>(page, { phase: 'running', score: 2 });
+  await expect
+    .poll(async () => {
+      await pass(page, 4);
+      const { game } = await probe(page);
+      return game?.name === 'ball' && game.balls.air > 0;
+    }, patience)
+    .toBe(true);
+  await pass(page, 8);
+  await keepPicture(page, 'readme-ball');
 });
 
 test('motion in: our own actor as a file, a moment of it by two methods with the truth in each @nightly', async ({

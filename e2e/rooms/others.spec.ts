@@ -1,7 +1,6 @@
 import { emulatedHeadset, frames } from '../emulated-headset';
 import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText, waitForCanvasText } from '../hands-on-menu';
 import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, overlap, probe, test } from '../page-fixture';
-import { serveStudies } from '../study-server';
 
 type Page = Parameters<typeof open>[0];
 
@@ -29,62 +28,56 @@ test('a newcomer alone reads rules, what is waited for and a clock that stands a
 // A page of its own: it goes on asking this server when the server is gone.
 freshTest(
   'a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @full',
-  async ({ page, complaints }) => {
+  async ({ page, serve }) => {
     test.setTimeout(240_000);
-    const server = await serveStudies();
-    // Another server than the one of the other tests: nothing else is asked for.
-    complaints.allow(new RegExp(`asked ${server.origin}:`));
-    try {
-      await page.goto(`${server.origin}/?play=ball&panel=off&quality=low&estimator=ik&bots=off`);
-      await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, {
-        timeout: 60_000,
-      });
-      await page.getByRole('button', { name: 'Play with others' }).click();
-      const dialog = page.getByRole('dialog', { name: 'Play with others' });
-      await expect(dialog.getByRole('img', { name: 'QR code of the link' })).toBeVisible({ timeout: 60_000 });
-      const link = await dialog.getByLabel('Link for the others').inputValue();
-      expect(link).toMatch(new RegExp(`^${server.origin}/\\?play=ball&room=[a-z]{6}$`));
-      await keepPicture(page, 'ball-invitation');
-      await dialog.getByRole('button', { name: 'Close' }).click();
-      await joinedRoom(page);
-      await expect(bar(page).getByRole('img', { name: 'QR code of the link' })).toBeVisible();
-      expect(await bar(page).getByLabel('Link for the others').inputValue()).toBe(link);
-      await keepPicture(page, 'ball-waiting-for-others');
-      await expect(bar(page)).toContainText(/Connection (good|fair|poor), \d/);
+    const { origin } = await serve();
+    await page.goto(`${origin}/?play=ball&panel=off&quality=low&estimator=ik&bots=off`);
+    await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, {
+      timeout: 60_000,
+    });
+    await page.getByRole('button', { name: 'Play with others' }).click();
+    const dialog = page.getByRole('dialog', { name: 'Play with others' });
+    await expect(dialog.getByRole('img', { name: 'QR code of the link' })).toBeVisible({ timeout: 60_000 });
+    const link = await dialog.getByLabel('Link for the others').inputValue();
+    expect(link).toMatch(new RegExp(`^${origin}/\\?play=ball&room=[a-z]{6}$`));
+    await keepPicture(page, 'ball-invitation');
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    await joinedRoom(page);
+    await expect(bar(page).getByRole('img', { name: 'QR code of the link' })).toBeVisible();
+    expect(await bar(page).getByLabel('Link for the others').inputValue()).toBe(link);
+    await keepPicture(page, 'ball-waiting-for-others');
+    await expect(bar(page)).toContainText(/Connection (good|fair|poor), \d/);
 
-      const pass = await page.evaluate(() => JSON.stringify({ ...sessionStorage }));
-      const other = await page.context().newPage();
-      await other.addInitScript((kept) => {
-        for (const [key, value] of Object.entries(JSON.parse(kept))) sessionStorage.setItem(key, String(value));
-      }, pass);
-      await other.goto(`${link}&panel=off&quality=low&estimator=ik`);
-      await joinedRoom(other);
-      await page.bringToFront();
-      await expect(bar(page)).toContainText('You opened this room somewhere else');
-      await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeDisabled();
-      await expect(bar(page).getByRole('button', { name: 'Play with the mouse' })).toBeDisabled();
-      for (const covered of ['#masthead h1', '#play', '.panel-bar']) {
-        expect(await overlap(page, '#banner', covered), covered).toBe(false);
-      }
-      await keepPicture(page, 'ball-taken-over');
-      await bar(page).getByRole('button', { name: 'Rejoin' }).click();
-      await joinedRoom(page);
-      await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeEnabled();
-      await other.bringToFront();
-      await expect(bar(other).getByRole('button', { name: 'Rejoin' })).toBeVisible();
-
-      await other.addInitScript(recordCanvasText);
-      await other.goto(`${link}&panel=off&quality=low&estimator=ik&emulate&actor=off`);
-      await joinedRoom(other);
-      await (await emulatedHeadset(other)).place({ head: lookingAtMenu });
-      await enterVr(other, { stepMs: null });
-      await pressInMenu(other, 'Invite');
-      await waitForCanvasText(other, link.slice(link.indexOf('?')));
-      await keepPicture(other, 'ball-invitation-vr');
-      await other.close();
-    } finally {
-      await server.close();
+    const pass = await page.evaluate(() => JSON.stringify({ ...sessionStorage }));
+    const other = await page.context().newPage();
+    await other.addInitScript((kept) => {
+      for (const [key, value] of Object.entries(JSON.parse(kept))) sessionStorage.setItem(key, String(value));
+    }, pass);
+    await other.goto(`${link}&panel=off&quality=low&estimator=ik`);
+    await joinedRoom(other);
+    await page.bringToFront();
+    await expect(bar(page)).toContainText('You opened this room somewhere else');
+    await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeDisabled();
+    await expect(bar(page).getByRole('button', { name: 'Play with the mouse' })).toBeDisabled();
+    for (const covered of ['#masthead h1', '#play', '.panel-bar']) {
+      expect(await overlap(page, '#banner', covered), covered).toBe(false);
     }
+    await keepPicture(page, 'ball-taken-over');
+    await bar(page).getByRole('button', { name: 'Rejoin' }).click();
+    await joinedRoom(page);
+    await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeEnabled();
+    await other.bringToFront();
+    await expect(bar(other).getByRole('button', { name: 'Rejoin' })).toBeVisible();
+
+    await other.addInitScript(recordCanvasText);
+    await other.goto(`${link}&panel=off&quality=low&estimator=ik&emulate&actor=off`);
+    await joinedRoom(other);
+    await (await emulatedHeadset(other)).place({ head: lookingAtMenu });
+    await enterVr(other, { stepMs: null });
+    await pressInMenu(other, 'Invite');
+    await waitForCanvasText(other, link.slice(link.indexOf('?')));
+    await keepPicture(other, 'ball-invitation-vr');
+    await other.close();
   },
 );
 

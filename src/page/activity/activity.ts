@@ -111,8 +111,8 @@ export interface FloorNeeds {
   readonly behind: number;
 }
 
-/** What a study can do with an activity that it runs as a task. */
-export interface StudyHost<Opened> {
+/** The services of the page for a runner: the activity that a study runs as a task, and the settings. */
+export interface RunnerServices<Opened> {
   readonly settings: ActivitySettings;
   readonly writer: ActivitySettingsWriter;
   /** The activity if the user is there now, else null. */
@@ -156,5 +156,5 @@ export interface Activity<Opened extends OpenActivity = OpenActivity> {
   /** Loads and enters the activity. Rejects with a reason. */
   load(context: ActivityContext): Promise<Opened>;
   /** Makes the task that studies run; absent: no study can use this activity. */
-  createRunner?(host: StudyHost<Opened>): Promise<ActivityRunner>;
+  createRunner?(services: RunnerServices<Opened>): Promise<ActivityRunner>;
 }

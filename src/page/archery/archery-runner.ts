@@ -1,7 +1,7 @@
 import { fullScore, matchTime } from 'threepoint-games/archery/rules';
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { TaskEnd, TaskEvent } from 'threepoint-study/participant/trial/task-runner';
-import type { ActivityRunner, StudyHost } from '../activity/activity';
+import type { ActivityRunner, RunnerServices } from '../activity/activity';
 import type { ArcheryFrame } from './archery-play';
 
 /** The parts of archery that a study uses. */
@@ -14,7 +14,7 @@ export interface StudiedArchery {
 }
 
 /** Archery as a task of a study. */
-export function createArcheryRunner(host: StudyHost<StudiedArchery>): ActivityRunner {
+export function createArcheryRunner(services: RunnerServices<StudiedArchery>): ActivityRunner {
   let running = false;
   let end: TaskEnd | null = null;
   let happened: TaskEvent[] = [];
@@ -35,8 +35,8 @@ export function createArcheryRunner(host: StudyHost<StudiedArchery>): ActivityRu
 
   return {
     async prepare(place) {
-      host.writer.change({ seconds: place.seconds });
-      const archery = host.opened() ?? (await host.open(place));
+      services.writer.change({ seconds: place.seconds });
+      const archery = services.opened() ?? (await services.open(place));
       if (!archery) throw new PhrasedError('round.archery');
       archery.resetRound();
     },
@@ -44,10 +44,10 @@ export function createArcheryRunner(host: StudyHost<StudiedArchery>): ActivityRu
       happened = [];
       end = null;
       running = true;
-      host.opened()?.startRound(seed, seconds);
+      services.opened()?.startRound(seed, seconds);
     },
     played() {
-      const newest = host.opened()?.play.newest;
+      const newest = services.opened()?.play.newest;
       if (running && newest) observe(newest);
     },
     take() {
@@ -66,8 +66,8 @@ export function createArcheryRunner(host: StudyHost<StudiedArchery>): ActivityRu
       running = false;
       end = null;
       happened = [];
-      host.opened()?.resetRound();
+      services.opened()?.resetRound();
     },
-    assists: () => (host.settings.oneHanded ? ['one hand'] : []),
+    assists: () => (services.settings.oneHanded ? ['one hand'] : []),
   };
 }

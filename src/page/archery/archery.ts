@@ -10,8 +10,8 @@ export const archery = {
     const { createArcheryActivity } = await import('./archery-activity');
     return createArcheryActivity(context);
   },
-  async createRunner(host) {
+  async createRunner(services) {
     const { createArcheryRunner } = await import('./archery-runner');
-    return createArcheryRunner(host);
+    return createArcheryRunner(services);
   },
 } as const satisfies Activity<ArcheryActivity>;

@@ -1,6 +1,6 @@
 import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
 import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant/trial/task-runner';
-import type { ActivityRunner, StudyHost } from '../activity/activity';
+import type { ActivityRunner, RunnerServices } from '../activity/activity';
 import type { BallFrame } from './match/ball-frame';
 import type { BallPlay } from './match/ball-play';
 
@@ -110,16 +110,16 @@ class BallTrial {
 }
 
 /** The ball game as a task of a study. */
-export function createBallRunner(host: StudyHost<StudiedBall>): ActivityRunner {
+export function createBallRunner(services: RunnerServices<StudiedBall>): ActivityRunner {
   let place: TaskPlace | null = null;
   let trial: BallTrial | null = null;
-  const play = () => host.opened()?.play;
+  const play = () => services.opened()?.play;
   const getReady = () => play()?.ready(true);
 
   return {
     async prepare(next) {
       place = next;
-      if (!(await host.open(next))) throw new PhrasedError('round.ball');
+      if (!(await services.open(next))) throw new PhrasedError('round.ball');
     },
     start({ seconds }) {
       const match = play();
@@ -148,7 +148,7 @@ export function createBallRunner(host: StudyHost<StudiedBall>): ActivityRunner {
     pause: (on) => play()?.pause(on),
     abort() {
       trial = null;
-      host.leave();
+      services.leave();
     },
     assists: () => [],
   };

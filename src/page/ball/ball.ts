@@ -10,8 +10,8 @@ export const ball = {
     const { openBallActivity } = await import('./ball-activity');
     return openBallActivity(context);
   },
-  async createRunner(host) {
+  async createRunner(services) {
     const { createBallRunner } = await import('./ball-runner');
-    return createBallRunner(host);
+    return createBallRunner(services);
   },
 } as const satisfies Activity<BallActivity>;

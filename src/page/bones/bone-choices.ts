@@ -1,6 +1,6 @@
 import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
 import { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from 'threepoint/core/humanoid/bones';
-import { type Side, sides } from 'threepoint/core/math/side';
+import { sides } from 'threepoint/core/math/side';
 import type { SkeletonToMap } from './skeleton-to-map';
 
 const trunk = {
@@ -27,18 +27,22 @@ const fingers = Object.fromEntries(
 
 type Labels = readonly (readonly [bone: BoneName, label: string])[];
 
-const sided = (side: Side, labels: Readonly<Record<string, string>>): Labels =>
-  Object.entries(labels).map(([bone, label]) => [
-    `${side}${bone}` as BoneName,
-    `${side === 'left' ? 'Left' : 'Right'} ${label}`,
-  ]);
+/** Labels the same parts of both sides, in one group for each side. */
+const sidedGroups = (name: string, labels: Readonly<Record<string, string>>) =>
+  sides.map((side) => {
+    const sideLabel = side === 'left' ? 'Left' : 'Right';
+    const parts = Object.entries(labels).map(
+      ([bone, label]) => [`${side}${bone}` as BoneName, `${sideLabel} ${label}`] as const,
+    );
+    return { label: `${sideLabel} ${name}`, parts };
+  });
 
 /** The parts of a body that a bone can be, in groups. */
 export const partGroups: readonly { readonly label: string; readonly parts: Labels }[] = [
   { label: 'Trunk and head', parts: Object.entries(trunk) as unknown as Labels },
-  ...sides.map((side) => ({ label: `${side === 'left' ? 'Left' : 'Right'} arm`, parts: sided(side, arm) })),
-  ...sides.map((side) => ({ label: `${side === 'left' ? 'Left' : 'Right'} leg`, parts: sided(side, leg) })),
-  ...sides.map((side) => ({ label: `${side === 'left' ? 'Left' : 'Right'} fingers`, parts: sided(side, fingers) })),
+  ...sidedGroups('arm', arm),
+  ...sidedGroups('leg', leg),
+  ...sidedGroups('fingers', fingers),
 ];
 
 const labels = new Map(partGroups.flatMap(({ parts }) => parts));
@@ -52,7 +56,7 @@ export const isNeeded = (part: BoneName): boolean => needed.has(part);
 /** A match below this confidence is shown as unsure. */
 const sureFrom = 0.75;
 
-/** Which bones of a file are which parts of a body. A bone is one part at most, and a part one bone. */
+/** Assigns the bones of a file to the parts of a body, each at most once. */
 export class BoneChoices {
   readonly joints: SkeletonToMap['joints'];
   readonly #confidence: SkeletonToMap['confidence'];
@@ -83,12 +87,12 @@ export class BoneChoices {
     return end ? `end of ${name.replace(/:end$/, '')}` : name;
   }
 
-  /** null: the bone is no part of the body. */
+  /** Returns the part that a bone is; null: no part of the body. */
   partOf(joint: number): BoneName | null {
     return this.#partOf.get(joint) ?? null;
   }
 
-  /** −1: no bone is this part. */
+  /** Returns the joint of a part; −1: no bone is this part. */
   jointOf(part: BoneName): number {
     for (const [joint, each] of this.#partOf) if (each === part) return joint;
     return -1;
@@ -102,11 +106,10 @@ export class BoneChoices {
     });
   }
 
-  /** Makes a bone this part of the body; null: no part. */
+  /** Assigns a bone to a part of the body, which no other bone is then; null: to none. */
   assign(joint: number, part: BoneName | null): void {
-    if (part) this.#partOf.delete(this.jointOf(part));
+    this.#partOf.delete(part ? this.jointOf(part) : joint);
     if (part) this.#partOf.set(joint, part);
-    else this.#partOf.delete(joint);
   }
 
   /** Whether the matcher only guessed this bone and the user has not changed it. */
@@ -122,7 +125,7 @@ export class BoneChoices {
     return Object.fromEntries([...this.#partOf].map(([joint, part]) => [part, this.joints[joint]!.name]));
   }
 
-  /** Parts without which no body can be moved and that no bone is. */
+  /** The needed parts that no bone is. */
   get missing(): readonly BoneName[] {
     return neededBones.filter((part) => this.jointOf(part) < 0);
   }

@@ -71,18 +71,18 @@ function createPartSelect(onChoose: (part: BoneName | null) => void) {
   };
 }
 
-/** Lets the user choose bones and their parts, on a picture and by a list. The choice is of a bone or of a part. */
+/** Lets the user choose a bone and its part of the body, or first a part and then its bone, by picture and list. */
 function createChooser(choices: BoneChoices) {
-  /** The bone that is chosen, and the part that the user wants to find on the picture. */
-  let chosen: number | null = null;
-  let wanted: BoneName | null = null;
+  let chosenBone: number | null = null;
+  /** The part whose bone the user chooses next; null: a bone was chosen first. */
+  let partToAssign: BoneName | null = null;
   const picture = createSkeletonPicture(choices, (joint) => {
-    if (wanted) choices.assign(joint, wanted);
+    if (partToAssign) choices.assign(joint, partToAssign);
     choose(joint);
   });
   const partOfBone = createPartSelect((part) => {
-    if (chosen !== null) choices.assign(chosen, part);
-    choose(chosen);
+    if (chosenBone !== null) choices.assign(chosenBone, part);
+    choose(chosenBone);
   });
   const list = createPartList(choices, (part) => {
     const joint = choices.jointOf(part);
@@ -92,8 +92,8 @@ function createChooser(choices: BoneChoices) {
   const hint = element('p', { class: 'hint', role: 'status' });
 
   function choose(joint: number | null, part: BoneName | null = null): void {
-    chosen = joint;
-    wanted = part;
+    chosenBone = joint;
+    partToAssign = part;
     const current = joint === null ? null : choices.partOf(joint);
     picture.show(joint);
     partOfBone.show(joint === null ? null : choices.fileNameOf(joint), current);
@@ -122,7 +122,7 @@ function createMapping(skeleton: SkeletonToMap, { give, cancel }: BonesActions) 
     complaint.textContent = missing.length > 0 ? `Still missing: ${names.join(', ')}.` : '';
     if (missing.length === 0) give(choices.bones);
   }
-  const why = isShown
+  const reason = isShown
     ? 'Does a limb move as it should not? Then a bone is mapped to the wrong part of the body.'
     : `The ${joints.length} bones of ${name} could not be matched to a humanoid.`;
   const node = element(
@@ -132,7 +132,7 @@ function createMapping(skeleton: SkeletonToMap, { give, cancel }: BonesActions) 
     element(
       'p',
       { class: 'hint' },
-      `${why} Choose a bone on the picture, then its part of the body. A tap among bones that are close together ` +
+      `${reason} Choose a bone on the picture, then its part of the body. A tap among bones that are close together ` +
         'enlarges them. The page remembers the map for this file.',
     ),
     ...createChooser(choices),
@@ -144,7 +144,7 @@ function createMapping(skeleton: SkeletonToMap, { give, cancel }: BonesActions) 
   return { node, complaint };
 }
 
-/** Lets the user map the bones of the file that waits for it, one file after another. */
+/** Creates the form in which the user maps the bones of one file after another. */
 export function createBonesForm(actions: BonesActions) {
   const node = element('div', {});
   let mapping: ReturnType<typeof createMapping> | null = null;
@@ -156,10 +156,10 @@ export function createBonesForm(actions: BonesActions) {
       if (skeleton?.joints !== shown?.joints) {
         mapping = skeleton && createMapping(skeleton, actions);
         node.replaceChildren(...(mapping ? [mapping.node] : []));
-        // It is below the button that opens it or the file, or far below on a small screen.
+        // The form lies below the button that opens it, far below on a small screen.
         mapping?.node.focus();
       }
-      // The page's complaint about a map that was given.
+      // The page complains about the user's map.
       if (mapping && skeleton?.complaint !== shown?.complaint)
         mapping.complaint.textContent = skeleton?.complaint ?? '';
       shown = skeleton;

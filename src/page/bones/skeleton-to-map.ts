@@ -1,16 +1,13 @@
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { FileBones } from 'threepoint/core/humanoid/unknown-bones-error';
 
-/**
- * The skeleton of a file, of an avatar or a motion, whose bones the user maps: they could not be matched to a humanoid,
- * or are to be corrected.
- */
+/** The skeleton of an avatar or a motion whose bones the user maps: the match failed or is wrong. */
 export interface SkeletonToMap extends Pick<FileBones, 'joints' | 'confidence'> {
   /** The name of the file. */
   readonly name: string;
-  /** The bones that are known, or that the user gave last. */
+  /** The matched bones, or the user's last map. */
   readonly bones: BoneMap;
-  /** A sentence about what is wrong with them; null: the user gave none yet. */
+  /** A sentence about a fault of the user's map; null: no fault, or no map yet. */
   readonly complaint: string | null;
   /** Whether the file is shown already. */
   readonly isShown: boolean;

@@ -13,13 +13,13 @@ const margin = 18;
 const edge = 50;
 
 /** The greatest distance of a tap from the joint that it chooses [px]. */
-const reach = 28;
+const tapRadius = 28;
 /** Joints whose distances from a tap differ by less are too close to each other to choose one [px]. */
-const apart = 7;
+const ambiguity = 7;
 const zoomStep = 3;
 const maxZoom = 81;
 /** Joints that stay closer to each other at the greatest zoom lie in one place [px]. */
-const onePlace = 1;
+const samePlace = 1;
 
 type Axis = 'x' | 'y' | 'z';
 const axes: readonly Axis[] = ['x', 'y', 'z'];
@@ -27,8 +27,8 @@ const axes: readonly Axis[] = ['x', 'y', 'z'];
 const distance = (a: Point, b: Point): number => Math.hypot(a.x - b.x, a.y - b.y);
 
 /**
- * Projects joints along the axis of their least extent, with Y up unless that is it. `leftAndRight`: joints of opposite
- * sides, by which the picture shows the front: the left of the body is on the right.
+ * Projects joints along the axis of their least extent. Y is up, or Z if Y has the least extent. `leftAndRight`: joints
+ * of opposite sides, which orient the picture: it shows the front, with the body's left on the right.
  */
 function projected(
   joints: readonly SkeletonJoint[],
@@ -49,7 +49,7 @@ function projected(
   return joints.map(({ position }) => ({ x: sign * position[across], y: -position[up] }));
 }
 
-/** A skeleton on a picture that can be zoomed: where its joints are drawn, and which one a tap chooses. */
+/** Lays out a skeleton on a picture that can be zoomed, and finds the joint that a tap chooses. */
 export class SkeletonView {
   readonly #places: readonly Point[];
   readonly #whole: Point;
@@ -84,7 +84,7 @@ export class SkeletonView {
     this.#centre = this.#whole;
   }
 
-  /** Moves a zoomed picture where a joint lies near its edge or outside it. */
+  /** Centres a zoomed picture on a joint that lies near its edge or outside it. */
   reveal(joint: number): void {
     const { x, y } = this.place(joint);
     const isInside = Math.min(x, y) > edge && Math.max(x, y) < pictureSize - edge;
@@ -98,14 +98,14 @@ export class SkeletonView {
   pick(tap: Point, among: readonly number[], chosen: number | null): number | null {
     const near = among
       .map((joint) => ({ joint, away: distance(this.place(joint), tap) }))
-      .filter(({ away }) => away < reach)
+      .filter(({ away }) => away < tapRadius)
       .sort((a, b) => a.away - b.away);
     const [nearest] = near;
     if (!nearest) return null;
-    const crowd = near.filter(({ away }) => away < nearest.away + apart).map(({ joint }) => joint);
+    const crowd = near.filter(({ away }) => away < nearest.away + ambiguity).map(({ joint }) => joint);
     const left = maxZoom / this.#zoom;
     const here = this.place(nearest.joint);
-    const together = crowd.filter((joint) => distance(this.place(joint), here) * left < onePlace);
+    const together = crowd.filter((joint) => distance(this.place(joint), here) * left < samePlace);
     if (together.length < crowd.length && left > 1) {
       this.#centre = this.#places[nearest.joint]!;
       this.#zoom *= zoomStep;

@@ -41,7 +41,7 @@ function showStep(
   );
 }
 
-/** Installs the emulator where it is wanted or no headset is there. Returns why, as a sentence. */
+/** Installs the emulator if the address asks for it or there is no headset. Returns the reason as a sentence. */
 async function prepareHeadset(
   emulate: boolean,
 ): Promise<{ readonly emulated: boolean; readonly sentence: string | null }> {
@@ -75,7 +75,7 @@ async function createBody(worlds: CheckWorlds, onProblem: (sentence: string) => 
   return { body, timing };
 }
 
-/** Builds the page; each click on the button is a check of its own. */
+/** Builds the page. Each click on its button starts a new check. */
 async function start(): Promise<void> {
   installTrustedTypesPolicy();
   const parts = regions();
@@ -99,7 +99,13 @@ async function start(): Promise<void> {
     canvas.hidden = false;
     fitToWindow(renderer, quality);
     const check = new HeadsetCheck({
-      ...{ renderer, quality, worlds, body, timing, emulated, pace },
+      renderer,
+      quality,
+      worlds,
+      body,
+      timing,
+      emulated,
+      pace,
       onStep: (step, steps) => showStep(parts, step, steps),
       onReport(report) {
         progress.hidden = true;

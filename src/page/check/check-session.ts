@@ -6,15 +6,16 @@ import { isSessionOffered } from 'threepoint/xr/session-support';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import type { HeadsetReport } from './headset-report';
 
-/** The optional features that are asked for beside the usual ones. None of them asks for the user's room. */
-const askedFeatures = [bodyFeature, 'anchors', 'hit-test'] as const;
+/** The optional features that are requested in addition to the defaults. None of them reveals the user's room. */
+const requestedFeatures = [bodyFeature, 'anchors', 'hit-test'] as const;
 const modes = ['inline', 'immersive-vr', 'immersive-ar'] as const;
 
-/** A session that is measured. */
+/** The session of a check. */
 export interface CheckSession {
   readonly xr: XRSession;
   readonly tracking: TrackedSession;
   readonly bodyReader: DeviceBodyReader;
+  readonly offered: OfferedFeatures;
 }
 
 export interface CheckSessionEvents {
@@ -22,18 +23,18 @@ export interface CheckSessionEvents {
   onEnd(): void;
 }
 
-/** Enters a session that the renderer draws. Rejects with a sentence. Needs a click. */
+/** Enters a session, which the renderer draws. Call it in a click. Rejects with a sentence. */
 export async function enterSession(renderer: WebGLRenderer, events: CheckSessionEvents): Promise<CheckSession> {
-  const xr = await requestSession('immersive-vr', askedFeatures);
+  const xr = await requestSession('immersive-vr', requestedFeatures);
   return drawSession(xr, renderer.xr, () => {
     const bodyReader = new DeviceBodyReader();
     const tracking = new TrackedSession({ session: xr, drawing: renderer.xr, bodyReader, ...events });
     tracking.start();
-    return { xr, tracking, bodyReader };
+    return { xr, tracking, bodyReader, offered: new OfferedFeatures(xr) };
   });
 }
 
-/** Collects what a session offers; profiles appear with their devices, so they are collected in every frame. */
+/** Collects the features of a session. Input profiles appear with their devices, so every frame is observed. */
 export class OfferedFeatures {
   readonly #xr: XRSession;
   readonly #profiles = new Set<string>();
@@ -58,7 +59,7 @@ export class OfferedFeatures {
     const offered = await Promise.all(modes.map(isSessionOffered));
     return {
       modes: modes.filter((_, index) => offered[index]),
-      asked: ['local-floor', ...defaultFeatures, ...askedFeatures],
+      asked: ['local-floor', ...defaultFeatures, ...requestedFeatures],
       granted: this.#xr.enabledFeatures ? [...this.#xr.enabledFeatures] : null,
     };
   }

@@ -1,58 +1,54 @@
 import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import { type WorldName, worldNames } from './headset-report';
 
-/** The quantity that a step measures. */
-export type Measured =
-  | { readonly kind: 'nothing' }
-  | { readonly kind: 'noise' }
-  | { readonly kind: 'losses' }
-  | { readonly kind: 'body' }
+/** The quantity that the frames of a step measure. */
+export type MeasuredQuantity =
+  | { readonly kind: 'noise' | 'losses' | 'body' }
   | { readonly kind: 'frames'; readonly world: WorldName; readonly estimator: EstimatorName };
 
 /** One step of the check. */
 export interface CheckStep {
   readonly title: string;
-  /** What the person is asked to do, spoken and shown. Steps in a row with the same sentence say it once. */
+  /** The instruction, spoken and shown. It is spoken once for successive steps that share it. */
   readonly sentence: string;
-  /** Time for the sentence and for what begins [s]; nothing of it counts. */
+  /** The time for the instruction and for loading [s], which is not measured. */
   readonly leadSeconds: number;
-  /** The time that counts [s]. */
+  /** The measured time [s]. */
   readonly seconds: number;
-  readonly measured: Measured;
+  /** null: the step measures nothing. */
+  readonly measured: MeasuredQuantity | null;
 }
 
 const step = (
   title: string,
   sentence: string,
   [leadSeconds, seconds]: readonly [number, number],
-  measured: Measured,
-) => ({
-  title,
-  sentence,
-  leadSeconds,
-  seconds,
-  measured,
-});
+  measured: MeasuredQuantity | null,
+): CheckStep => ({ title, sentence, leadSeconds, seconds, measured });
 
-const worldSentences: Readonly<Record<WorldName, string>> = {
-  mirror: 'This is the mirror. Look around slowly and move your arms.',
-  archery: 'This is the archery range. Look around slowly and move your arms.',
-  ball: 'This is the ball court with three players. Look around slowly and move your arms.',
-};
-const worldTitles: Readonly<Record<WorldName, string>> = {
-  mirror: 'Frames: mirror',
-  archery: 'Frames: archery',
-  ball: 'Frames: ball court',
+const worlds: Readonly<Record<WorldName, Pick<CheckStep, 'title' | 'sentence'>>> = {
+  mirror: {
+    title: 'Frames: mirror',
+    sentence: 'This is the mirror. Look around slowly and move your arms.',
+  },
+  archery: {
+    title: 'Frames: archery',
+    sentence: 'This is the archery range. Look around slowly and move your arms.',
+  },
+  ball: {
+    title: 'Frames: ball court',
+    sentence: 'This is the ball court with three players. Look around slowly and move your arms.',
+  },
 };
 
-/** The longest lead is the first of a world, whose materials are compiled then [s]. */
-const [worldLead, estimatorLead, countedFrames] = [4, 0.7, 2.5];
+/** The leads of the first estimator in a world, whose materials are compiled then, and of the others [s]. */
+const [worldLead, estimatorLead] = [4, 0.7];
+/** The measured time of each estimator in each world [s]. */
+const framesSeconds = 2.5;
 
-/** The steps before the device's body is known to be there or not. */
+/** The first steps, which also find out whether the device reports a body. */
 export const openingSteps: readonly CheckStep[] = [
-  step('Welcome', 'Stand upright, look ahead, and take both controllers or show both hands.', [5, 0], {
-    kind: 'nothing',
-  }),
+  step('Welcome', 'Stand upright, look ahead, and take both controllers or show both hands.', [5, 0], null),
   step('Noise at rest', 'Hold your head and both hands still, in front of your chest.', [4, 14], { kind: 'noise' }),
   step('Lost hands', 'Wave both hands fast. Hide them behind your back, and bring them back. Repeat.', [4, 20], {
     kind: 'losses',
@@ -64,26 +60,18 @@ const bodyStep = step('Body tracking', 'Move your arms slowly: to your hips, ahe
 });
 
 const worldSteps = (world: WorldName, estimators: readonly EstimatorName[]): readonly CheckStep[] =>
-  estimators.map((estimator, index) =>
-    step(worldTitles[world], worldSentences[world], [index === 0 ? worldLead : estimatorLead, countedFrames], {
-      kind: 'frames',
-      world,
-      estimator,
-    }),
-  );
+  estimators.map((estimator, index) => ({
+    ...worlds[world],
+    leadSeconds: index === 0 ? worldLead : estimatorLead,
+    seconds: framesSeconds,
+    measured: { kind: 'frames', world, estimator },
+  }));
 
-const lastStep = step('Done', 'Thank you. Take the headset off: the page shows your card.', [4, 0], {
-  kind: 'nothing',
-});
+const lastStep = step('Done', 'Thank you. Take the headset off: the page shows your card.', [4, 0], null);
 
-/** Returns the steps after those; `deviceBody`: the device reports a body. */
+/** Returns the steps after `openingSteps`. `deviceBody`: the device reports a body. */
 export function remainingSteps(deviceBody: boolean): readonly CheckStep[] {
-  const estimators: readonly EstimatorName[] = [
-    'learned',
-    'ik',
-    'paper',
-    'hands-only',
-    ...(deviceBody ? ['device' as const] : []),
-  ];
-  return [...(deviceBody ? [bodyStep] : []), ...worldNames.flatMap((world) => worldSteps(world, estimators)), lastStep];
+  const estimators: readonly EstimatorName[] = ['learned', 'ik', 'paper', 'hands-only'];
+  const measured = deviceBody ? [...estimators, 'device' as const] : estimators;
+  return [...(deviceBody ? [bodyStep] : []), ...worldNames.flatMap((world) => worldSteps(world, measured)), lastStep];
 }

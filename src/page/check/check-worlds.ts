@@ -19,11 +19,11 @@ import type { Surroundings } from '../scene/surroundings';
 import { createStudio, type Studio } from '../studio/studio';
 import type { WorldName } from './headset-report';
 
-/** The mirror ahead of the user, and at their right where something flies ahead [m, rad]. */
+/** The places of the mirror: ahead of the user, and at the right where arrows fly ahead [m, rad]. */
 const mirrorAhead = { x: 0, z: -1.5, turned: 0 };
 const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
 const archerySettings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
-/** The other players are this far apart in the actor's performance [s]. */
+/** The offset between the other players in the actor's performance [s]. */
 const actorOffset = 7;
 
 const silent = () => undefined;
@@ -34,7 +34,7 @@ interface OtherPlayer {
   readonly estimator: PoseEstimator;
 }
 
-/** The worlds of the page as a user sees them who does not play: mirror, archery with the bow, ball court for three. */
+/** The worlds of the page without a game in progress: mirror, archery with the bow, ball court for three. */
 export class CheckWorlds {
   readonly avatar: Avatar;
   readonly #renderer: WebGLRenderer;

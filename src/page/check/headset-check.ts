@@ -2,16 +2,16 @@ import type { WebGLRenderer } from 'three';
 import type { BodySolver } from 'threepoint/api/body-solver';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import type { FrameTiming } from '../shell/frame-timing';
-import { type CheckSession, enterSession, OfferedFeatures } from './check-session';
-import { type CheckStep, openingSteps, remainingSteps } from './check-steps';
+import { type CheckSession, enterSession } from './check-session';
+import { type CheckStep, remainingSteps } from './check-steps';
 import type { CheckWorlds } from './check-worlds';
 import { type HeadsetReport, reportFormat, reportVersion } from './headset-report';
 import { Measurements } from './measurements';
 import { StepCaption } from './step-caption';
 import { StepSequence } from './step-sequence';
 
-/** The rate [Hz] of an emulated headset, and of one that reports none. */
-const windowRateHz = 60;
+/** The frame rates of the emulated headset, and of a headset that reports none [Hz]. */
+const emulatedRateHz = 60;
 const usualRateHz = 72;
 
 export interface HeadsetCheckOptions {
@@ -49,7 +49,7 @@ class Speaker {
   }
 }
 
-/** One check, from entering the session to its report. */
+/** Runs one check, from entering the session to its report. */
 export class HeadsetCheck {
   readonly #options: HeadsetCheckOptions;
   readonly #timing: FrameTiming;
@@ -60,7 +60,6 @@ export class HeadsetCheck {
   readonly #speaker = new Speaker();
   readonly #camera = createHeadsetCamera();
   #session: CheckSession | null = null;
-  #offered: OfferedFeatures | null = null;
   #views = 0;
   #startedAt = Number.NaN;
   #time = Number.NaN;
@@ -72,18 +71,17 @@ export class HeadsetCheck {
     this.#body = options.body;
     this.#measurements = new Measurements(this.#body);
     this.#sequence = new StepSequence({
-      first: openingSteps,
-      more: () => remainingSteps(this.#measurements.deviceBodySeen),
+      remaining: () => remainingSteps(this.#measurements.deviceBodySeen),
       pace: options.pace,
       listener: {
         begin: (step) => this.#beginStep(step),
-        count: () => this.#timing.reset(),
+        measure: () => this.#timing.reset(),
         end: (step) => this.#endStep(step),
       },
     });
   }
 
-  /** Enters the session and starts. Rejects with a sentence. Needs a click. */
+  /** Enters the session and starts the check. Call it in a click. Rejects with a sentence. */
   async start(): Promise<void> {
     const { renderer, quality, emulated } = this.#options;
     const session = await enterSession(renderer, {
@@ -93,20 +91,19 @@ export class HeadsetCheck {
     if (emulated) reduceEmulatedResolution(renderer, quality);
     this.#options.worlds.scene.add(this.#caption.object);
     this.#session = session;
-    this.#offered = new OfferedFeatures(session.xr);
     this.#body.startSession();
     renderer.setAnimationLoop((timestampMs, frame) => {
       if (frame) this.#frame(session, timestampMs, frame);
     });
   }
 
-  #frame({ xr, tracking }: CheckSession, timestampMs: number, frame: XRFrame): void {
+  #frame({ xr, tracking, offered }: CheckSession, timestampMs: number, frame: XRFrame): void {
     const { worlds, emulated, renderer } = this.#options;
     const startMs = performance.now();
     const time = this.#body.tick(timestampMs);
     if (Number.isNaN(this.#startedAt)) this.#startedAt = time;
     this.#time = time;
-    this.#timing.setRate(emulated ? windowRateHz : (xr.frameRate ?? usualRateHz));
+    this.#timing.setRate(emulated ? emulatedRateHz : (xr.frameRate ?? usualRateHz));
     this.#timing.begin(time * 1000);
     const tracked = tracking.read(frame, time);
     this.#timing.mark('tracking');
@@ -121,7 +118,7 @@ export class HeadsetCheck {
     this.#timing.mark('render');
     this.#timing.end();
     this.#views = Math.max(this.#views, renderer.xr.getCamera().cameras.length);
-    this.#offered?.observe();
+    offered.observe();
     const { predictedDisplayTime } = frame as { readonly predictedDisplayTime?: number };
     const aheadMs = predictedDisplayTime === undefined ? undefined : predictedDisplayTime - startMs;
     this.#measurements.addLatency(aheadMs, startMs - timestampMs);
@@ -135,13 +132,13 @@ export class HeadsetCheck {
     const { measured, sentence } = step;
     if (sentence !== this.#spoken) this.#speaker.say(sentence);
     this.#spoken = sentence;
-    if (measured.kind === 'frames') this.#options.worlds.show(measured.world);
-    void this.#body.setEstimator(measured.kind === 'frames' ? measured.estimator : 'learned');
+    if (measured?.kind === 'frames') this.#options.worlds.show(measured.world);
+    void this.#body.setEstimator(measured?.kind === 'frames' ? measured.estimator : 'learned');
     this.#options.onStep(step, this.#sequence.steps);
   }
 
   #endStep({ measured }: CheckStep): void {
-    if (measured.kind !== 'frames') return;
+    if (measured?.kind !== 'frames') return;
     this.#measurements.addFrameTimes(measured.world, measured.estimator, this.#timing.summary());
   }
 
@@ -149,7 +146,7 @@ export class HeadsetCheck {
     const { current, steps } = this.#sequence;
     if (!current) return;
     const number = steps.indexOf(current) + 1;
-    const seconds = Math.ceil(this.#sequence.remaining(time));
+    const seconds = Math.ceil(this.#sequence.secondsLeft(time));
     this.#caption.write(current.sentence, `${current.title} · ${seconds} s`, number / steps.length);
   }
 
@@ -160,8 +157,8 @@ export class HeadsetCheck {
     this.#caption.dispose();
     this.#options.worlds.show('mirror');
     this.#body.endSession();
-    const [session, offered] = [this.#session, this.#offered];
-    if (!session || !offered) return;
+    if (!this.#session) return;
+    const { xr, bodyReader, offered } = this.#session;
     onReport({
       format: reportFormat,
       version: reportVersion,
@@ -169,12 +166,12 @@ export class HeadsetCheck {
       session: {
         seconds: Number.isNaN(this.#startedAt) ? 0 : this.#time - this.#startedAt,
         complete: this.#sequence.over,
-        rateHz: session.xr.frameRate ?? null,
+        rateHz: xr.frameRate ?? null,
         ratesHz: offered.ratesHz,
         views: this.#views,
       },
       features: await offered.features(),
-      ...this.#measurements.figures(session.bodyReader.problem),
+      ...this.#measurements.figures(bodyReader.problem),
     });
   }
 }

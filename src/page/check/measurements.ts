@@ -8,21 +8,21 @@ import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import type { InputKind } from 'threepoint/xr/input-reader';
 import { DeviceDifference } from '../shell/frame/device-difference';
 import { type FrameSummary, quantilesIn } from '../shell/frame-timing';
-import type { Measured } from './check-steps';
+import type { MeasuredQuantity } from './check-steps';
 import type { HeadsetReport, WorldName } from './headset-report';
 import { TrackerNoise } from './tracker-noise';
 import { TrackingLosses } from './tracking-losses';
 
-/** A frame of the session as it is measured. */
+/** The data of one frame of the session. */
 export interface CheckFrame {
   readonly time: number;
-  /** null: the head is not seen. */
+  /** null: the head is not tracked. */
   readonly tracked: TrackingFrame | null;
   readonly pose: AvatarPose | null;
   readonly kinds: Readonly<Record<Side, InputKind>>;
 }
 
-/** Collects the figures of a check from its frames. No frame is kept beyond the noise figures that it gives. */
+/** Collects the figures of a check from its frames. */
 export class Measurements {
   readonly #body: Pick<BodySolver, 'calibration' | 'estimator'>;
   readonly #noise = { head: new TrackerNoise(), left: new TrackerNoise(), right: new TrackerNoise() };
@@ -51,8 +51,8 @@ export class Measurements {
     this.#delays.push(delayMs);
   }
 
-  /** Adds a frame; `measured`: what counts now, null in the lead of a step. */
-  add(frame: CheckFrame, measured: Measured | null): void {
+  /** Adds a frame. `measured`: the quantity that it measures; null: none, as in the lead of a step. */
+  add(frame: CheckFrame, measured: MeasuredQuantity | null): void {
     this.#deviceBodySeen ||= frame.tracked?.deviceBody !== undefined;
     if (measured?.kind === 'noise') this.#addNoise(frame);
     if (measured?.kind === 'losses') this.#addLosses(frame);
@@ -95,7 +95,7 @@ export class Measurements {
   }
 
   #addBody({ tracked, pose }: CheckFrame): void {
-    // A frame without a body would begin the mean again.
+    // A frame without a body would reset the mean.
     if (!tracked?.deviceBody || !pose?.body) return;
     this.#compared += 1;
     this.#difference.observe(tracked, pose, this.#body.calibration);

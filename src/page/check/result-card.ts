@@ -6,7 +6,7 @@ import { reportSections } from './report-sections';
 const fileName = 'headset-check.json';
 const fileType = 'application/json';
 
-/** Fills the region with the figures of a check and with what its person can do with them. */
+/** Fills the region with the figures of a check, and buttons to download and share its file. */
 export function showResultCard(region: HTMLElement, report: HeadsetReport): void {
   const content = writeHeadsetReport(report);
   const failed = element('p', { class: 'complaint', role: 'alert', hidden: true });

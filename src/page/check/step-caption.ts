@@ -12,10 +12,10 @@ import { disposeTree } from '../scene/dispose-tree';
 const [width, height] = [900, 300];
 /** The distance of the caption, and how far it lies below the eyes [m]. */
 const [away, below] = [1.5, 0.42];
-/** It follows the head with this half-life [s], so that a glance leaves it in its place. */
+/** The half-life with which the caption follows the head [s]: a short glance does not move it. */
 const halfLife = 0.2;
 
-/** Shows a step in the headset, always in view: what to do, how far the check is, and the seconds left. */
+/** Shows the instruction and the progress of a step in the headset, always in view. */
 export class StepCaption {
   readonly object: Mesh;
   readonly #panel = createVrPanel(width, height, 1000);

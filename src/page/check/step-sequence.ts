@@ -1,40 +1,37 @@
-import type { CheckStep, Measured } from './check-steps';
+import { type CheckStep, type MeasuredQuantity, openingSteps } from './check-steps';
 
-/** The callbacks of a sequence, called within the frame of their event. */
+/** The events of a sequence, reported within their frame. */
 export interface StepListener {
-  /** A step begins; nothing of it counts yet. */
+  /** A step begins with its lead. */
   begin(step: CheckStep): void;
-  /** The lead is over: frames count from now on. */
-  count(step: CheckStep): void;
-  /** The time that counts is over. */
+  /** The lead is over: frames are measured from now on. */
+  measure(step: CheckStep): void;
+  /** The measured time is over. */
   end(step: CheckStep): void;
 }
 
 /**
- * Goes through steps by the time of frames. Steps that depend on what the first ones found are settled when those are
- * over; until then they are a preview.
+ * Runs the opening steps and the remaining ones by the times of frames. The remaining steps depend on the results of
+ * the opening steps: they are requested at first for a preview, and again when the opening steps are over.
  */
 export class StepSequence {
   readonly #listener: StepListener;
   readonly #pace: number;
-  readonly #first: readonly CheckStep[];
-  readonly #more: () => readonly CheckStep[];
+  readonly #remaining: () => readonly CheckStep[];
   #steps: readonly CheckStep[];
   #index = -1;
   /** When the step began [s]. */
   #since = Number.NaN;
-  #counting = false;
+  #measuring = false;
 
-  /** `pace`: all durations are multiplied by this. */
+  /** `pace`: the factor of all durations. */
   constructor(options: {
-    readonly first: readonly CheckStep[];
-    readonly more: () => readonly CheckStep[];
+    readonly remaining: () => readonly CheckStep[];
     readonly pace: number;
     readonly listener: StepListener;
   }) {
-    this.#first = options.first;
-    this.#more = options.more;
-    this.#steps = [...options.first, ...options.more()];
+    this.#remaining = options.remaining;
+    this.#steps = [...openingSteps, ...options.remaining()];
     this.#pace = options.pace;
     this.#listener = options.listener;
   }
@@ -43,7 +40,7 @@ export class StepSequence {
     return this.#steps;
   }
 
-  /** The step now; null: none has begun, or all are over. */
+  /** The current step; null: none has begun, or all are over. */
   get current(): CheckStep | null {
     return this.#steps[this.#index] ?? null;
   }
@@ -52,18 +49,18 @@ export class StepSequence {
     return this.#index >= this.#steps.length;
   }
 
-  /** The quantity that frames measure now; null: they do not count. */
-  get measured(): Measured | null {
-    return this.#counting ? (this.current?.measured ?? null) : null;
+  /** The quantity that frames measure now; null: they measure nothing. */
+  get measured(): MeasuredQuantity | null {
+    return this.#measuring ? (this.current?.measured ?? null) : null;
   }
 
-  /** Returns how long the step still takes [s], lead included. */
-  remaining(time: number): number {
+  /** Returns the rest of the current step, lead included [s]. */
+  secondsLeft(time: number): number {
     const step = this.current;
     return step ? Math.max(0, this.#since + this.#pace * (step.leadSeconds + step.seconds) - time) : 0;
   }
 
-  /** Moves on to the time of a frame [s]; one frame ends one step at most, so that each has its frames. */
+  /** Advances to the time of a frame [s]. A frame ends at most one step, so that every step has frames. */
   advance(time: number): void {
     const step = this.current;
     if (!step) {
@@ -71,23 +68,23 @@ export class StepSequence {
       return;
     }
     const elapsed = time - this.#since;
-    if (!this.#counting && elapsed >= this.#pace * step.leadSeconds) {
-      this.#counting = true;
-      this.#listener.count(step);
+    if (!this.#measuring && elapsed >= this.#pace * step.leadSeconds) {
+      this.#measuring = true;
+      this.#listener.measure(step);
     }
-    if (this.#counting && elapsed >= this.#pace * (step.leadSeconds + step.seconds)) this.#end(step, time);
+    if (this.#measuring && elapsed >= this.#pace * (step.leadSeconds + step.seconds)) this.#end(step, time);
   }
 
   #end(step: CheckStep, time: number): void {
     this.#listener.end(step);
-    if (this.#index === this.#first.length - 1) this.#steps = [...this.#first, ...this.#more()];
+    if (this.#index === openingSteps.length - 1) this.#steps = [...openingSteps, ...this.#remaining()];
     this.#begin(this.#index + 1, time);
   }
 
   #begin(index: number, time: number): void {
     this.#index = index;
     this.#since = time;
-    this.#counting = false;
+    this.#measuring = false;
     if (this.current) this.#listener.begin(this.current);
   }
 }

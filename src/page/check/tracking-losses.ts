@@ -1,6 +1,6 @@
 /** The losses of one hand. */
 export interface HandLosses {
-  /** How long the hand was to be tracked [s]: from its first frame on, without system menus. */
+  /** The observed time [s]: from the first frame with the hand on, without system menus. */
   readonly observedSeconds: number;
   /** The length of each loss with a return [whole ms], ascending. */
   readonly lengthsMs: readonly number[];
@@ -12,15 +12,15 @@ export interface HandLosses {
 export class TrackingLosses {
   readonly #lengths: number[] = [];
   #observed = 0;
-  /** The time of the newest frame that counts [s]; null: none, or a menu of the system came in between. */
+  /** The time of the newest observed frame [s]; null: none yet, or none since an interruption. */
   #last: number | null = null;
   /** The time of the first frame of the loss [s]; null: the hand is tracked. */
   #lostAt: number | null = null;
-  /** Whether the hand was seen at all, and since the last interruption. */
+  /** Whether the hand was tracked at all, and since the last interruption. */
   #seen = false;
   #observing = false;
 
-  /** Adds a frame at this time [s]. Positions that the device guesses are no tracking. */
+  /** Adds a frame at this time [s]. `tracked`: the device tracks the hand; it does not only estimate its position. */
   add(time: number, tracked: boolean): void {
     this.#seen ||= tracked;
     this.#observing ||= tracked;

@@ -29,7 +29,7 @@ export class Emulator {
   readonly #config: ControllerConfig;
   readonly #fit: HandleFit;
   #panel: Promise<void> | null = null;
-  #panelWanted = false;
+  #panelVisible = false;
 
   constructor(device: XRDevice, config: ControllerConfig) {
     this.device = device;
@@ -42,7 +42,7 @@ export class Emulator {
     }
   }
 
-  /** Head and wrists as the emulator has them now, outside of any session. */
+  /** Returns the current head and wrists of the emulator. It needs no session. */
   read(time: number): TrackingFrame {
     return {
       time,
@@ -53,7 +53,7 @@ export class Emulator {
   }
 
   /**
-   * Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons.
+   * Moves headset and controllers to the head and wrists of a frame, to within 0.1 mm, and presses these buttons.
    */
   drive(frame: TrackingFrame, buttons?: Buttons): void {
     // In the manual mode the panel would reset every pose in each frame.
@@ -81,15 +81,14 @@ export class Emulator {
 
   /** Shows or hides the developer's panel; it is loaded when first shown. */
   async setPanelVisible(visible: boolean): Promise<void> {
-    this.#panelWanted = visible;
-    // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in
-    // between.
+    this.#panelVisible = visible;
+    // iwer shows the panel when a session begins. A panel that is installed during a session fails at its end.
     if (visible && !this.device.activeSession) {
       this.#panel ??= import('@iwer/devui').then(({ DevUI }) => this.device.installDevUI(DevUI));
     }
     await this.#panel;
     const container = this.device.devui?.devUIContainer;
-    if (container) container.hidden = !this.#panelWanted;
+    if (container) container.hidden = !this.#panelVisible;
   }
 
   #readHand(side: Side): TrackedPose | null {
@@ -116,7 +115,7 @@ function place(target: { readonly position: Setter3; readonly quaternion: Setter
   target.quaternion.set(o.x, o.y, o.z, o.w);
 }
 
-/** What iwer has of a reference space. */
+/** The part of iwer's reference spaces that is fixed here. */
 interface OffsetSpaces {
   getOffsetReferenceSpace(origin: unknown): unknown;
 }
@@ -165,7 +164,7 @@ interface Setter4 {
   set(x: number, y: number, z: number, w: number): unknown;
 }
 
-/** The pose in a column-major 4×4 matrix; the identity where there is none. */
+/** Returns the pose of a column-major 4×4 matrix; the identity without a matrix. */
 function matrixPose(matrix: ArrayLike<number> | undefined): Pose<'floor'> {
   const at = (index: number): number => matrix?.[index] ?? (index % 5 === 0 ? 1 : 0);
   return {

@@ -7,10 +7,10 @@ import type { Replayable } from 'threepoint/core/tracking/recording';
 import { type JointErrors, meanErrors } from './joint-errors';
 import type { Truth } from './truth';
 
-/** Mean errors of a method over a clip, how far measuring them is, or why there are none. */
+/** The mean errors of a method over a clip, the progress of measuring them, or the reason why there are none. */
 export type ClipMean = JointErrors | WorkProgress | string;
 
-const notBegun: WorkProgress = { fraction: 0, secondsLeft: null };
+const notStarted: WorkProgress = { fraction: 0, secondsLeft: null };
 
 /** Measures methods over a whole clip, one after the other, while the page continues to draw. */
 export class ClipMeans {
@@ -18,7 +18,7 @@ export class ClipMeans {
   readonly #truth: Truth;
   readonly #networks: BodySolverOptions['networks'];
   readonly #means = new Map<EstimatorName, ClipMean>();
-  readonly #giveUp = new AbortController();
+  readonly #cancellation = new AbortController();
   #busy = false;
 
   constructor(recording: Replayable, truth: Truth, networks: BodySolverOptions['networks']) {
@@ -27,27 +27,27 @@ export class ClipMeans {
     this.#networks = networks;
   }
 
-  /** What is known of a method; the first that nothing is known of is measured next. */
-  of(name: EstimatorName): ClipMean {
+  /** Returns the mean errors of a method. If they are unknown, it is measured once no other method is. */
+  errorsOf(name: EstimatorName): ClipMean {
     if (!this.#busy && !this.#means.has(name)) void this.#measure(name);
-    return this.#means.get(name) ?? notBegun;
+    return this.#means.get(name) ?? notStarted;
   }
 
-  /** Gives up what is being measured. */
+  /** Cancels the measurement in progress. */
   dispose(): void {
-    this.#giveUp.abort();
+    this.#cancellation.abort();
   }
 
   async #measure(name: EstimatorName): Promise<void> {
-    const { signal } = this.#giveUp;
+    const { signal } = this.#cancellation;
     this.#busy = true;
-    this.#means.set(name, notBegun);
+    this.#means.set(name, notStarted);
     try {
       this.#means.set(name, await this.#run(name, signal));
     } catch (error) {
       this.#means.set(name, firstLine(reasonOf(error)));
     } finally {
-      // What was given up begins no other.
+      // No measurement starts after a cancelled one.
       this.#busy = signal.aborted;
     }
   }

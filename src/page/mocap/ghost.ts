@@ -17,7 +17,7 @@ import type { TruthJoint } from 'threepoint/core/mocap/skeleton-map';
 
 type Places = Readonly<Partial<Record<TruthJoint, Vec3>>>;
 
-/** Bones that are drawn, from joint to joint. */
+/** The bones that are drawn, from joint to joint. */
 const bones: readonly (readonly [TruthJoint, TruthJoint])[] = [
   ['hips', 'spine'],
   ['spine', 'chest'],
@@ -43,7 +43,7 @@ const colour = new Color('#7ff0d2');
 const up = new Vector3(0, 1, 0);
 const nowhere = new Matrix4().makeScale(0, 0, 0);
 
-/** The true joints of a person as a stick figure, which shines through the body around it. */
+/** Draws the true joints of a person as a stick figure that is visible through the body around it. */
 export class Ghost {
   readonly object = new Group();
   readonly #sticks: readonly InstancedMesh[];
@@ -59,7 +59,7 @@ export class Ghost {
     this.object.name = 'truth';
     const stick = new CylinderGeometry(1, 1, 1, 10, 1, true);
     const ball = new SphereGeometry(1, 16, 12);
-    // Once as a solid figure, and once faintly over all that is before it.
+    // The figure is drawn twice: solid, and faintly over everything in front of it.
     const solid = new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.25 });
     const faint = new MeshBasicMaterial({
       color: colour,

@@ -10,10 +10,10 @@ import type { TruthJoint } from 'threepoint/core/mocap/skeleton-map';
 import type { Replayable } from 'threepoint/core/tracking/recording';
 import type { Truth } from './truth';
 
-/** Distances [cm] between joints as drawn and as they were, in the order of `estimatedJoints`. */
+/** The distances between estimated and true joints [cm], in the order of `estimatedJoints`. */
 export type JointErrors = Float64Array;
 
-/** Measures what a method draws of a person of these measures, as the evaluation does. */
+/** Measures the joint errors of bodies of one person, as the evaluation does. */
 export class ErrorMeter {
   readonly #skeleton;
   readonly #drawn = createJointPoses();
@@ -36,8 +36,8 @@ export const makeJointErrors = (): JointErrors => new Float64Array(estimatedJoin
 export const meanOf = (errors: JointErrors): number => errors.reduce((sum, error) => sum + error, 0) / errors.length;
 
 /**
- * Mean errors of a method over a whole clip, frame after frame, each answer of its network waited for: the evaluation's
- * figures. Yields the share [0, 1] that is done. Throws a sentence where the method draws no body or fails.
+ * Computes the mean errors of a method over a whole clip, frame by frame and with the network's result for every frame,
+ * as the evaluation does. Yields the finished share [0, 1]. Throws a sentence if the method draws no body or fails.
  */
 export async function* meanErrors(
   recording: Replayable,

@@ -13,16 +13,16 @@ import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';
 import './mocap.css';
 
-/** What one method does with the clip. */
+/** The errors of one method. */
 export interface MethodErrors {
   readonly estimator: EstimatorName;
-  /** The errors of the current frame; null: nothing is drawn. */
+  /** The errors of the current frame; null: no body is drawn. */
   readonly now: JointErrors | null;
   /** The mean errors of the whole clip. */
   readonly mean: ClipMean;
 }
 
-/** What the card shows of an opened clip. */
+/** The state of an opened clip that the card shows. */
 export interface CardState {
   readonly clips: readonly string[];
   readonly clip: number;
@@ -30,11 +30,11 @@ export interface CardState {
   readonly seconds: number;
   readonly duration: number;
   readonly truth: TruthPlace;
-  /** Whether others can open what the file came from. */
+  /** Whether the files have addresses that others can open. */
   readonly shareable: boolean;
-  /** Whether the bones of the file are found by what it has, and not named by a JSON map. */
+  /** Whether the user can correct the bones: no JSON map names them. */
   readonly canCorrectBones: boolean;
-  /** What cannot be right of the file, a sentence each. */
+  /** Signs that the file is wrong, one sentence each. */
   readonly doubts: readonly string[];
   /** The errors of the body, and of the second body if there is one. */
   readonly methods: readonly MethodErrors[];
@@ -73,11 +73,11 @@ const centimetres = (value: number): string => value.toFixed(1);
 const percent = ({ fraction, secondsLeft }: WorkProgress): string =>
   `${Math.floor(100 * fraction)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
 
-/** How far measuring is; null: it is over, or failed. */
+/** Returns the progress of measuring; null: it has ended or failed. */
 const progressOf = (mean: ClipMean): WorkProgress | null =>
   typeof mean === 'string' || mean instanceof Float64Array ? null : mean;
 
-/** A choice among a few. */
+/** Creates a labelled select element. */
 function choice<Value extends string>(
   label: string,
   options: readonly (readonly [Value, string])[],
@@ -132,8 +132,8 @@ function createErrorTable(labels: Labels) {
       const unmeasured = methods.filter(({ mean }) => !(mean instanceof Float64Array));
       // One method is measured at a time: it is listed last, before its figures.
       const measured = unmeasured.find(({ mean }) => progressOf(mean)?.fraction);
-      const told = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
-      const words = told.map(
+      const listed = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
+      const words = listed.map(
         ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring …'}`,
       );
       const progress = measured && progressOf(measured.mean);
@@ -215,7 +215,7 @@ function createChoices(labels: Labels, actions: CardActions) {
     [...methods, ['device', `${labels.device} (not in the file: ${labels.learned} draws)`]],
     actions.choose,
   );
-  // No file has it; where it was chosen before, it is shown as what is.
+  // No file has a device's body. The option is shown if the user selected it before.
   method.select.options[methods.length]!.disabled = true;
   const beside = choice<EstimatorName | 'none'>('On its right', [['none', 'nothing'], ...methods], (name) =>
     actions.compare(name === 'none' ? null : name),
@@ -247,7 +247,7 @@ function createChoices(labels: Labels, actions: CardActions) {
   };
 }
 
-/** Shows what is known of an opened motion: errors by joint, the time, which methods draw it, its bones. */
+/** Creates the card of an opened motion: errors by joint, timeline, methods and bones. */
 export function createMocapCard(labels: Labels, actions: CardActions) {
   const title = element('h2');
   const close = button('Close', () => actions.close(), { class: 'quiet' });

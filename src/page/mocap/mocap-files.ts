@@ -1,24 +1,21 @@
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import { fileNameOf } from 'threepoint-ui/limited-files';
 
-/** A file of this device, or the address of one. */
+/** A file of this device, or the address of a file. */
 export type MocapFile = File | string;
 
-/**
- * Files that make one motion: a BVH, a VRM Animation, or an AMC with its skeleton; with a map of the skeleton where
- * that is needed.
- */
+/** The files of one motion: BVH, VRM Animation, or AMC with its skeleton; and a map of the skeleton if it has one. */
 export interface MocapFiles {
   readonly motion: MocapFile;
   /** The skeleton of an AMC file; null: not an AMC file. */
   readonly skeleton: MocapFile | null;
-  /** Which joint of a skeleton that is not known here is which (JSON). */
+  /** The map of a skeleton that the matcher does not know (JSON); null: none. */
   readonly map: MocapFile | null;
 }
 
 /** The bone maps that the user gave for files of motion. */
 export interface GivenBones {
-  /** The map of these files, which was given just now; null: none. */
+  /** The user's new map for these files; null: none. */
   readonly bones: BoneMap | null;
   /** The maps that are stored, by the hashes of the files. */
   readonly boneMaps: Readonly<Record<string, BoneMap>>;
@@ -30,8 +27,8 @@ const endingOf = (file: MocapFile): string => fileNameOf(file).split('.').at(-1)
 export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
 
 /**
- * Which of these files is the motion, which its skeleton and which the map of that. Throws a sentence where a part is
- * missing; `others`: names of what is left over.
+ * Assigns files to motion, skeleton and map by their endings. Throws a sentence if a part is missing. `others`: the
+ * names of the files that remain.
  */
 export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly others: readonly string[] } {
   const [motion] = files.filter((file) => !['asf', 'json'].includes(endingOf(file)));

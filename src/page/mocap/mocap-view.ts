@@ -15,7 +15,7 @@ import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
 import { type CardActions, createMocapCard, type Labels, type MocapCard } from './mocap-card';
 import { isMap, type MocapFile, pairFiles } from './mocap-files';
-import { type BoneMaps, MotionBones } from './motion-bones';
+import { type BoneMaps, type ClipView, MotionBones, type OpenRequest } from './motion-bones';
 import { type ReadMocap, readMocap, UnmatchedMotion } from './read-mocap';
 import { SecondBody } from './second-body';
 import { recordingOf } from './simulated-recording';
@@ -26,10 +26,10 @@ import type { TruthPlace } from './truth-places';
 export interface Replay extends ReplayState {
   readonly duration: number;
   /**
-   * Loads a recording. Throws a sentence where another one must not be lost to it. `asked`: the number of the request;
-   * absent: the newest.
+   * Loads a recording. Throws a sentence if another one must not be lost to it. `requestNumber`: its number among the
+   * recorder's requests; absent: the newest.
    */
-  load(name: string, recording: Replayable, asked?: number): void;
+  load(name: string, recording: Replayable, requestNumber?: number): void;
   /** Replays the loaded recording from its start. */
   replay(): void;
   seek(seconds: number): void;
@@ -37,28 +37,18 @@ export interface Replay extends ReplayState {
   stop(): void;
 }
 
-/** How a clip is to be looked at; what is absent stays as it is. */
-export interface Outlook {
-  /** The index of the clip, from 0. */
-  readonly clip?: number | undefined;
-  /** Stands still at this second. */
-  readonly at?: number | undefined;
-  readonly beside?: EstimatorName | undefined;
-  readonly truth?: TruthPlace | undefined;
-}
-
 export interface MocapViewOptions {
   readonly scene: Object3D;
   readonly region: HTMLElement;
   readonly labels: Labels;
   readonly replay: Replay;
-  /** The method of the page's body. */
-  readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
+  /** The method of the page's body, and its replacement by another one. */
+  readonly method: { readonly selected: EstimatorName; select(estimator: EstimatorName): void };
   readonly networks: BodySolverOptions['networks'];
   readonly boneMaps: BoneMaps;
   readonly notices: Pick<Notices, 'show'>;
   loadAvatar(): Promise<Avatar>;
-  /** Brings what an object needs to the graphics device before it is seen. */
+  /** Compiles the materials of an object and uploads its textures before it is shown. */
   prepare(object: Object3D): Promise<void>;
   /** The replay was started, stopped or moved to another second: the body's pose jumps. */
   onJump(): void;
@@ -66,16 +56,8 @@ export interface MocapViewOptions {
   onChange(): void;
 }
 
-/** Files to open. */
-interface Request {
-  readonly sources: readonly MocapFile[];
-  readonly outlook: Outlook;
-  /** Its place among the wishes; absent: the newest. */
-  readonly asked?: number | undefined;
-}
-
-/** A clip on the stage. */
-interface Opened extends ReadMocap {
+/** The clip that is shown. */
+interface OpenClip extends ReadMocap {
   readonly name: string;
   readonly sources: readonly MocapFile[];
   readonly index: number;
@@ -93,34 +75,30 @@ const addressesOf = (sources: readonly MocapFile[]): readonly string[] | null =>
 const secondAside = 1.15;
 const truthAside = -0.85;
 
-/**
- * Motion capture on the stage: the truth as a ghost, what methods draw of its three points, and how far they are off.
- */
+/** Shows motion capture: the ground truth as a ghost, the bodies that methods estimate, and their errors. */
 export class MocapView {
   readonly #options: MocapViewOptions;
   readonly #ghosts = [new Ghost(), new Ghost()] as const;
   readonly #card: MocapCard;
-  readonly #bones: MotionBones<Request>;
-  #opened: Opened | null = null;
+  readonly #bones: MotionBones;
+  #opened: OpenClip | null = null;
   #second: SecondBody | null = null;
   #truthPlace: TruthPlace = 'inside';
   #reading = new AbortController();
   /** The files that were requested last. */
-  #asked: readonly MocapFile[] = [];
-  /** Errors of the picture: of the body, and of the second. */
+  #requestedFiles: readonly MocapFile[] = [];
+  /** Errors in the current frame, of the body and of the second body. */
   readonly #errors = [makeJointErrors(), makeJointErrors()] as const;
   readonly #drawn = [false, false];
-  /** Resolves when the ghosts' first picture waits for nothing. */
+  /** Resolves when the ghosts can be drawn without delay. */
   readonly #prepared: Promise<unknown>;
 
   constructor(options: MocapViewOptions) {
     this.#options = options;
     this.#card = createMocapCard(options.labels, this.#actions());
-    this.#bones = new MotionBones<Request>({
+    this.#bones = new MotionBones({
       boneMaps: options.boneMaps,
-      show: (skeleton) => {
-        this.#card.showBones(skeleton);
-      },
+      show: (skeleton) => this.#card.showBones(skeleton),
       read: (request, bones) => void this.#read(request, bones),
     });
     options.region.append(this.#card.node);
@@ -134,16 +112,15 @@ export class MocapView {
    * Reads files of this device or addresses, and shows their motion. A skeleton map alone applies to the previous
    * files. Never rejects: faults become notices, and the shown motion stays.
    */
-  async open(given: readonly MocapFile[], outlook: Outlook = {}, asked?: number): Promise<void> {
-    // A map that comes alone is of the motion that came before it.
-    const sources = given.every(isMap) ? [...this.#asked.filter((file) => !isMap(file)), ...given] : given;
-    this.#asked = sources;
+  async open(given: readonly MocapFile[], view: ClipView = {}, requestNumber?: number): Promise<void> {
+    const sources = given.every(isMap) ? [...this.#requestedFiles.filter((file) => !isMap(file)), ...given] : given;
+    this.#requestedFiles = sources;
     this.#bones.close();
-    await this.#read({ sources, outlook, asked }, null);
+    await this.#read({ sources, view, requestNumber }, null);
   }
 
   /** Reads files with the user's map of their bones; null: with one that is stored, or without. */
-  async #read(request: Request, bones: BoneMap | null): Promise<void> {
+  async #read(request: OpenRequest, bones: BoneMap | null): Promise<void> {
     const { notices, boneMaps } = this.#options;
     const { sources } = request;
     this.#reading.abort();
@@ -166,20 +143,20 @@ export class MocapView {
       if (others.length > 0)
         notices.show('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
     } catch (error) {
-      if (!signal.aborted) this.#refuse(request, bones, error);
+      if (!signal.aborted) this.#reportFailure(request, bones, error);
     } finally {
       if (this.#reading === reading) this.#card.showProgress(name, null);
     }
   }
 
-  /** Says why files could not be shown; bones that match no humanoid can be mapped. */
-  #refuse(request: Request, bones: BoneMap | null, error: unknown): void {
+  /** Reports why files could not be shown. Offers the form for bones that match no humanoid. */
+  #reportFailure(request: OpenRequest, bones: BoneMap | null, error: unknown): void {
     const { notices } = this.#options;
     const name = fileNameOf(request.sources[0]!);
     const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
     if (error instanceof UnmatchedMotion) {
       const { joints, matched, confidence, hash } = error;
-      const again = { sources: request.sources, outlook: request.outlook };
+      const again = { sources: request.sources, view: request.view };
       this.#bones.offer({ name, request: again, joints, matched, confidence, hash, isShown: false, isOwnMap: false });
     } else if (bones) this.#bones.complain(bones, reason);
     else notices.show('error', `${name} could not be shown: ${reason}`);
@@ -189,11 +166,11 @@ export class MocapView {
     const opened = this.#opened;
     if (!opened) return;
     const { name, sources, index, prepared, map } = opened;
-    const outlook = { clip: index, beside: this.#second?.estimator };
+    const view = { clip: index, beside: this.#second?.estimator };
     const { hash, isUsed } = map;
     this.#bones.offer({
       name,
-      request: { sources, outlook },
+      request: { sources, view },
       hash,
       ...prepared.bones,
       isShown: true,
@@ -208,7 +185,7 @@ export class MocapView {
     return (left + right) / 2;
   }
 
-  /** One frame of the page: what was tracked, and the body that its method draws. */
+  /** Updates the second body, the ghosts and the errors to a frame and the body that the page's method draws. */
   frame(frame: TrackingFrame, { body }: AvatarPose): void {
     const { replay } = this.#options;
     if (this.#opened && replay.recording !== this.#opened.recording) this.close();
@@ -229,15 +206,15 @@ export class MocapView {
         this.#truthPlace !== 'off' && (i === 0 || (this.#second !== null && this.#truthPlace === 'inside'));
       if (ghost.object.visible) ghost.show(places, frame.head.orientation);
     }
-    if (this.#second) this.#second.place.visible = true;
+    if (this.#second) this.#second.object.visible = true;
   }
 
-  /** Brings the card up to date; some times a second. */
+  /** Updates the card; called several times a second. */
   show(): void {
     const opened = this.#opened;
     if (!opened) return;
     const { replay, method } = this.#options;
-    const methods = [method.wanted, ...(this.#second ? [this.#second.estimator] : [])];
+    const methods = [method.selected, ...(this.#second ? [this.#second.estimator] : [])];
     this.#card.show({
       clips: opened.prepared.clips.map(({ name }) => name),
       clip: opened.index,
@@ -251,12 +228,12 @@ export class MocapView {
       methods: methods.map((estimator, i) => ({
         estimator,
         now: this.#drawn[i] ? this.#errors[i as 0] : null,
-        mean: opened.means.of(estimator),
+        mean: opened.means.errorsOf(estimator),
       })),
     });
   }
 
-  /** Takes the clip from the stage; the replay stays as it is. */
+  /** Hides the clip. The replay continues. */
   close(): void {
     this.#opened?.means.dispose();
     this.#opened = null;
@@ -281,7 +258,7 @@ export class MocapView {
         this.#seek(seconds);
         this.show();
       },
-      choose: (estimator) => method.choose(estimator),
+      choose: (estimator) => method.select(estimator),
       compare: (estimator) => this.#compare(estimator),
       placeTruth: (place) => this.#placeTruth(place),
       copyLink: () => void this.#copyLink(),
@@ -298,27 +275,27 @@ export class MocapView {
   }
 
   #show(
-    read: ReadMocap & Pick<Opened, 'name' | 'sources'>,
-    { outlook, asked }: Pick<Request, 'outlook' | 'asked'>,
+    read: ReadMocap & Pick<OpenClip, 'name' | 'sources'>,
+    { view, requestNumber }: Pick<OpenRequest, 'view' | 'requestNumber'>,
   ): void {
     const { clips } = read.prepared;
     const longest = clips.reduce((best, { frameCount }, i) => (frameCount > clips[best]!.frameCount ? i : best), 0);
-    const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
+    const index = clips[view.clip ?? longest] ? (view.clip ?? longest) : longest;
     const clip = clips[index]!;
     const recording = recordingOf(clip);
     const { replay, networks, onJump } = this.#options;
     // If this throws, the shown motion stays.
-    replay.load(`${clip.name}.json`, recording, asked);
+    replay.load(`${clip.name}.json`, recording, requestNumber);
     replay.replay();
     onJump();
     this.close();
     const truth = new Truth(clip);
     const means = new ClipMeans(recording, truth, networks);
     this.#opened = { ...read, index, recording, truth, means, meter: new ErrorMeter(clip.calibration) };
-    this.#placeTruth(outlook.truth ?? this.#truthPlace);
-    if (outlook.beside) this.#compare(outlook.beside);
-    if (outlook.at !== undefined) {
-      replay.seek(outlook.at);
+    this.#placeTruth(view.truth ?? this.#truthPlace);
+    if (view.beside) this.#compare(view.beside);
+    if (view.at !== undefined) {
+      replay.seek(view.at);
       replay.setPaused(true);
       onJump();
     }
@@ -327,7 +304,7 @@ export class MocapView {
 
   #chooseClip(clip: number): void {
     const opened = this.#opened;
-    if (opened) this.#show(opened, { outlook: { clip, beside: this.#second?.estimator } });
+    if (opened) this.#show(opened, { view: { clip, beside: this.#second?.estimator } });
   }
 
   #seek(seconds: number): void {
@@ -372,11 +349,11 @@ export class MocapView {
 
   #hide(): void {
     for (const ghost of this.#ghosts) ghost.object.visible = false;
-    if (this.#second) this.#second.place.visible = false;
+    if (this.#second) this.#second.object.visible = false;
     this.#drawn.fill(false);
   }
 
-  /** To this file, second and methods; the address of the page becomes it too. */
+  /** Copies a link to this file, time and methods. The address of the page becomes the link too. */
   async #copyLink(): Promise<void> {
     const { replay, method, notices } = this.#options;
     const opened = this.#opened;
@@ -386,7 +363,7 @@ export class MocapView {
     const { searchParams } = link;
     searchParams.set('mocap', addresses.join(' '));
     searchParams.set('at', replay.seconds.toFixed(2));
-    searchParams.set('estimator', method.wanted);
+    searchParams.set('estimator', method.selected);
     searchParams.set('truth', this.#truthPlace);
     if (this.#second) searchParams.set('beside', this.#second.estimator);
     else searchParams.delete('beside');

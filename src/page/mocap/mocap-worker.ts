@@ -6,8 +6,8 @@ import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/c
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
 
-/** What the worker is to read. */
-export type MocapQuestion = MocapFiles & GivenBones;
+/** A request to the worker: the files to read. */
+export type MocapRequest = MocapFiles & GivenBones;
 
 /** The user's map of a file's bones. */
 export interface MotionMap {
@@ -18,18 +18,19 @@ export interface MotionMap {
 }
 
 /**
- * The worker's messages: progress [0, 1], the result, or the reason of a failure with the bones that did not match
- * (null: they are not at fault).
+ * A message of the worker: the progress [0, 1], the result, or the reason of a failure. `bones`: those that did not
+ * match; null: the failure has another reason.
  */
-export type MocapAnswer =
-  | { readonly share: number }
+export type MocapResponse =
+  | { readonly fraction: number }
   | { readonly prepared: PreparedMocap; readonly map: MotionMap }
-  | { readonly refused: string; readonly bones: FileBones | null; readonly hash: string | null };
+  | { readonly failure: string; readonly bones: FileBones | null; readonly hash: string | null };
 
-const tellEveryMs = 100;
-const tell = (answer: MocapAnswer, transfer: Transferable[] = []): void => self.postMessage(answer, { transfer });
+const progressIntervalMs = 100;
+const respond = (response: MocapResponse, transfer: Transferable[] = []): void =>
+  self.postMessage(response, { transfer });
 
-/** What the readers take; half an hour of all joints at 120 Hz. */
+/** The largest file that is read: half an hour of all joints at 120 Hz. */
 const mocapFile: FileKind = { what: 'a motion capture file', megabytes: 200 };
 const bytesOf = (file: MocapFile): Promise<ArrayBuffer> => readLimited(file, mocapFile);
 const named = (file: MocapFile, bytes: ArrayBuffer) => ({
@@ -52,37 +53,37 @@ async function sourceOf({ motion, skeleton, map }: MocapFiles) {
   return { source: { ...file, ...mapped }, hash };
 }
 
-async function read({ bones, boneMaps, ...files }: MocapQuestion): Promise<void> {
+async function read({ bones, boneMaps, ...files }: MocapRequest): Promise<void> {
   const { source, hash } = await sourceOf(files);
-  const own = bones ?? (hash === null ? undefined : boneMaps[hash]);
-  const work = prepareMocap(own ? { ...source, bones: own } : source);
+  const userMap = bones ?? (hash === null ? undefined : boneMaps[hash]);
+  const work = prepareMocap(userMap ? { ...source, bones: userMap } : source);
   try {
     const prepared = finish(work);
     const { clips } = prepared;
-    tell(
-      { prepared, map: { hash, isUsed: own !== undefined } },
+    respond(
+      { prepared, map: { hash, isUsed: userMap !== undefined } },
       clips.flatMap(({ tracked, truth }) => [tracked.buffer, truth.buffer]),
     );
   } catch (error) {
     if (!(error instanceof UnknownBonesError)) throw error;
     const { joints, matched, confidence } = error;
-    tell({ refused: firstLine(error.message), bones: { joints, matched, confidence }, hash });
+    respond({ failure: firstLine(error.message), bones: { joints, matched, confidence }, hash });
   }
 }
 
 /** Finishes the work and reports its progress. */
 function finish(work: Generator<number, PreparedMocap>): PreparedMocap {
-  let told = 0;
+  let reportedAt = 0;
   for (;;) {
     const step = work.next();
     if (step.done) return step.value;
     const now = performance.now();
-    if (now - told < tellEveryMs) continue;
-    told = now;
-    tell({ share: step.value });
+    if (now - reportedAt < progressIntervalMs) continue;
+    reportedAt = now;
+    respond({ fraction: step.value });
   }
 }
 
-self.addEventListener('message', ({ data }: MessageEvent<MocapQuestion>) => {
-  read(data).catch((error: unknown) => tell({ refused: firstLine(reasonOf(error)), bones: null, hash: null }));
+self.addEventListener('message', ({ data }: MessageEvent<MocapRequest>) => {
+  read(data).catch((error: unknown) => respond({ failure: firstLine(reasonOf(error)), bones: null, hash: null }));
 });

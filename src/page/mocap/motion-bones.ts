@@ -1,6 +1,9 @@
+import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
 import type { BoneMap } from 'threepoint/core/humanoid/bones';
 import type { FileBones } from 'threepoint/core/humanoid/unknown-bones-error';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
+import type { MocapFile } from './mocap-files';
+import type { TruthPlace } from './truth-places';
 
 /** The bone maps that users gave for files, by the hashes of the files. */
 export interface BoneMaps {
@@ -9,19 +12,38 @@ export interface BoneMaps {
   forget(hash: string): void;
 }
 
-export interface MotionBonesOptions<Request> {
+/** The presentation of a clip. Absent members stay as they are. */
+export interface ClipView {
+  /** The index of the clip, from 0. */
+  readonly clip?: number | undefined;
+  /** The time at which the replay is paused [s]. */
+  readonly at?: number | undefined;
+  /** The estimator of the second body. */
+  readonly beside?: EstimatorName | undefined;
+  readonly truth?: TruthPlace | undefined;
+}
+
+/** Files to open. */
+export interface OpenRequest {
+  readonly sources: readonly MocapFile[];
+  readonly view: ClipView;
+  /** Its number among the recorder's requests; absent: the newest. */
+  readonly requestNumber?: number | undefined;
+}
+
+export interface MotionBonesOptions {
   readonly boneMaps: BoneMaps;
   /** Shows the form; null: hides it. */
   show(skeleton: SkeletonToMap | null): void;
-  /** Reads the files of a request with this map; null: with what was found. */
-  read(request: Request, bones: BoneMap | null): void;
+  /** Reads the files of a request with this map; null: with the bones that the matcher finds. */
+  read(request: OpenRequest, bones: BoneMap | null): void;
 }
 
 /** Bones of a motion, and the files from which they were read. */
-export interface OfferedBones<Request> extends FileBones {
+export interface OfferedBones extends FileBones {
   readonly name: string;
-  readonly request: Request;
-  /** The hash by which a map is kept; null: it is not kept. */
+  readonly request: OpenRequest;
+  /** The hash by which the map is stored; null: it is not stored. */
   readonly hash: string | null;
   /** Whether the motion is shown. */
   readonly isShown: boolean;
@@ -29,18 +51,18 @@ export interface OfferedBones<Request> extends FileBones {
   readonly isOwnMap: boolean;
 }
 
-/** Lets the user map the bones of a motion, and keeps the map for its file. */
-export class MotionBones<Request> {
-  readonly #options: MotionBonesOptions<Request>;
-  #offered: OfferedBones<Request> | null = null;
+/** Lets the user map the bones of a motion, and forgets the map of its file on request. */
+export class MotionBones {
+  readonly #options: MotionBonesOptions;
+  #offered: OfferedBones | null = null;
   #skeleton: SkeletonToMap | null = null;
 
-  constructor(options: MotionBonesOptions<Request>) {
+  constructor(options: MotionBonesOptions) {
     this.#options = options;
   }
 
   /** Opens the form for the bones of a motion. */
-  offer(offered: OfferedBones<Request>): void {
+  offer(offered: OfferedBones): void {
     const { name, joints, matched, confidence, isShown, isOwnMap } = offered;
     this.#offered = offered;
     this.#show({ name, joints, bones: matched, confidence, complaint: null, isShown, canForgetMap: isOwnMap });

@@ -4,12 +4,12 @@ import type { PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
 import { secondsLeft } from 'threepoint/core/motion/work';
 import { fileNameOf } from 'threepoint-ui/limited-files';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
-import type { MocapAnswer, MocapQuestion, MotionMap } from './mocap-worker';
+import type { MocapRequest, MocapResponse, MotionMap } from './mocap-worker';
 
 /** Makes an address absolute for a worker, whose base address differs from the page's. */
 const forWorker = (file: MocapFile): MocapFile => (typeof file === 'string' ? new URL(file, location.href).href : file);
 
-/** The error of a motion whose bones match no humanoid: a map of them can be given, and kept by the file's hash. */
+/** The error of a motion whose bones match no humanoid. `hash`: of the file, by which the user's map is stored. */
 export class UnmatchedMotion extends UnknownBonesError {
   constructor(
     message: string,
@@ -27,9 +27,8 @@ export interface ReadMocap {
 }
 
 /**
- * Reads motion capture in a worker that lives no longer than that, from the first byte on: neither a large file nor a
- * broken one touches the picture. Rejects with a sentence where the file is none, with UnmatchedMotion where its bones
- * match no humanoid, with the signal's reason where it is given up.
+ * Reads motion capture in a worker, which ends with it, so that the page continues to draw. Rejects with a sentence if
+ * a file is invalid, with UnmatchedMotion if its bones match no humanoid, with the signal's reason if it is aborted.
  */
 export function readMocap(
   { motion, skeleton, map }: MocapFiles,
@@ -38,28 +37,28 @@ export function readMocap(
 ): Promise<ReadMocap> {
   signal?.throwIfAborted();
   const worker = new Worker(new URL('./mocap-worker.ts', import.meta.url), { type: 'module' });
-  const begun = performance.now();
+  const startMs = performance.now();
   return new Promise<ReadMocap>((resolve, reject) => {
     signal?.addEventListener('abort', () => reject(signal.reason));
-    worker.addEventListener('message', ({ data: answer }: MessageEvent<MocapAnswer>) => {
-      if ('prepared' in answer) resolve(answer);
-      else if ('refused' in answer) {
-        const { refused, bones, hash } = answer;
-        reject(bones ? new UnmatchedMotion(refused, bones, hash) : new Error(refused));
+    worker.addEventListener('message', ({ data: response }: MessageEvent<MocapResponse>) => {
+      if ('prepared' in response) resolve(response);
+      else if ('failure' in response) {
+        const { failure, bones, hash } = response;
+        reject(bones ? new UnmatchedMotion(failure, bones, hash) : new Error(failure));
       } else {
-        const { share: fraction } = answer;
-        onProgress?.({ fraction, secondsLeft: secondsLeft(fraction, (performance.now() - begun) / 1000) });
+        const { fraction } = response;
+        onProgress?.({ fraction, secondsLeft: secondsLeft(fraction, (performance.now() - startMs) / 1000) });
       }
     });
     worker.addEventListener('error', ({ message }) => {
       reject(new Error(`${fileNameOf(motion)}: it could not be read (${message || 'its reader did not start'})`));
     });
-    const question: MocapQuestion = {
+    const request: MocapRequest = {
       ...given,
       motion: forWorker(motion),
       skeleton: skeleton && forWorker(skeleton),
       map: map && forWorker(map),
     };
-    worker.postMessage(question);
+    worker.postMessage(request);
   }).finally(() => worker.terminate());
 }

@@ -12,7 +12,7 @@ export interface SecondBodyOptions {
   readonly calibration: Calibration;
   readonly estimator: EstimatorName;
   readonly networks: BodySolverOptions['networks'];
-  /** Moves it. */
+  /** The replay that moves the body. */
   readonly replay: ReplayState;
   /** The distance of the second body to the right of the first [m]. */
   readonly aside: number;
@@ -22,49 +22,49 @@ export interface SecondBodyOptions {
 
 /** Another method's body of the same person, next to the first. */
 export class SecondBody {
-  readonly place = new Group();
+  readonly object = new Group();
   readonly #body: BodySolver;
   readonly #replayed: ReplayedBody;
   #avatar: Avatar | null = null;
-  #gone = false;
+  #disposed = false;
 
-  /** The avatar comes when it has loaded; `ready` rejects where it cannot. */
+  /** Resolves when the avatar is shown; rejects if it cannot be loaded. */
   readonly ready: Promise<void>;
 
   constructor({ scene, calibration, estimator, networks, replay, aside, loadAvatar, onFallback }: SecondBodyOptions) {
     this.#body = new BodySolver({ calibration, estimator, networks, events: { fallback: onFallback } });
     this.#replayed = new ReplayedBody(this.#body, replay);
-    this.place.position.x = aside;
-    scene.add(this.place);
+    this.object.position.x = aside;
+    scene.add(this.object);
     this.ready = loadAvatar().then((avatar) => {
-      if (this.#gone) return avatar.dispose();
+      if (this.#disposed) return avatar.dispose();
       avatar.setCalibration(calibration);
-      this.place.add(avatar.object);
+      this.object.add(avatar.object);
       this.#avatar = avatar;
     });
   }
 
-  /** What was chosen, which may still be loading. */
+  /** The selected method, which may still be loading. */
   get estimator(): EstimatorName {
     return this.#body.selectedEstimator;
   }
 
-  /** One frame; the body that is drawn, null: this method draws none. */
+  /** Updates the body to a frame and returns its pose; null: this method draws none. */
   update(frame: TrackingFrame): UpperBodyPose | null {
     const pose = this.#replayed.update(frame, null);
     if (pose) this.#avatar?.setPose(pose, frame.time);
     return pose?.body ?? null;
   }
 
-  /** The next frame is elsewhere in time. */
+  /** Call before a frame that does not follow the last one in time. */
   discontinuity(): void {
     this.#body.discontinuity();
   }
 
   dispose(): void {
-    this.#gone = true;
+    this.#disposed = true;
     this.#avatar?.dispose();
-    this.place.removeFromParent();
+    this.object.removeFromParent();
     void this.#body.dispose();
   }
 }

@@ -44,7 +44,7 @@ class SimulatedFrames implements TrackingFrames {
   }
 }
 
-/** What the trackers saw, as a recording that any method replays. */
+/** Returns the simulated tracking of a clip as a recording that any method replays. */
 export const recordingOf = (clip: MocapClip): Replayable => ({
   device: 'simulated from motion capture',
   rateHz: mocapRateHz,

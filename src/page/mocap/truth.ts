@@ -19,7 +19,7 @@ export class Truth {
     for (const joint of this.joints) this.#places[joint] = vec3(0, 0, 0);
   }
 
-  /** At a time [s] of the clip, interpolated; the same object in every call. */
+  /** Returns the positions at a time of the clip [s], interpolated. Every call returns the same object. */
   at(seconds: number): Readonly<Partial<Record<TruthJoint, Vec3>>> {
     const time = Math.max(0, Math.min(this.frameCount - 1, seconds * mocapRateHz));
     const before = Math.floor(time);

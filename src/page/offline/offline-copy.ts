@@ -19,7 +19,7 @@ function settled(worker: ServiceWorker): Promise<void> {
   });
 }
 
-/** The copy of the page that this browser keeps, so that the next visit needs no network. */
+/** Stores a copy of the page in this browser, so that later visits need no network. */
 export class OfflineCopy {
   #state: OfflineCopyState = 'nothing';
 
@@ -28,8 +28,8 @@ export class OfflineCopy {
   }
 
   /**
-   * Stores a copy of the page, or a newer one. A browser that stores nothing (no secure context, a private window, full
-   * storage, a policy) changes nothing. Never rejects.
+   * Stores the page or its newer version. The state reports a browser that cannot store it (no secure context, a
+   * private window, full storage, a policy). Never rejects.
    */
   async keep(workers: ServiceWorkerContainer | undefined): Promise<void> {
     if (!workers) {

@@ -16,7 +16,7 @@ function contains(polygon: readonly FloorPoint[], { x, z }: FloorPoint): boolean
   return inside;
 }
 
-/** The distance between the points at which a floor is examined [m]. */
+/** The distance between the tested points of a floor [m]. */
 const step = 0.25;
 
 /** Returns whether a floor has the space that an activity needs about the origin, which looks along −Z. */

@@ -18,7 +18,7 @@ interface PersistentAnchor extends XRAnchor {
   requestPersistentHandle?(): Promise<string>;
 }
 
-/** The handle of the anchor that the browser keeps from one visit to the next; undefined: there is none. */
+/** The stored handle of the mirror's persistent anchor; undefined: there is none. */
 export interface StoredAnchor {
   readonly handle: string | undefined;
   store(handle: string | undefined): void;
@@ -28,26 +28,26 @@ export interface MirrorStandOptions {
   readonly session: XRSession;
   /** The space of the page's floor frame; null before the session started. */
   floorSpace(): XRReferenceSpace | null;
-  /** Something else lies under the hands' rays: it is pressed, and the mirror is not grabbed. */
+  /** Whether a menu lies before the mirror, under the hands' rays. It is pressed, and the mirror is not grabbed. */
   isCovered(): boolean;
   readonly kept: StoredAnchor;
 }
 
 /** The place of the mirror until a floor is found: ahead of the origin [m]. */
-const usual: MirrorPlace = { x: 0, y: 0, z: -1.5, turned: 0 };
-/** The nearest and the furthest that the mirror stands from its user [m]. */
-const nearest = 0.9;
-const furthest = 8;
-/** Below the gaze, so that a level gaze meets the floor 2.3 m ahead of a person of 1.7 m. */
+const defaultPlace: MirrorPlace = { x: 0, y: 0, z: -1.5, turned: 0 };
+/** The smallest and the largest distance of the mirror from its user [m]. */
+const minDistance = 0.9;
+const maxDistance = 8;
+/** The direction of the hit test, below the gaze: 2.3 m ahead of a person of 1.7 m for a level gaze. */
 const gazeToFloor = { x: 0, y: -0.7, z: -1 };
-/** The floor is sought for this long [s]. */
-const seekingSeconds = 6;
+/** The longest search for the floor [s]. */
+const searchSeconds = 6;
 /** A surface this far from the session's own floor is a table or a step [m]. */
 const floorTolerance = 0.3;
-/** Half the width of what can be grabbed, and its height [m]. */
-const reach = { halfWidth: 0.82, height: 2.35 };
-/** A hand that comes this much nearer draws the mirror nearer by so many times as much. */
-const pull = 4;
+/** The area in which the mirror can be grabbed [m]. */
+const grabArea = { halfWidth: 0.82, height: 2.35 };
+/** The movement of the mirror per movement of the hand towards or away from the user. */
+const pullFactor = 4;
 
 /** A grab: its source, the distance of the mirror from the user, and of the hand at its beginning [m]. */
 interface Grab {
@@ -74,13 +74,13 @@ export function meetsMirror({ origin, direction }: Ray, { x, y, z, turned }: Mir
   const distance = -from.z / along.z;
   if (!(distance > 0)) return false;
   const height = from.y + distance * along.y;
-  return Math.abs(from.x + distance * along.x) < reach.halfWidth && height > 0 && height < reach.height;
+  return Math.abs(from.x + distance * along.x) < grabArea.halfWidth && height > 0 && height < grabArea.height;
 }
 
 /** Returns a place at this distance from the head in a horizontal direction, facing the head. */
 function placeFacing(head: Vec3, towards: { readonly x: number; readonly z: number }, distance: number, y: number) {
   const length = Math.hypot(towards.x, towards.z) || 1;
-  const clamped = Math.min(furthest, Math.max(nearest, distance));
+  const clamped = Math.min(maxDistance, Math.max(minDistance, distance));
   const [x, z] = [head.x + (towards.x / length) * clamped, head.z + (towards.z / length) * clamped];
   return { x, y, z, turned: Math.atan2(head.x - x, head.z - z) };
 }
@@ -95,13 +95,13 @@ export class MirrorStand {
   /** A space that is fixed to the room at the foot of the mirror; null: none yet. */
   #fixed: XRSpace | null = null;
   #anchor: XRAnchor | null = null;
-  #place = usual;
+  #place = defaultPlace;
   #hitTest: XRHitTestSource | null = null;
-  #seekUntil: number | null = null;
+  #searchUntil: number | null = null;
   #restoring = true;
   #grab: Grab | null = null;
-  /** A grab has moved the mirror, and nothing fixes it there yet. */
-  #loose = false;
+  /** Whether a grab has moved the mirror since it was fixed. */
+  #moved = false;
   #disposed = false;
 
   constructor(options: MirrorStandOptions) {
@@ -126,7 +126,7 @@ export class MirrorStand {
     return this.#place;
   }
 
-  /** An anchor of the device holds the mirror. */
+  /** Whether an anchor of the device holds the mirror. */
   get anchored(): boolean {
     return this.#anchor !== null;
   }
@@ -136,9 +136,9 @@ export class MirrorStand {
     const floor = this.#options.floorSpace();
     if (!floor) return;
     if (this.#grab) this.#drag(this.#grab, frame, floor);
-    else if (this.#loose) this.#fix(frame, floor);
+    else if (this.#moved) this.#fix(frame, floor);
     else if (this.#fixed) this.#locate(this.#fixed, frame, floor);
-    else if (!this.#restoring) this.#seek(frame, floor, time);
+    else if (!this.#restoring) this.#findFloor(frame, floor, time);
   }
 
   dispose(): void {
@@ -176,16 +176,16 @@ export class MirrorStand {
     }
   }
 
-  #seek(frame: XRFrame, floor: XRReferenceSpace, time: number): void {
+  #findFloor(frame: XRFrame, floor: XRReferenceSpace, time: number): void {
     const viewer = frame.getViewerPose(floor);
     if (!viewer) return;
-    this.#seekUntil ??= time + (this.#hitTest ? seekingSeconds : 0);
+    this.#searchUntil ??= time + (this.#hitTest ? searchSeconds : 0);
     const { origin: head, direction } = rayOf(viewer);
     const hit = this.#hitTest && frame.getHitTestResults(this.#hitTest)[0]?.getPose(floor)?.transform;
     const isFloor = hit && Math.abs(hit.position.y) < floorTolerance && rotate(hit.orientation, up).y > 0.9;
-    if (!isFloor && time < this.#seekUntil) return;
+    if (!isFloor && time < this.#searchUntil) return;
     const height = isFloor ? hit.position.y : 0;
-    const distance = isFloor ? Math.hypot(hit.position.x - head.x, hit.position.z - head.z) : -usual.z;
+    const distance = isFloor ? Math.hypot(hit.position.x - head.x, hit.position.z - head.z) : -defaultPlace.z;
     this.#place = placeFacing(head, direction, Math.max(1.3, Math.min(2.5, distance)), height);
     this.#hitTest?.cancel();
     this.#hitTest = null;
@@ -223,18 +223,18 @@ export class MirrorStand {
     const { origin: hand, direction } = rayOf(pose);
     const { origin: head } = rayOf(viewer);
     const now = Math.hypot(hand.x - head.x, hand.z - head.z);
-    this.#place = placeFacing(head, direction, distance + pull * (now - before), this.#place.y);
-    this.#loose = true;
+    this.#place = placeFacing(head, direction, distance + pullFactor * (now - before), this.#place.y);
+    this.#moved = true;
   }
 
   #end(source: XRInputSource): void {
-    // The next frame fixes the place where it was released.
+    // The next frame fixes the place.
     if (this.#grab?.source === source) this.#grab = null;
   }
 
   /** Fixes the place to the room: by the session's own space at once, and by an anchor as soon as there is one. */
   #fix(frame: XRFrame, floor: XRReferenceSpace): void {
-    this.#loose = false;
+    this.#moved = false;
     const { x, y, z, turned } = this.#place;
     const transform = new XRRigidTransform({ x, y, z, w: 1 }, fromAxisAngle(up, turned));
     this.#anchor?.delete();
@@ -243,7 +243,7 @@ export class MirrorStand {
     const fixed = this.#fixed;
     void frame
       .createAnchor?.(transform, floor)
-      ?.then((anchor) => (this.#fixed === fixed && !this.#disposed ? this.#keep(anchor) : anchor.delete()))
+      ?.then((anchor) => (this.#fixed === fixed && !this.#disposed ? this.#store(anchor) : anchor.delete()))
       // reason: a device without anchors here holds the mirror by the session's own space
       .catch(() => undefined);
   }
@@ -253,8 +253,8 @@ export class MirrorStand {
     this.#fixed = anchor.anchorSpace;
   }
 
-  /** Holds the mirror by an anchor, and asks the device to keep it for later visits. */
-  async #keep(anchor: PersistentAnchor): Promise<void> {
+  /** Holds the mirror by an anchor, and stores the anchor for later visits. */
+  async #store(anchor: PersistentAnchor): Promise<void> {
     const { session, kept } = this.#options;
     this.#hold(anchor);
     if (!anchor.requestPersistentHandle) return;

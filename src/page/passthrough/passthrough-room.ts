@@ -22,14 +22,14 @@ export interface PassthroughOptions {
   /** The current activity; null: the user is at the mirror. */
   activity(): Pick<Activity, 'place' | 'floor'> | null;
   standMirror(x: number, floor: number, z: number, turned: number): void;
-  /** A sheet lies under the hands' rays. */
+  /** Whether a menu lies before the mirror, under the hands' rays. */
   isCovered(): boolean;
 }
 
-/** The objects of a place that stand for the world around it, and give way to the user's own room. */
+/** The names of a place's objects that represent the world around it. They are hidden in the user's own room. */
 export const scenery = ['sky', 'ground', 'landscape', 'backstop', 'tufts'];
 /** The start of the fog in passthrough, beyond any room [m]. */
-const hazeBeyond = 1e5;
+const fogStart = 1e5;
 const shadowSize = 12;
 const shadowDarkness = 0.4;
 
@@ -43,7 +43,7 @@ function createShadowPlane(): Mesh {
   return plane;
 }
 
-/** Returns what an activity needs, in a sentence. */
+/** Returns the notice that the room is smaller than an activity needs. */
 function tooSmall({ place }: Pick<Activity, 'place'>, { halfWidth, ahead, behind }: FloorNeeds): string {
   const size = `${2 * halfWidth} × ${ahead + behind} m`;
   return `${place} needs ${size} of free floor in front of you. Your room is smaller, so the usual world is shown.`;
@@ -78,7 +78,7 @@ export class PassthroughRoom {
     if (this.#shadowPlane) studio.scene.add(this.#shadowPlane);
   }
 
-  /** The user sees the own room, not the world of an activity. */
+  /** Whether the user sees the own room, not the world of an activity. */
   get showsRoom(): boolean {
     return this.#showsRoom;
   }
@@ -122,7 +122,7 @@ export class PassthroughRoom {
     if (!this.#showsRoom) return;
     if (current) this.#hideScenery(studio.surroundings.object);
     const { fog } = studio.scene;
-    if (fog instanceof Fog) Object.assign(fog, { near: hazeBeyond, far: 2 * hazeBeyond });
+    if (fog instanceof Fog) Object.assign(fog, { near: fogStart, far: 2 * fogStart });
   }
 
   #hideScenery(place: Object3D): void {

@@ -24,7 +24,7 @@ const constantTerm = Math.sqrt(Math.PI) / 2;
 
 const clamped = (value: number): number => (value > 0 ? Math.min(value, brightest) : 0);
 
-/** Reads the light of the room that the device estimates, frame by frame; a device without an estimate gives none. */
+/** Reads the device's estimate of the room's light. */
 export class RoomLight {
   #probe: LightProbe | null = null;
 
@@ -35,6 +35,7 @@ export class RoomLight {
     this.#probe = (await requestLightProbe?.call(session).catch(() => null)) ?? null;
   }
 
+  /** Returns the estimate of a frame; null: the device has none. */
   read(frame: XRFrame, floorSpace: XRReferenceSpace): EstimatedLight | null {
     const probe = this.#probe;
     const estimate = probe && (frame as EstimatingFrame).getLightEstimate?.(probe);

@@ -9,7 +9,8 @@ import { recordOf } from 'threepoint/core/records';
 import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { pageElement } from 'threepoint-ui/element';
 import type { Notices } from 'threepoint-ui/notices';
-import type { MocapView, Outlook } from '../mocap/mocap-view';
+import type { MocapView } from '../mocap/mocap-view';
+import type { ClipView } from '../mocap/motion-bones';
 import type { Recorder } from '../studio/recorder';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
@@ -26,14 +27,14 @@ export interface LazyMocapOptions {
   readonly store: PreferenceStore;
   readonly notices: Notices;
   readonly boneMaps: BoneMapStore;
-  /** Brings what an object needs to the graphics device before it is seen. */
+  /** Compiles the materials of an object and uploads its textures before it is shown. */
   prepare(object: Object3D): Promise<void>;
   onChange(): void;
 }
 
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
 
-/** Motion capture on this page; the code for it comes with the first file. */
+/** Loads the motion capture viewer with the first file. */
 export class LazyMocap {
   readonly #options: LazyMocapOptions;
   #view: MocapView | null = null;
@@ -43,13 +44,13 @@ export class LazyMocap {
   }
 
   /**
-   * Shows the motion of files of this device, or of what addresses answer. `asked`: the recorder's place for this wish.
-   * Never rejects: faults become notices.
+   * Shows the motion of files of this device or of addresses. Never rejects: faults become notices. `requestNumber`:
+   * its number among the recorder's requests.
    */
   async open(
     sources: readonly (File | string)[],
-    outlook: Outlook = {},
-    asked = this.#options.recorder.nextRequest(),
+    view: ClipView = {},
+    requestNumber = this.#options.recorder.nextRequest(),
   ): Promise<void> {
     try {
       const { MocapView } = await import('../mocap/mocap-view');
@@ -58,7 +59,7 @@ export class LazyMocap {
       const reason = firstLine(reasonOf(error));
       this.#options.notices.show('error', `The motion capture viewer could not be loaded: ${reason}`);
     }
-    await this.#view?.open(sources, outlook, asked);
+    await this.#view?.open(sources, view, requestNumber);
   }
 
   /** The distance of the middle of what is shown to the right of the body [m]. */
@@ -66,12 +67,12 @@ export class LazyMocap {
     return this.#view?.aside ?? 0;
   }
 
-  /** One frame of the page. */
+  /** Updates the view to a frame of the page. */
   frame(frame: TrackingFrame, pose: AvatarPose): void {
     this.#view?.frame(frame, pose);
   }
 
-  /** Brings on the screen what changes by itself; some times a second. */
+  /** Updates the card; called several times a second. */
   show(): void {
     this.#view?.show();
   }
@@ -84,10 +85,10 @@ export class LazyMocap {
       region: pageElement('play', HTMLElement),
       replay: recorder,
       method: {
-        get wanted() {
+        get selected() {
           return body.selectedEstimator;
         },
-        choose(estimator) {
+        select(estimator) {
           store.remember({ estimator });
           void body.setEstimator(estimator);
           onChange();
@@ -101,7 +102,7 @@ export class LazyMocap {
     });
   }
 
-  /** A built-in avatar in other colours than those of the first. */
+  /** Loads a built-in avatar in other colours than those of the first. */
   async #loadAvatar(): Promise<Avatar> {
     const { builtInBody, palette } = this.#options.settings;
     const avatar = await buildBuiltIn(builtInBody);

@@ -26,7 +26,7 @@ function setLight(light: DirectionalLight, { color, intensity, from }: DistantLi
 
 const scaled = ([x, y, z]: DistantLight['from'], by: number): DistantLight['from'] => [x * by, y * by, z * by];
 
-/** The lights, the fog and the shadows of a scene. The objects stay the same; each place sets them again. */
+/** The lights, the fog and the shadows of a scene. Each place sets the same objects. */
 export class Lights {
   readonly #scene: Scene;
   readonly #renderer: WebGLRenderer;
@@ -42,7 +42,7 @@ export class Lights {
   readonly #stand = { x: 0, z: 0 };
   #lighting: Lighting | null = null;
   #estimate: EstimatedLight | null = null;
-  /** What surfaces reflect; null: nothing yet, or never in low quality. */
+  /** The environment that surfaces reflect; null: none yet, or low quality. */
   #reflections: WebGLRenderTarget | null = null;
 
   constructor(scene: Scene, renderer: WebGLRenderer, quality: Quality) {
@@ -65,7 +65,7 @@ export class Lights {
     if (this.#lighting) this.#aimKey(this.#lighting);
   }
 
-  /** Lights another place; the same one again after the graphics device was lost. */
+  /** Lights a place. Also rebuilds the graphics resources after a lost context. */
   set(lighting: Lighting): void {
     this.#lighting = lighting;
     this.#estimate = null;
@@ -85,7 +85,7 @@ export class Lights {
     this.#setReflections(lighting);
   }
 
-  /** Lights people and things as a device estimates the light of its room; null: as the place is lit. */
+  /** Sets key and fill light to a device's estimate of its room; null: to the lighting of the place. */
   setEstimate(light: EstimatedLight | null): void {
     const lighting = this.#lighting;
     if (!lighting) return;
@@ -119,7 +119,7 @@ export class Lights {
     shadow.radius = softness;
     if (mapSize.width === resolution) return;
     mapSize.set(resolution, resolution);
-    // The map of the other size is built again with the next picture.
+    // The next frame rebuilds the map in the new size.
     shadow.map?.dispose();
     shadow.map = null;
   }
@@ -127,13 +127,13 @@ export class Lights {
   #setReflections({ environment, environmentIntensity }: Lighting): void {
     const generator = new PMREMGenerator(this.#renderer);
     const room = environment();
-    // A target keeps its texture on the device until it is disposed of itself.
+    // A target keeps its texture on the graphics device until it is disposed.
     this.#reflections?.dispose();
     this.#reflections = generator.fromScene(room, reflectionBlur);
     this.#scene.environment = this.#reflections.texture;
     this.#scene.environmentIntensity = environmentIntensity;
     generator.dispose();
-    // Materials hold nothing but programs, which the next place draws with too.
+    // Materials hold only shader programs, which the next place uses too.
     room.traverse((node) => (node as Mesh).geometry?.dispose());
   }
 }

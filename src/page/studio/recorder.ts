@@ -45,7 +45,7 @@ export class Recorder {
     return this.#mode;
   }
 
-  /** Measures of the person in the recording that is replayed; null: nothing is, or it does not say. */
+  /** The calibration of the person in the replayed recording; null: there is no replay, or it has no calibration. */
   get person(): Calibration | null {
     return this.#mode === 'replaying' ? (this.#recording?.calibration ?? null) : null;
   }
@@ -97,7 +97,7 @@ export class Recorder {
     this.#mode = 'recording';
   }
 
-  /** Every tracked frame, recording or not. */
+  /** Records a tracked frame while a recording is in progress. */
   observe(frame: TrackingFrame): void {
     if (this.#mode !== 'recording') return;
     const last = this.#frames.at(-1);
@@ -126,7 +126,7 @@ export class Recorder {
     this.#sampledAt = null;
   }
 
-  /** Ends a replay, because another source moves the body. */
+  /** Ends a replay, if there is one: another source moves the body. */
   endReplay(): void {
     if (this.#mode === 'replaying') this.#end();
   }
@@ -143,7 +143,7 @@ export class Recorder {
     this.#mode = 'replaying';
   }
 
-  /** The replay's frame at this time, dated at this time; null: nothing is replayed. */
+  /** Returns the replay's frame with this time; null: there is no replay. */
   sample(time: number): TrackingFrame | null {
     const recording = this.#recording;
     const first = recording?.frames.at(0);
@@ -171,15 +171,12 @@ export class Recorder {
     if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
   }
 
-  /**
-   * Takes a recording from the text of a file; throws a sentence when it is none, or one of no person, and where `take`
-   * does.
-   */
-  open(name: string, text: string, asked = this.nextRequest()): Replayable {
+  /** Loads a recording from the text of a file. Throws a sentence if it is invalid, and as `load` does. */
+  open(name: string, text: string, requestNumber = this.nextRequest()): Replayable {
     const recording = parseRecording(text);
     const complaint = recording.calibration && calibrationProblem(recording.calibration);
     if (complaint) throw new Error(complaint);
-    this.load(name, recording, asked);
+    this.load(name, recording, requestNumber);
     return recording;
   }
 
@@ -193,14 +190,14 @@ export class Recorder {
   }
 
   /**
-   * Takes a recording, which replaces the current one. Throws while another is being recorded, and if a later request
+   * Loads a recording, which replaces the current one. Throws while another is being recorded, and if a later request
    * has been met.
    */
-  load(name: string, recording: Replayable, asked = this.nextRequest()): void {
+  load(name: string, recording: Replayable, requestNumber = this.nextRequest()): void {
     if (this.#mode === 'recording') throw new Error('a recording is in progress; stop it first');
-    if (asked < this.#newest) throw new Error('a newer recording was opened');
+    if (requestNumber < this.#newest) throw new Error('a newer recording was opened');
     this.stop();
-    this.#newest = asked;
+    this.#newest = requestNumber;
     this.#recording = recording;
     this.#name = name;
   }

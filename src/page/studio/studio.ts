@@ -28,7 +28,7 @@ const floorRadius = 24;
  */
 const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
 
-/** A sphere of smooth colour, darker overhead; drawn behind everything and without fog. */
+/** Creates the sky, a sphere that is darker overhead. It is drawn behind everything and without fog. */
 function createSky(): Mesh {
   const material = new ShaderMaterial({
     side: BackSide,
@@ -56,7 +56,7 @@ function createSky(): Mesh {
   return sky;
 }
 
-/** Lines every half metre that vanish with distance, drawn without aliasing by their derivatives. */
+/** Creates lines every half metre, which fade with distance and are antialiased by their derivatives. */
 function createGrid(): Mesh {
   const material = new ShaderMaterial({
     transparent: true,
@@ -97,7 +97,7 @@ function createFloor(): Mesh {
   return floor;
 }
 
-/** A ring with a notch towards the mirror (−Z): where to stand and where to look. */
+/** Creates the mark where to stand: a ring with a notch towards the mirror (−Z). */
 function createMark(): Group {
   const material = new MeshBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.55, depthWrite: false });
   const gap = 0.5;
@@ -111,7 +111,7 @@ function createMark(): Group {
   return mark;
 }
 
-/** The room as the surfaces see it: a bright ceiling panel, a warm side, a cool back. Never shown itself. */
+/** The environment that surfaces reflect: a bright ceiling panel, a warm side, a cool back. It is never shown. */
 function createLightRoom(): Scene {
   const room = new Scene();
   room.background = new Color('#2a3342');
@@ -145,8 +145,8 @@ const studioLighting = (quality: Quality): Lighting => ({
 });
 
 /**
- * Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. Builds the studio: floor,
- * sky, light and shadow, all made here, nothing loaded.
+ * Creates the studio around the people: floor, sky, light and shadow, without loading files. The floor is y = 0 of the
+ * floor frame.
  */
 export function createStudio(renderer: WebGLRenderer, quality: Quality) {
   const scene = new Scene();
@@ -161,13 +161,13 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
   let place = studioPlace;
   return {
     scene,
-    /** The studio itself, which other surroundings take the place of. */
+    /** The studio's objects, which other surroundings replace. */
     home: studio,
-    /** What is around the user now. */
+    /** The current surroundings. */
     get surroundings(): Surroundings {
       return place;
     },
-    /** Lights people and things as a device estimates the light of its room; null: as the surroundings are lit. */
+    /** Sets the light to a device's estimate of its room; null: to the lighting of the surroundings. */
     setEstimatedLight: (light: EstimatedLight | null): void => lights.setEstimate(light),
     /** Moves shadow and light to the person at (x, z) [m], floor frame. */
     follow: (x: number, z: number): void => lights.follow(x, z),
@@ -175,7 +175,7 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
     setMarkVisible(visible: boolean): void {
       mark.visible = visible;
     },
-    /** Puts another place, with its own light and fog, where the studio is; null brings the studio back. */
+    /** Replaces the studio by another place with its light and fog; null: shows the studio again. */
     setSurroundings(surroundings: Surroundings | null): void {
       const next = surroundings ?? studioPlace;
       if (next === place) return;

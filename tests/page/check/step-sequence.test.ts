@@ -1,18 +1,17 @@
-import { type CheckStep, openingSteps, remainingSteps } from 'threepoint-page/check/check-steps';
+import { type CheckStep, remainingSteps } from 'threepoint-page/check/check-steps';
 import { StepSequence } from 'threepoint-page/check/step-sequence';
 import { expect, test } from 'vitest';
 
 /** Runs a sequence at 72 Hz; returns what it called, with times [s], and how many frames counted for each kind. */
-function run(more: () => readonly CheckStep[], pace: number) {
+function run(remaining: () => readonly CheckStep[], pace: number) {
   const calls: string[] = [];
   const counted: Record<string, number> = {};
   let time = 0;
   const note = (what: string) => (step: CheckStep) => void calls.push(`${time.toFixed(1)} ${what} ${step.title}`);
   const sequence = new StepSequence({
-    first: openingSteps,
-    more,
+    remaining,
     pace,
-    listener: { begin: note('begin'), count: note('count'), end: note('end') },
+    listener: { begin: note('begin'), measure: note('measure'), end: note('end') },
   });
   for (let row = 0; !sequence.over && row < 72 * 600; row++) {
     time = 100 + row / 72;
@@ -32,13 +31,13 @@ test('frames count after the lead of a step, and as long as it takes', () => {
   const { calls, counted } = run(() => remainingSteps(true), 1);
   expect(calls.slice(0, 8)).toEqual([
     '100.0 begin Welcome',
-    '105.0 count Welcome',
+    '105.0 measure Welcome',
     '105.0 end Welcome',
     '105.0 begin Noise at rest',
-    '109.0 count Noise at rest',
+    '109.0 measure Noise at rest',
     '123.0 end Noise at rest',
     '123.0 begin Lost hands',
-    '127.0 count Lost hands',
+    '127.0 measure Lost hands',
   ]);
   expect(Math.abs(counted.noise! / (14 * 72) - 1)).toBeLessThan(0.01);
   expect(Math.abs(counted.losses! / (20 * 72) - 1)).toBeLessThan(0.01);
@@ -51,9 +50,9 @@ test('the pace shortens leads and steps alike', () => {
 });
 
 test('a body that appears during the first steps adds its steps; one that appears later changes nothing', () => {
-  let asked = 0;
-  // The preview is asked for first, the answer that counts after the first steps.
-  const { steps } = run(() => remainingSteps(asked++ > 0), 0.1);
-  expect(steps.map(({ measured }) => measured.kind)).toContain('body');
-  expect(asked).toBe(2);
+  let requests = 0;
+  // The first request is for the preview, the second one follows the opening steps.
+  const { steps } = run(() => remainingSteps(requests++ > 0), 0.1);
+  expect(steps.map(({ measured }) => measured?.kind)).toContain('body');
+  expect(requests).toBe(2);
 });

@@ -221,11 +221,20 @@ describe('the mirror in the room of its user', () => {
   });
 
   test('is let alone after the session: an anchor that arrives late is deleted', async () => {
-    const { stand, draw, made } = room({ anchors: true });
+    const { stand, draw, frame, kept } = room();
+    const late = new FakeAnchor(at(0, 0, -1.5), 'late');
+    let arrive: (() => void) | undefined;
+    const createAnchor = () =>
+      new Promise((resolve) => {
+        arrive = () => resolve(late);
+      });
+    Object.assign(frame, { createAnchor });
     await draw(0.05);
     stand.dispose();
-    await draw(0.5);
-    for (const anchor of made.slice(1)) expect(anchor.deleted).toBe(true);
+    arrive!();
+    await draw(0.05);
+    expect(late.deleted).toBe(true);
+    expect(kept.handle).toBeUndefined();
   });
 });
 

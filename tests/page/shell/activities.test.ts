@@ -358,8 +358,8 @@ function darts(done: string[]) {
       probe: () => ({ name: 'darts', seed: layout.seed, participant: place?.participant ?? null }),
       dispose: () => void done.push('dispose'),
     }),
-    createRunner: async (host) => ({
-      prepare: async (place) => void (await host.open(place)),
+    createRunner: async (services) => ({
+      prepare: async (place) => void (await services.open(place)),
       start: ({ seed }) => void done.push(`start ${seed}`),
       played: () => void done.push('played'),
       take: () => [],
@@ -368,7 +368,7 @@ function darts(done: string[]) {
       end: null,
       interrupted: false,
       pause: () => undefined,
-      abort: () => host.leave(),
+      abort: () => services.leave(),
       assists: () => [],
     }),
   };

@@ -96,12 +96,12 @@ describe('the recorder', () => {
 
   test('what was asked for before a recording was made comes too late, and leaves it', () => {
     const recorder = new Recorder();
-    const asked = recorder.nextRequest();
+    const requestNumber = recorder.nextRequest();
     recorder.record(source);
     for (const time of [1, 2]) recorder.observe(frameAt(time));
     recorder.stop();
     const other = recorded(0, 1).recording!;
-    expect(() => recorder.load('slow.json', other, asked)).toThrow('a newer recording was opened');
+    expect(() => recorder.load('slow.json', other, requestNumber)).toThrow('a newer recording was opened');
     expect(recorder.name).toBe('recording-1.json');
     recorder.load('new.json', other, recorder.nextRequest());
     expect(recorder.name).toBe('new.json');

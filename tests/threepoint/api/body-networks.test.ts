@@ -7,8 +7,8 @@ import { openPorts } from './open-ports';
 
 describe('a body whose network is unavailable', () => {
   test('is drawn by inverse kinematics, and says why', async () => {
-    const { body, told } = await observed({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
-    expect(told).toEqual(['fallback learned learned.bin: gone']);
+    const { body, reported } = await observed({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
+    expect(reported).toEqual(['fallback learned learned.bin: gone']);
     expect(body.update(at(0))?.body).not.toBeNull();
     expect(body.estimator).toBe('ik');
   });
@@ -29,20 +29,23 @@ describe('a body whose network is unavailable', () => {
       if (broken) throw new Error('out of memory');
       return plain.runNow!(features);
     };
-    const { body, told } = await observed({ calibration, networks: async () => ({ ...plain, runNow }) });
+    const { body, reported } = await observed({ calibration, networks: async () => ({ ...plain, runNow }) });
     body.update(at(0));
     expect(body.estimator).toBe('learned');
     broken = true;
     body.update(at(1 / 30));
     expect(body.estimator).toBe('ik');
-    expect(told.at(-1)).toBe('fallback learned learned: out of memory');
+    expect(reported.at(-1)).toBe('fallback learned learned: out of memory');
   });
 
   test('the paper’s network asks for a runtime', async () => {
-    const told: string[] = [];
-    const body = new Body({ estimator: 'ik', events: { fallback: (name, reason) => told.push(`${name} ${reason}`) } });
+    const reported: string[] = [];
+    const body = new Body({
+      estimator: 'ik',
+      events: { fallback: (name, reason) => reported.push(`${name} ${reason}`) },
+    });
     await body.setEstimator('paper');
-    expect(told).toEqual([expect.stringMatching(/^paper .*onnxNetworks/)]);
+    expect(reported).toEqual([expect.stringMatching(/^paper .*onnxNetworks/)]);
     expect(body.estimator).toBe('ik');
   });
 });
@@ -123,7 +126,7 @@ describe('a network that answers later', () => {
     const arriving = new Promise<void>((resolve) => {
       arrive = resolve;
     });
-    const { body, told } = await observed({
+    const { body, reported } = await observed({
       calibration,
       async networks(name) {
         if (name === 'paper') await arriving;
@@ -137,6 +140,6 @@ describe('a network that answers later', () => {
     await Promise.all([chosen, over]);
     expect(disposed.toSorted()).toEqual(['learned', 'paper']);
     expect(body.estimator).toBe('ik');
-    expect(told).toEqual([]);
+    expect(reported).toEqual([]);
   });
 });

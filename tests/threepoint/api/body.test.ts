@@ -29,7 +29,7 @@ describe('a body', () => {
   });
 
   test('follows three points: its wrists lie on the hands, by the network that was chosen', async () => {
-    const { body, told } = await observed({ calibration });
+    const { body, reported } = await observed({ calibration });
     for (let frame = 0; frame < 30; frame++) {
       const tracked = at(frame / 60);
       const pose = body.update(tracked);
@@ -38,7 +38,7 @@ describe('a body', () => {
       expect(distance(joints.rightHand.position, tracked.rightHand!.position)).toBeLessThan(0.001);
     }
     expect(body.estimator).toBe('learned');
-    expect(told).toEqual(['found head', 'found left', 'found right']);
+    expect(reported).toEqual(['found head', 'found left', 'found right']);
   });
 
   test('has the fingers of its frame in the pose, where they are known, and a copy keeps them', async () => {
@@ -64,36 +64,36 @@ describe('a body', () => {
   });
 
   test('says once which point is lost and once that it is found', async () => {
-    const { body, told } = await observed({ calibration, estimator: 'ik' });
+    const { body, reported } = await observed({ calibration, estimator: 'ik' });
     for (const frame of [at(0), at(1 / 60)]) body.update(frame);
-    told.length = 0;
+    reported.length = 0;
     for (let frame = 2; frame < 5; frame++) body.update({ ...at(frame / 60), leftHand: null });
     for (let frame = 5; frame < 8; frame++) body.update(at(frame / 60));
-    expect(told).toEqual(['lost left', 'found left']);
+    expect(reported).toEqual(['lost left', 'found left']);
   });
 
   test('says that a hand is lost where the device only guesses it: its arm sinks to rest', async () => {
-    const { body, told } = await observed({ calibration, estimator: 'ik' });
+    const { body, reported } = await observed({ calibration, estimator: 'ik' });
     body.update(at(0));
-    told.length = 0;
+    reported.length = 0;
     const guessed = { ...at(1 / 60).leftHand!, tracking: 'emulated' as const };
     for (let frame = 1; frame < 4; frame++) body.update({ ...at(frame / 60), leftHand: guessed });
     body.update(at(4 / 60));
-    expect(told).toEqual(['lost left', 'found left']);
+    expect(reported).toEqual(['lost left', 'found left']);
   });
 
   test('keeps its pose while the head is not seen', async () => {
-    const { body, told } = await observed({ calibration });
+    const { body, reported } = await observed({ calibration });
     const shown = JSON.stringify(body.update(at(0)));
     expect(JSON.stringify(body.update(null))).toBe(shown);
-    expect(told.slice(-3)).toEqual(['lost head', 'lost left', 'lost right']);
+    expect(reported.slice(-3)).toEqual(['lost head', 'lost left', 'lost right']);
   });
 
   test('is as tall as the headset hangs high, and grows when its wearer stands up', async () => {
-    const { body, told } = await observed({ estimator: 'ik' });
+    const { body, reported } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.6));
     for (let frame = 60; frame < 240; frame++) body.update(standing(frame / 60, 1.7));
-    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual([
+    expect(reported.filter((line) => line.startsWith('calibrated'))).toEqual([
       'calibrated 1.60 headset',
       'calibrated 1.70 stood-taller',
     ]);
@@ -101,15 +101,15 @@ describe('a body', () => {
   });
 
   test('of a wearer who sits at first, or holds the headset, is as tall as they stand up, and no taller on a box', async () => {
-    const { body, told } = await observed({ estimator: 'ik' });
+    const { body, reported } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 120; frame++) body.update(standing(frame / 60, 1.2));
     for (let frame = 120; frame < 300; frame++) body.update(standing(frame / 60, 1.78));
     for (let frame = 300; frame < 480; frame++) body.update(standing(frame / 60, 1.95));
-    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual(['calibrated 1.78 stood-taller']);
+    expect(reported.filter((line) => line.startsWith('calibrated'))).toEqual(['calibrated 1.78 stood-taller']);
   });
 
   test('takes no height from a headset that is not tracked yet, nor from the moments around', async () => {
-    const { body, told } = await observed({ estimator: 'ik', autoGrow: false });
+    const { body, reported } = await observed({ estimator: 'ik', autoGrow: false });
     const guessed = (time: number): TrackingFrame => {
       const frame = standing(time, 1.9);
       return { ...frame, head: { ...frame.head, tracking: 'emulated' } };
@@ -118,37 +118,37 @@ describe('a body', () => {
     for (let frame = 120; frame < 150; frame++) body.update(standing(frame / 60, 1.4));
     body.update(guessed(150 / 60));
     for (let frame = 151; frame < 190; frame++) body.update(standing(frame / 60, 1.6));
-    expect(told).toEqual(['found head']);
+    expect(reported).toEqual(['found head']);
     for (let frame = 190; frame < 200; frame++) body.update(standing(frame / 60, 1.62));
-    expect(told).toEqual(['found head', 'calibrated 1.62 headset']);
+    expect(reported).toEqual(['found head', 'calibrated 1.62 headset']);
   });
 
   test.each([
     ['is not seen', (body: Body) => body.update(null)],
     ['pauses', (body: Body) => body.discontinuity()],
   ])('takes no height from the moments before a headset %s, nor at once after', async (_, interrupt) => {
-    const { body, told } = await observed({ estimator: 'ik', autoGrow: false });
+    const { body, reported } = await observed({ estimator: 'ik', autoGrow: false });
     for (let frame = 0; frame < 30; frame++) body.update(standing(frame / 60, 0.9));
     interrupt(body);
     for (let frame = 600; frame < 630; frame++) body.update(standing(frame / 60, 1.4));
     for (let frame = 630; frame < 660; frame++) body.update(standing(frame / 60, 1.62));
-    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual(['calibrated 1.62 headset']);
+    expect(reported.filter((line) => line.startsWith('calibrated'))).toEqual(['calibrated 1.62 headset']);
   });
 
   test('keeps measures that it was given, however tall its wearer stands', async () => {
-    const { body, told } = await observed({ estimator: 'ik', calibration });
+    const { body, reported } = await observed({ estimator: 'ik', calibration });
     for (let frame = 0; frame < 240; frame++) body.update(standing(frame / 60, 1.72));
-    expect(told, 'and says once that they are too small').toEqual(['found head', 'outgrown by 0.07']);
+    expect(reported, 'and says once that they are too small').toEqual(['found head', 'outgrown by 0.07']);
     expect(body.calibration).toEqual(calibration);
   });
 
   test('takes measures from an object that its page goes on changing, as a panel of sliders does', () => {
-    const told: number[] = [];
+    const reported: number[] = [];
     const measures = { ...calibration };
     const body = new Body({
       estimator: 'ik',
       calibration: measures,
-      events: { calibrated: ({ eyeHeight }) => told.push(eyeHeight) },
+      events: { calibrated: ({ eyeHeight }) => reported.push(eyeHeight) },
     });
     const pelvis = () => body.update(at(0))!.body!.hipsPosition.y;
     const before = pelvis();
@@ -157,7 +157,7 @@ describe('a body', () => {
     expect(pelvis()).toBe(before);
     measures.armSpan = 1.75;
     body.calibrate(measures);
-    expect(told).toEqual([1.85]);
+    expect(reported).toEqual([1.85]);
     expect(pelvis()).not.toBe(before);
     measures.eyeHeight = 185;
     expect(() => body.calibrate(measures)).toThrow(RangeError);
@@ -165,15 +165,15 @@ describe('a body', () => {
   });
 
   test('follows a stand-in whose page goes on changing their measures', () => {
-    const told: number[] = [];
+    const reported: number[] = [];
     const person = { ...calibration, eyeHeight: 1.7 };
-    const events = { calibrated: ({ eyeHeight }: Calibration) => told.push(eyeHeight) };
+    const events = { calibrated: ({ eyeHeight }: Calibration) => reported.push(eyeHeight) };
     const body = new Body({ estimator: 'ik', calibration, events });
     body.update(at(0), person);
     person.eyeHeight = 1.8;
     body.update(at(1 / 60), person);
     body.update(at(2 / 60), person);
-    expect(told).toEqual([1.7, 1.8]);
+    expect(reported).toEqual([1.7, 1.8]);
     expect(body.userCalibration).toEqual(calibration);
   });
 
@@ -185,25 +185,25 @@ describe('a body', () => {
       given.body.update(standing(frame / 60, 1.72));
       guessed.body.update(standing(frame / 60, 1.7));
     }
-    expect(given.told).toEqual(['found head']);
-    expect(guessed.told).toEqual(['found head', 'calibrated 1.60 headset']);
+    expect(given.reported).toEqual(['found head']);
+    expect(guessed.reported).toEqual(['found head', 'calibrated 1.60 headset']);
   });
 
   test('forgets measures that it was given when they are to be found out again', async () => {
-    const { body, told } = await observed({ estimator: 'ik', calibration });
+    const { body, reported } = await observed({ estimator: 'ik', calibration });
     body.calibrate('auto');
     expect(body.calibration).toBe(defaultCalibration);
     for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.7));
-    expect(told).toEqual(['calibrated 1.59 default', 'found head', 'calibrated 1.70 headset']);
+    expect(reported).toEqual(['calibrated 1.59 default', 'found head', 'calibrated 1.70 headset']);
   });
 
   test('takes measures again with another session, and as given', async () => {
-    const { body, told } = await observed({ estimator: 'ik' });
+    const { body, reported } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.6));
     body.startSession();
     for (let frame = 60; frame < 120; frame++) body.update(standing(frame / 60, 1.5));
     body.calibrate(calibration);
-    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual([
+    expect(reported.filter((line) => line.startsWith('calibrated'))).toEqual([
       'calibrated 1.60 headset',
       'calibrated 1.50 headset',
       'calibrated 1.65 given',
@@ -211,37 +211,40 @@ describe('a body', () => {
   });
 
   test('has no pose after a session, and reports start and end once each', async () => {
-    const told: (string | null)[] = [];
+    const reported: (string | null)[] = [];
     const body = new Body({
       calibration,
       estimator: 'ik',
-      events: { sessionstart: () => told.push('start'), sessionend: () => told.push('end', body.pose && 'pose') },
+      events: {
+        sessionstart: () => reported.push('start'),
+        sessionend: () => reported.push('end', body.pose && 'pose'),
+      },
     });
     body.startSession();
     body.update(at(0));
     body.endSession();
     body.endSession();
     expect(body.pose).toBeNull();
-    expect(told).toEqual(['start', 'end', null]);
+    expect(reported).toEqual(['start', 'end', null]);
     expect(body.update(null)).toBeNull();
   });
 
   test.each(['ik', 'learned', 'device'] as const)('by %s says nothing before a page has it', async (estimator) => {
-    const told: string[] = [];
+    const reported: string[] = [];
     const body = new Body({
       estimator,
       networks() {
         throw new Error('no networks here');
       },
       events: {
-        estimatorchange: () => told.push('changed'),
-        fallback: (name, reason) => told.push(`${name}: ${reason}`),
+        estimatorchange: () => reported.push('changed'),
+        fallback: (name, reason) => reported.push(`${name}: ${reason}`),
       },
     });
-    expect(told).toEqual([]);
+    expect(reported).toEqual([]);
     await body.setEstimator(estimator);
     expect(body.estimator).toBe(estimator === 'learned' ? 'ik' : estimator);
-    expect(told.includes('learned: no networks here')).toBe(estimator !== 'ik');
+    expect(reported.includes('learned: no networks here')).toBe(estimator !== 'ik');
   });
 
   test('refuses measures of no person', async () => {
@@ -288,12 +291,12 @@ describe('a body that another moves', () => {
   const other: Calibration = { eyeHeight: 1.5, armSpan: 1.4 };
 
   test('has their measures meanwhile, learns nothing of its wearer, and is the wearer’s again', async () => {
-    const { body, told } = await observed({ estimator: 'ik' });
+    const { body, reported } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 120; frame++) body.update(standing(frame / 60, 1.7), other);
     expect(body.calibration).toEqual(other);
     expect(body.userCalibration).toBe(defaultCalibration);
     for (let frame = 120; frame < 200; frame++) body.update(standing(frame / 60, 1.62));
-    expect(told).toEqual([
+    expect(reported).toEqual([
       'found head',
       'calibrated 1.50 stand-in',
       'calibrated 1.59 stand-in',
@@ -327,20 +330,20 @@ describe('a body that another moves', () => {
 
 describe('measures of a stand-in', () => {
   test('are the same in every frame, also where a page writes them out in each', () => {
-    const told: string[] = [];
+    const reported: string[] = [];
     const body = new Body({
       estimator: 'ik',
       events: {
-        discontinuity: () => told.push('jumped'),
-        calibrated: (_, source) => told.push(`calibrated ${source}`),
+        discontinuity: () => reported.push('jumped'),
+        calibrated: (_, source) => reported.push(`calibrated ${source}`),
       },
     });
     const handTilts = { left: { pitch: 0.1, yaw: 0.2 } };
     for (let frame = 0; frame < 90; frame++)
       body.update(at(frame / 90), { eyeHeight: 1.65, armSpan: 1.56, handTilts: structuredClone(handTilts) });
-    expect(told).toEqual(['jumped', 'calibrated stand-in']);
+    expect(reported).toEqual(['jumped', 'calibrated stand-in']);
     body.update(at(1), { eyeHeight: 1.65, armSpan: 1.56 });
-    expect(told).toHaveLength(4);
+    expect(reported).toHaveLength(4);
   });
 
   test('that are the wearer’s own go on while the wearer is given others', () => {

@@ -136,7 +136,7 @@ describe('which estimator draws', () => {
     await choice.setEstimator('learned');
     expect(choice.current.name).toBe('ik');
     expect(faults).toEqual(['learned: out of memory']);
-    expect(changes, 'each told once').toEqual(['learned broken', 'ik alone']);
+    expect(changes, 'each reported once').toEqual(['learned broken', 'ik alone']);
   });
 
   test.each([

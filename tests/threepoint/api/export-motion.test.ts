@@ -144,19 +144,19 @@ describe('a recording', () => {
 
 describe('a long export', () => {
   test('reports how far it is, and how long the rest takes', async () => {
-    const told: number[] = [];
+    const reported: number[] = [];
     const left: (number | null)[] = [];
     await exportMotion(recordingOf(20), {
       format: 'bvh',
       estimator: 'ik',
       onProgress({ fraction, secondsLeft }) {
-        told.push(fraction);
+        reported.push(fraction);
         left.push(secondsLeft);
       },
     });
-    expect(told.length).toBeGreaterThan(1);
-    expect(told).toEqual([...told].sort((a, b) => a - b));
-    expect([told.at(-1), left.at(-1)]).toEqual([1, 0]);
+    expect(reported.length).toBeGreaterThan(1);
+    expect(reported).toEqual([...reported].sort((a, b) => a - b));
+    expect([reported.at(-1), left.at(-1)]).toEqual([1, 0]);
   });
 
   test('lets others have their turn', async () => {
@@ -176,10 +176,10 @@ describe('a long export', () => {
     const loading = new Promise<PoseRegressor>((resolve) => {
       arrive = resolve;
     });
-    const asked = vi.fn(() => loading);
-    const work = exportMotion(recording, { format: 'bvh', networks: asked, signal: giveUp.signal });
+    const networks = vi.fn(() => loading);
+    const work = exportMotion(recording, { format: 'bvh', networks, signal: giveUp.signal });
     const refused = expect(work).rejects.toThrow('enough');
-    await expect.poll(() => asked.mock.calls.length).toBeGreaterThan(0);
+    await expect.poll(() => networks.mock.calls.length).toBeGreaterThan(0);
     giveUp.abort(new Error('enough'));
     await refused;
     arrive(network);

@@ -86,20 +86,20 @@ describe.each(['ik', 'learned', 'device'] as const)('a body by %s', (estimator) 
 });
 
 test('a point that is no place is lost for its frame, and found again', async () => {
-  const told: string[] = [];
+  const reported: string[] = [];
   const body = new Body({
     estimator: 'ik',
     calibration,
     events: {
-      trackinglost: (point) => told.push(`lost ${point}`),
-      trackingfound: (point) => told.push(`found ${point}`),
+      trackinglost: (point) => reported.push(`lost ${point}`),
+      trackingfound: (point) => reported.push(`found ${point}`),
     },
   });
   body.update(at(0));
   body.update({ ...at(1 / rate), leftHand: { ...at(1 / rate).leftHand!, position: nowhere } });
   const shown = JSON.stringify(body.update(at(2 / rate)));
   expect(JSON.stringify(body.update({ ...at(3 / rate), head: { ...at(0).head, position: nowhere } }))).toBe(shown);
-  expect(told).toEqual([
+  expect(reported).toEqual([
     ...['found head', 'found left', 'found right', 'lost left', 'found left'],
     ...['lost head', 'lost left', 'lost right'],
   ]);

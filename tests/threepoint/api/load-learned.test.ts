@@ -9,10 +9,10 @@ import { expect, test, vi } from 'vitest';
 const models = new URL('../../../public/models/', import.meta.url);
 
 test('a program of Node has the learned network from the disk, without a word of where it lies', async () => {
-  const told: string[] = [];
-  const body = new Body({ events: { fallback: (_, reason) => told.push(reason) } });
+  const reported: string[] = [];
+  const body = new Body({ events: { fallback: (_, reason) => reported.push(reason) } });
   await body.setEstimator('learned');
-  expect(told).toEqual([]);
+  expect(reported).toEqual([]);
   expect([body.estimator, body.provider]).toEqual(['learned', 'plain']);
   await body.dispose();
 });

@@ -10,18 +10,18 @@ export const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
 
 /** A body whose every event is written down, and its networks loaded. */
 export async function observed(options: BodyOptions = {}) {
-  const told: string[] = [];
+  const reported: string[] = [];
   const body = new Body({
     networks: async () => openPlainModel(),
     ...options,
     events: {
-      calibrated: ({ eyeHeight }, source) => told.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
-      heightmismatch: (difference) => told.push(`outgrown by ${difference.toFixed(2)}`),
-      fallback: (estimator, reason) => told.push(`fallback ${estimator} ${reason}`),
-      trackinglost: (point) => told.push(`lost ${point}`),
-      trackingfound: (point) => told.push(`found ${point}`),
+      calibrated: ({ eyeHeight }, source) => reported.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
+      heightmismatch: (difference) => reported.push(`outgrown by ${difference.toFixed(2)}`),
+      fallback: (estimator, reason) => reported.push(`fallback ${estimator} ${reason}`),
+      trackinglost: (point) => reported.push(`lost ${point}`),
+      trackingfound: (point) => reported.push(`found ${point}`),
     },
   });
   await body.setEstimator(options.estimator ?? 'learned');
-  return { body, told };
+  return { body, reported };
 }

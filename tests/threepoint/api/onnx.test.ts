@@ -27,12 +27,12 @@ afterAll(async () => {
 test.each(['paper', 'learned'] as const)(
   'the runtime brings the %s network, whose answer a later frame draws',
   async (name) => {
-    const told: string[] = [];
+    const reported: string[] = [];
     const body = new Body({
       estimator: name,
       calibration: defaultCalibration,
       networks: onnxNetworks({ modelUrl: (network) => `${models}/${network}.json` }),
-      events: { fallback: (_, reason) => told.push(reason) },
+      events: { fallback: (_, reason) => reported.push(reason) },
     });
     await body.setEstimator(name);
     expect(body.estimator).toBe(name);
@@ -51,7 +51,7 @@ test.each(['paper', 'learned'] as const)(
         return JSON.stringify(chestOf(body, time)) === JSON.stringify(chestOf(ik, time));
       })
       .toBe(false);
-    expect(told).toEqual([]);
+    expect(reported).toEqual([]);
     body.dispose();
   },
 );

@@ -31,8 +31,8 @@ class Session extends EventTarget {
 }
 
 class Frame {
-  /** How often the browser was asked for a pose, over all frames. */
-  static asked = 0;
+  /** The number of requests for a pose, over all frames. */
+  static poseCalls = 0;
   readonly session: Session;
   readonly #headset: Fake;
   constructor(session: Session, headset: Fake) {
@@ -43,7 +43,7 @@ class Frame {
     return this.#headset.frame.getViewerPose(space);
   }
   getPose(space: XRSpace, base: XRSpace) {
-    Frame.asked += 1;
+    Frame.poseCalls += 1;
     return this.#headset.frame.getPose(space, base);
   }
 }
@@ -110,12 +110,12 @@ test('a frame asks the browser once where its floor is for all joints in one spa
   const table = headset.floor.getOffsetReferenceSpace(new XRRigidTransform({ x: 1 }, fromAxisAngle(up, 1)));
   const all = (frame: BodyFrame) => [...frame.body.values()].map((joint) => frame.getPose(joint, table)!.transform);
   look(session, all);
-  Frame.asked = 0;
+  Frame.poseCalls = 0;
   const [hips] = look(session, all);
-  expect(Frame.asked).toBe(1);
+  expect(Frame.poseCalls).toBe(1);
   (table as unknown as { roomFromSpace: object }).roomFromSpace = standing;
   const [moved] = look(session, all);
-  expect(Frame.asked).toBe(2);
+  expect(Frame.poseCalls).toBe(2);
   expect(moved!.position).not.toEqual(hips!.position);
 });
 

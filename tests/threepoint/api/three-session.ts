@@ -62,14 +62,14 @@ export async function begin(options: Partial<BodyTrackerOptions> = {}) {
     networks: async () => openPlainModel(),
     ...options,
   });
-  const told: string[] = [];
+  const reported: string[] = [];
   for (const type of ['trackinglost', 'trackingfound'] as const) {
-    tracker.addEventListener(type, ({ point }) => told.push(`${type.slice('tracking'.length)} ${point}`));
+    tracker.addEventListener(type, ({ point }) => reported.push(`${type.slice('tracking'.length)} ${point}`));
   }
-  tracker.addEventListener('sessionstart', () => told.push('session start'));
-  tracker.addEventListener('sessionend', () => told.push('session end'));
-  tracker.addEventListener('calibrated', ({ source }) => told.push(`calibrated ${source}`));
-  tracker.addEventListener('fallback', ({ reason }) => told.push(`fallback ${reason}`));
+  tracker.addEventListener('sessionstart', () => reported.push('session start'));
+  tracker.addEventListener('sessionend', () => reported.push('session end'));
+  tracker.addEventListener('calibrated', ({ source }) => reported.push(`calibrated ${source}`));
+  tracker.addEventListener('fallback', ({ reason }) => reported.push(`fallback ${reason}`));
   let timeMs = 1000;
   const run = (frames: number) => {
     for (let frame = 0; frame < frames; frame++) {
@@ -82,5 +82,5 @@ export async function begin(options: Partial<BodyTrackerOptions> = {}) {
     tracker.object.updateMatrixWorld(true);
     return tracker.avatar.object.localToWorld(new Vector3().copy(point));
   };
-  return { headset, tracker, told, run, drawn };
+  return { headset, tracker, reported, run, drawn };
 }

@@ -22,12 +22,12 @@ describe('a body in a session of three.js', () => {
   });
 
   test('lies where the page has teleported its wearer, and knows nothing of it: no way there, no jump, no other pose', async () => {
-    const { headset, tracker, run, told, drawn } = await begin({ calibration: defaultCalibration });
-    tracker.addEventListener('discontinuity', () => told.push('jumped'));
+    const { headset, tracker, run, reported, drawn } = await begin({ calibration: defaultCalibration });
+    tracker.addEventListener('discontinuity', () => reported.push('jumped'));
     headset.putOn();
     run(30);
     const before = structuredClone(tracker.avatar.jointPositions());
-    told.length = 0;
+    reported.length = 0;
     headset.moveFloorTo({ x: 5, y: 0, z: -2 }, 1);
     run(1);
     const { hips, leftHand } = tracker.avatar.jointPositions();
@@ -35,7 +35,7 @@ describe('a body in a session of three.js', () => {
     expect(distance(leftHand!, tracker.pose!.leftHand!.position)).toBeLessThan(0.001);
     expect(distance(drawn(tracker.pose!.head.position), headset.eyes())).toBeLessThan(1e-6);
     expect(drawn(hips!).x).toBeGreaterThan(4.5);
-    expect(told).toEqual([]);
+    expect(reported).toEqual([]);
   });
 
   test('moves under a page that glides its wearer as it does under one that does not', async () => {
@@ -106,8 +106,8 @@ describe('a body in a session of three.js', () => {
   });
 
   test('gives a page its own space back when the device recentres after the wearer did', async () => {
-    const { headset, tracker, run, told } = await begin({ calibration: defaultCalibration });
-    tracker.addEventListener('discontinuity', () => told.push('jumped'));
+    const { headset, tracker, run, reported } = await begin({ calibration: defaultCalibration });
+    tracker.addEventListener('discontinuity', () => reported.push('jumped'));
     headset.putOn();
     headset.moveFloorTo({ x: 5, y: 3, z: 0 });
     const own = headset.xr.getReferenceSpace();
@@ -115,10 +115,10 @@ describe('a body in a session of three.js', () => {
     tracker.recentre();
     tracker.recentre();
     run(1);
-    told.length = 0;
+    reported.length = 0;
     headset.reset({ position: { x: 1, y: 0, z: 0 }, orientation: identity });
     expect(headset.xr.getReferenceSpace()).toBe(own);
-    expect(told).toEqual(['jumped']);
+    expect(reported).toEqual(['jumped']);
   });
 
   test('leaves the space of a page that has moved its wearer to the page, also when the device recentres', async () => {

@@ -32,7 +32,7 @@ const standing: TrackingFrame = {
 
 describe('a body in a session of three.js', () => {
   test('appears with the session, hands on the controllers, and goes with it', async () => {
-    const { headset, tracker, run, told } = await begin({ calibration: defaultCalibration });
+    const { headset, tracker, run, reported } = await begin({ calibration: defaultCalibration });
     run(3);
     expect(tracker.pose).toBeNull();
     expect(tracker.object.visible).toBe(false);
@@ -52,7 +52,7 @@ describe('a body in a session of three.js', () => {
     expect(ownHeadSeen(tracker)).toBe(true);
     run(1);
     expect(tracker.object.visible).toBe(false);
-    expect(told).toEqual(['session start', 'found head', 'found left', 'found right', 'session end']);
+    expect(reported).toEqual(['session start', 'found head', 'found left', 'found right', 'session end']);
   });
 
   test('stands on the trackers that the page supplies, and on its gait again without them', async () => {
@@ -138,11 +138,11 @@ describe('a body in a session of three.js', () => {
   });
 
   test('reports no end of a session whose frames it never read', async () => {
-    const { headset, tracker, told } = await begin({ calibration: defaultCalibration });
+    const { headset, tracker, reported } = await begin({ calibration: defaultCalibration });
     headset.putOn();
     tracker.updateFromFrame(standing);
     headset.takeOff();
-    expect(told.filter((line) => line.startsWith('session'))).toEqual([]);
+    expect(reported.filter((line) => line.startsWith('session'))).toEqual([]);
   });
 
   test.each([true, false])('draws the body that the device tracks where it is asked to (%s)', async (deviceBody) => {
@@ -178,11 +178,11 @@ describe('a body in a session of three.js', () => {
   });
 
   test('takes its height from the headset', async () => {
-    const { headset, tracker, run, told } = await begin();
+    const { headset, tracker, run, reported } = await begin();
     headset.setHead({ position: { x: 0, y: 1.5, z: 0 }, orientation: identity });
     headset.putOn();
     run(72);
-    expect(told).toContain('calibrated headset');
+    expect(reported).toContain('calibrated headset');
     expect(tracker.calibration.eyeHeight).toBeCloseTo(1.5);
   });
 
@@ -209,14 +209,14 @@ describe('a body in a session of three.js', () => {
   });
 
   test('says which hand is lost and which is found', async () => {
-    const { headset, run, told } = await begin({ calibration: defaultCalibration });
+    const { headset, run, reported } = await begin({ calibration: defaultCalibration });
     headset.putOn();
     run(2);
     headset.setInputs(controller('right', right));
     run(2);
     headset.setInputs(controller('left', left), controller('right', right));
     run(2);
-    expect(told.slice(4)).toEqual(['lost left', 'found left']);
+    expect(reported.slice(4)).toEqual(['lost left', 'found left']);
   });
 
   test('a frame of the page’s own moves it without a session', async () => {
@@ -239,14 +239,14 @@ describe('a body in a session of three.js', () => {
   });
 
   test('that is disposed of stays so: no frame shows it again, and nothing is listened to', async () => {
-    const { headset, tracker, run, told } = await begin({ calibration: defaultCalibration });
+    const { headset, tracker, run, reported } = await begin({ calibration: defaultCalibration });
     const scene = new Group().add(tracker.object);
     headset.putOn();
     run(2);
     const space = headset.xr.getReferenceSpace();
     await tracker.dispose();
-    expect(told.at(-1)).toBe('session end');
-    told.length = 0;
+    expect(reported.at(-1)).toBe('session end');
+    reported.length = 0;
     headset.setHead({ position: { x: 1, y: 1.6, z: 0 }, orientation: identity });
     const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
     run(2);
@@ -258,7 +258,7 @@ describe('a body in a session of three.js', () => {
     expect(tracker.object.visible).toBe(false);
     expect(tracker.pose).toBeNull();
     expect(headset.xr.getReferenceSpace()).toBe(space);
-    expect(told).toEqual([]);
+    expect(reported).toEqual([]);
     await tracker.dispose();
   });
 });

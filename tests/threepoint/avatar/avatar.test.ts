@@ -184,13 +184,13 @@ describe('our mannequin', () => {
       ['leftHand', 1],
       ['rightHand', -1],
     ] as const) {
-      const wanted = multiply(
+      const expected = multiply(
         frame[name]?.orientation ?? fromAxisAngle(up, 0),
         fromAxisAngle(up, (-sign * Math.PI) / 2),
       );
       const { x, y, z, w } = worldOf(loaded, avatar, name).rotation;
       // The bone's own rest faces the other way.
-      expect(angleBetween(multiply({ x, y, z, w }, fromAxisAngle(up, Math.PI)), wanted)).toBeLessThan(0.02);
+      expect(angleBetween(multiply({ x, y, z, w }, fromAxisAngle(up, Math.PI)), expected)).toBeLessThan(0.02);
     }
   });
 

@@ -232,11 +232,11 @@ describe('a compressed body', () => {
   test.each(compressions)('%s is refused in one sentence, before the loader begins', async (extension) => {
     const sentence = `person.vrm: is compressed (${extension}); this page reads avatars that are saved without compression`;
     const rejections: unknown[] = [];
-    const heard = (reason: unknown) => void rejections.push(reason);
-    process.on('unhandledRejection', heard);
+    const onRejection = (reason: unknown) => void rejections.push(reason);
+    process.on('unhandledRejection', onRejection);
     await expect(parseAvatar(compressed(extension), 'person.vrm')).rejects.toThrow(sentence);
     await new Promise((resolve) => setImmediate(resolve));
-    process.off('unhandledRejection', heard);
+    process.off('unhandledRejection', onRejection);
     expect(rejections).toEqual([]);
     refused += 1;
   });

@@ -47,13 +47,13 @@ function posed(loaded: LoadedAvatar) {
 const expectSame = (a: Vec3 | undefined, b: Vec3 | undefined) =>
   expect(a && b ? distance(a, b) : 'one of them is not drawn').toBeLessThan(1e-9);
 
-/** How a file's names are refused. */
+/** Returns the error of a file whose bones cannot be matched by their names. */
 async function refusalOf(file: ArrayBuffer): Promise<UnknownBonesError> {
   const error = await parseAvatar(file, 'person.glb').then(
     () => null,
     (reason: unknown) => reason,
   );
-  if (!(error instanceof UnknownBonesError)) throw new Error(`expected names that tell nothing, not ${error}`);
+  if (!(error instanceof UnknownBonesError)) throw new Error(`expected an UnknownBonesError, not ${error}`);
   return error;
 }
 

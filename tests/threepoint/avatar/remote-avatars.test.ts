@@ -135,20 +135,20 @@ describe('an avatar that could not be had', () => {
    * One person with this file on; `answers`: what becomes of each attempt to have it, the last one of all that follow.
    */
   function wearing(answers: readonly (Error | null)[]) {
-    const told: string[] = [];
-    let asked = 0;
+    const reported: string[] = [];
+    let attempts = 0;
     const others = new RemoteAvatars({
       async load(avatar: AvatarRef) {
         if (avatar === file) {
-          const fault = answers[Math.min(asked, answers.length - 1)];
-          asked += 1;
+          const fault = answers[Math.min(attempts, answers.length - 1)];
+          attempts += 1;
           if (fault) throw fault;
         }
         return load('mannequin');
       },
       plain: () => false,
       mouthOf: () => 0,
-      onRefused: (_, reason) => told.push((reason as Error).message),
+      onRefused: (_, reason) => reported.push((reason as Error).message),
     });
     onTestFinished(() => others.dispose());
     /** Frames at this time, until this is true or so many have been drawn. */
@@ -158,30 +158,30 @@ describe('an avatar that could not be had', () => {
         await new Promise((resolve) => setTimeout(resolve));
       }
     };
-    return { others, told, show, asked: () => asked };
+    return { others, reported, show, attempts: () => attempts };
   }
 
   test('for a fault that passes is shown once it has loaded, and no mannequin is reported', async () => {
-    const { others, told, show, asked } = wearing([new TransientError('the server answers 404'), null]);
-    await show(0, () => asked() === 1 && others.drawnAs(1) === defaultAvatar);
-    await show(4, () => asked() > 1, 100);
-    expect([asked(), others.drawnAs(1)]).toEqual([1, defaultAvatar]);
+    const { others, reported, show, attempts } = wearing([new TransientError('the server answers 404'), null]);
+    await show(0, () => attempts() === 1 && others.drawnAs(1) === defaultAvatar);
+    await show(4, () => attempts() > 1, 100);
+    expect([attempts(), others.drawnAs(1)]).toEqual([1, defaultAvatar]);
     await show(6, () => others.drawnAs(1) === file);
-    expect([asked(), others.drawnAs(1)]).toEqual([2, file]);
-    expect(told).toEqual([]);
+    expect([attempts(), others.drawnAs(1)]).toEqual([2, file]);
+    expect(reported).toEqual([]);
   });
 
   test('for a fault that does not pass soon is reported once, and requested again and again', async () => {
-    const { told, show, asked } = wearing([new TransientError('the server answers 404')]);
-    for (let attempt = 1; attempt <= 6; attempt++) await show(10 * attempt, () => asked() === attempt);
-    expect(asked()).toBe(6);
-    expect(told).toEqual(['the server answers 404']);
+    const { reported, show, attempts } = wearing([new TransientError('the server answers 404')]);
+    for (let attempt = 1; attempt <= 6; attempt++) await show(10 * attempt, () => attempts() === attempt);
+    expect(attempts()).toBe(6);
+    expect(reported).toEqual(['the server answers 404']);
   });
 
   test('for its own faults is reported at once and not requested again', async () => {
-    const { others, told, show, asked } = wearing([new Error('no humanoid')]);
-    await show(0, () => asked() === 1 && others.drawnAs(1) === defaultAvatar);
-    await show(60, () => asked() > 1, 100);
-    expect([asked(), told]).toEqual([1, ['no humanoid']]);
+    const { others, reported, show, attempts } = wearing([new Error('no humanoid')]);
+    await show(0, () => attempts() === 1 && others.drawnAs(1) === defaultAvatar);
+    await show(60, () => attempts() > 1, 100);
+    expect([attempts(), reported]).toEqual([1, ['no humanoid']]);
   });
 });

@@ -2,7 +2,8 @@ import { composeTransforms, invertTransform, type Pose, transformPose } from 'th
 import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
 import type { Side } from 'threepoint/core/math/side';
 import { type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
-import type { DrawingSpace } from 'threepoint/xr/tracked-session';
+import { Pointing } from 'threepoint/xr/pointing';
+import { type DrawingSpace, TrackedSession } from 'threepoint/xr/tracked-session';
 import { vi } from 'vitest';
 
 type Place = Pose<'floor'>;
@@ -53,7 +54,7 @@ export interface Input {
   };
 }
 
-/** What of a session is read. */
+/** The part of a session that is read. */
 class Session extends EventTarget {
   inputSources: Input[] = [];
   visibilityState: XRVisibilityState = 'visible';
@@ -74,11 +75,11 @@ export function fakeHeadset() {
     getViewerPose: (space: Space) => poseIn(space, head),
     getPose: (of: { at: Seen }, space: Space) => poseIn(space, of.at),
     getJointPose: (of: { at: Seen }, space: Space) => {
-      asked.joints += 1;
+      poseCalls.joints += 1;
       return poseIn(space, of.at);
     },
     fillPoses: (spaces: readonly { at: Seen }[], space: Space, matrices: Float32Array) => {
-      asked.fills += 1;
+      poseCalls.fills += 1;
       const poses = spaces.map((of) => poseIn(space, of.at));
       matrices.fill(Number.NaN);
       if (poses.includes(null)) return false;
@@ -86,9 +87,9 @@ export function fakeHeadset() {
       return true;
     },
   };
-  /** How often the page asked for single joints, and for all of a hand. */
-  const asked = { joints: 0, fills: 0 };
-  /** Spaces that the renderer was given to draw in, in that order. */
+  /** The numbers of calls of getJointPose and fillPoses. */
+  const poseCalls = { joints: 0, fills: 0 };
+  /** The spaces that the renderer was set to draw in, in order. */
   const spaces: XRReferenceSpace[] = [];
   let drawnIn: XRReferenceSpace | null = null;
   const drawing: DrawingSpace = {
@@ -102,7 +103,7 @@ export function fakeHeadset() {
     drawing,
     spaces,
     session: session as unknown as XRSession,
-    asked,
+    poseCalls,
     floor: floor as unknown as XRReferenceSpace,
     frame: frame as unknown as XRFrame,
     setHead(at: Seen) {
@@ -122,6 +123,24 @@ export function fakeHeadset() {
     reset(roomFromFloor: Place) {
       floor.roomFromSpace = roomFromFloor;
       floor.dispatchEvent(new Event('reset'));
+    },
+  };
+}
+
+/** A fake headset whose session reads one frame after the other, by default 72 a second. */
+export function trackedHeadset() {
+  const headset = fakeHeadset();
+  const pointing = new Pointing(headset.session);
+  const tracker = new TrackedSession({ ...headset, pointing });
+  let time = 1;
+  return {
+    ...headset,
+    pointing,
+    tracker,
+    inputs: tracker.inputs,
+    read(seconds = 1 / 72) {
+      time += seconds;
+      return tracker.read(headset.frame, time);
     },
   };
 }

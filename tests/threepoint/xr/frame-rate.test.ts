@@ -15,7 +15,7 @@ class Wearing {
   lateOneIn = 10;
   refuses: number | null = null;
   time = 0;
-  readonly asked: number[] = [];
+  readonly requestedRates: number[] = [];
   readonly control: FrameRateControl;
 
   constructor(startRate: number, rates?: null) {
@@ -25,7 +25,7 @@ class Wearing {
   }
 
   async updateTargetFrameRate(rate: number): Promise<void> {
-    this.asked.push(rate);
+    this.requestedRates.push(rate);
     if (rate === this.refuses) throw new DOMException('not now', 'InvalidStateError');
     this.frameRate = rate;
   }
@@ -90,14 +90,14 @@ describe('the frame rate of a headset', () => {
       worn.time += 0.03;
     }
     expect(worn.frameRate).toBe(90);
-    expect(worn.asked).not.toContain(80);
+    expect(worn.requestedRates).not.toContain(80);
   });
 
   test('is tried again after a failure, later each time: at most five times in half an hour', async () => {
     const worn = new Wearing(90);
     worn.fastest = 90;
     await worn.draw(1800);
-    const attempts = worn.asked.filter((rate) => rate === 120).length;
+    const attempts = worn.requestedRates.filter((rate) => rate === 120).length;
     expect(attempts).toBeGreaterThanOrEqual(2);
     expect(attempts).toBeLessThanOrEqual(6);
     worn.fastest = 120;
@@ -122,7 +122,7 @@ describe('the frame rate of a headset', () => {
       worn.time += 5;
     }
     expect(worn.frameRate).toBe(90);
-    expect(worn.asked).not.toContain(80);
+    expect(worn.requestedRates).not.toContain(80);
   });
 
   test('is asked for once at a time, and a refused rate leaves it where it is', async () => {
@@ -179,7 +179,7 @@ describe('the savings of a picture', () => {
     worn.fastest = 72;
     worn.helps = ({ foveation, mirrorRateHz }) => foveation === 1 && mirrorRateHz === 36;
     await worn.draw(30);
-    expect(worn.asked).not.toContain(72);
+    expect(worn.requestedRates).not.toContain(72);
     expect(worn.control.savings).toEqual(all);
   });
 
@@ -215,7 +215,7 @@ describe('the savings of a picture', () => {
     const worn = new Wearing(72);
     worn.fastest = 72;
     await worn.draw(40);
-    expect(worn.asked).toContain(80);
+    expect(worn.requestedRates).toContain(80);
     expect(worn.frameRate).toBe(72);
     expect(worn.control.savings).toEqual(none);
   });

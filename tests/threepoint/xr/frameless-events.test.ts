@@ -50,5 +50,5 @@ test('a button event without its frame reaches three with the next one, once, in
   tell('squeezestart', frame);
   draw();
   expect(heard).toEqual(['selectstart of left', 'selectend of left', 'squeezestart of left']);
-  reportFigures('bad-input', { 'events without a frame': '2 of 2 told again in the next frame' });
+  reportFigures('bad-input', { 'events without a frame': '2 of 2 reported again in the next frame' });
 });

@@ -1,11 +1,9 @@
 import { type Pose, transformPose } from 'threepoint/core/math/pose';
 import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { Pointing } from 'threepoint/xr/pointing';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
 import { describe, expect, test } from 'vitest';
-import { bareHand, controller, fakeHeadset, type Input } from './fake-headset';
+import { bareHand, controller, type Input, trackedHeadset } from './fake-headset';
 
 const at = (x: number, y: number, z: number, orientation = identity): Pose<'floor'> => ({
   position: vec3(x, y, z),
@@ -17,22 +15,6 @@ const palmToFace = at(0.1, 1.55, -0.4, turned(vec3(0, Math.SQRT1_2, -Math.SQRT1_
 const open = 0.08;
 const closed = 0.005;
 
-function worn() {
-  const headset = fakeHeadset();
-  const pointing = new Pointing(headset.session);
-  const session = new TrackedSession({ ...headset, pointing });
-  let time = 1;
-  return {
-    ...headset,
-    pointing,
-    inputs: session.inputs,
-    read() {
-      time += 1 / 72;
-      return session.read(headset.frame, time);
-    },
-  };
-}
-
 /** Puts the tip of a fake hand's index finger this far from its thumb [m]. */
 function setGap(hand: Input, gap: number): void {
   const tip = hand.hand!.get('index-finger-tip')!;
@@ -42,7 +24,7 @@ function setGap(hand: Input, gap: number): void {
 
 describe('a pointer', () => {
   test('is the ray of a controller, presses once, and is held until the trigger opens', () => {
-    const { setInputs, select, read, pointing } = worn();
+    const { setInputs, select, read, pointing } = trackedHeadset();
     const right = controller('right', at(0.2, 1.2, -0.3, turned(vec3(0, 1, 0), 90)));
     setInputs(right);
     read();
@@ -62,14 +44,14 @@ describe('a pointer', () => {
   });
 
   test('of a bare hand has the tip of its index finger', () => {
-    const { setInputs, read, pointing } = worn();
+    const { setInputs, read, pointing } = trackedHeadset();
     setInputs(bareHand('left', at(-0.2, 1.2, -0.3), open));
     read();
     expect(pointing.pointers).toMatchObject([{ source: 'hand', side: 'left', tip: vec3(-0.2, 1.2 + open, -0.3) }]);
   });
 
   test('of the eyes is there while its user pinches, beside the hand that pinches, and releases when it goes', () => {
-    const { setInputs, select, read, pointing } = worn();
+    const { setInputs, select, read, pointing } = trackedHeadset();
     const hand = bareHand('right', at(0.2, 1.1, -0.3), closed);
     const pinch: Input = { ...controller('right', at(0, 1.6, 0)), targetRayMode: 'transient-pointer' };
     setInputs(hand, pinch);
@@ -88,7 +70,7 @@ describe('a pointer', () => {
   });
 
   test('is held for what it pointed at when the hold began, and for nothing else', () => {
-    const { setInputs, select, read, pointing } = worn();
+    const { setInputs, select, read, pointing } = trackedHeadset();
     const right = controller('right', at(0.2, 1.2, -0.3));
     setInputs(right);
     select('selectstart', right);
@@ -102,7 +84,7 @@ describe('a pointer', () => {
   });
 
   test('that the device takes cancels what it held, and a session behind a menu has none', () => {
-    const { setInputs, select, read, pointing, setVisibility } = worn();
+    const { setInputs, select, read, pointing, setVisibility } = trackedHeadset();
     const right = controller('right', at(0.2, 1.2, -0.3));
     setInputs(right);
     select('selectstart', right);
@@ -120,7 +102,7 @@ describe('a pointer', () => {
 
 describe('a hand that belongs to the device neither points nor presses', () => {
   const gesture = (change: (hand: Input) => void, place = at(0.2, 1.1, -0.3)) => {
-    const page = worn();
+    const page = trackedHeadset();
     const hand = bareHand('right', place, open);
     page.setInputs(hand);
     page.read();
@@ -164,7 +146,7 @@ describe('a hand that belongs to the device neither points nor presses', () => {
   });
 
   test('and a drawn bow waits for a string hand whose ray is gone: nothing is shot', () => {
-    const { setInputs, read, inputs } = worn();
+    const { setInputs, read, inputs } = trackedHeadset();
     const bow = bareHand('left', at(0, 1.4, -0.6), open);
     const string = bareHand('right', at(0, 1.4, -0.45), open);
     setInputs(bow, string);
@@ -196,7 +178,7 @@ describe('without a stick', () => {
   };
 
   test('a thumb that swipes along its finger turns once, to either side', () => {
-    const { setInputs, read, pointing } = worn();
+    const { setInputs, read, pointing } = trackedHeadset();
     const turns = [[6], [6], [], [5], []].map((pressed) => {
       setInputs(reporting('right', ...pressed));
       read();
@@ -210,7 +192,7 @@ describe('without a stick', () => {
     ['a thumb that taps its finger', reporting('right', 9)],
     ['the upper button of a controller', { ...reporting('left', 5), profiles: ['meta-quest-touch-plus'] }],
   ])('%s brings the menu, once', (_, source) => {
-    const { setInputs, read, pointing } = worn();
+    const { setInputs, read, pointing } = trackedHeadset();
     setInputs(source);
     read();
     read();

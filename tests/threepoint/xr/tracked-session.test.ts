@@ -1,34 +1,18 @@
 import type { Pose } from 'threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, identity } from 'threepoint/core/math/quat';
 import { distance, up, vec3 } from 'threepoint/core/math/vec3';
-import { Pointing } from 'threepoint/xr/pointing';
 import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
-import { bareHand, controller, fakeHeadset } from './fake-headset';
+import { bareHand, controller, fakeHeadset, trackedHeadset } from './fake-headset';
 
 const at = (x: number, y: number, z: number): Pose<'floor'> => ({ position: vec3(x, y, z), orientation: identity });
 const left = at(-0.25, 1.1, -0.35);
 const right = at(0.25, 1.1, -0.35);
 
-function tracked() {
-  const headset = fakeHeadset();
-  const tracker = new TrackedSession({ ...headset, pointing: new Pointing(headset.session) });
-  let time = 1;
-  return {
-    ...headset,
-    tracker,
-    inputs: tracker.inputs,
-    read() {
-      time += 1 / 72;
-      return tracker.read(headset.frame, time);
-    },
-  };
-}
-
 describe('poses', () => {
   test('of a head that is not seen, or not a number: no frame, and the next one is whole', () => {
-    const { read, setHead, setInputs } = tracked();
+    const { read, setHead, setInputs } = trackedHeadset();
     setInputs(controller('left', left), controller('right', right));
     const before = read();
     setHead(null);
@@ -40,7 +24,7 @@ describe('poses', () => {
   });
 
   test('of hands: null is not seen, emulated says so, what is no number is not seen', () => {
-    const { read, setInputs } = tracked();
+    const { read, setInputs } = trackedHeadset();
     setInputs(controller('left', left), controller('right', right));
     read();
     setInputs(controller('left', null), controller('right', { ...right, emulated: true }));
@@ -50,7 +34,7 @@ describe('poses', () => {
   });
 
   test('of a device that never reports a point as tracked count as tracked, each point by itself, until it has reported it', () => {
-    const { read, setInputs } = tracked();
+    const { read, setInputs } = trackedHeadset();
     const guessed = { left: { ...left, emulated: true }, right: { ...right, emulated: true } };
     setInputs(controller('left', guessed.left), controller('right', guessed.right));
     expect(read()).toMatchObject({ leftHand: { tracking: 'tracked' }, rightHand: { tracking: 'tracked' } });
@@ -61,7 +45,7 @@ describe('poses', () => {
   });
 
   test('are copies: what the device does with its own objects later changes nothing', () => {
-    const { read, setInputs } = tracked();
+    const { read, setInputs } = trackedHeadset();
     const source = controller('right', right);
     setInputs(source);
     const frame = read();
@@ -72,7 +56,7 @@ describe('poses', () => {
 
 describe('behind a menu of the device', () => {
   test.each(['visible-blurred', 'hidden'] as const)('(%s) the head goes on, no hand and no button is read', (state) => {
-    const { read, setInputs, setVisibility, inputs } = tracked();
+    const { read, setInputs, setVisibility, inputs } = trackedHeadset();
     setInputs(controller('left', left, 1), controller('right', right, 1));
     expect(read()?.suspended).toBeUndefined();
     setVisibility(state);
@@ -86,7 +70,7 @@ describe('behind a menu of the device', () => {
 
 describe('which hand it is', () => {
   test('is decided by handedness, in any order, and a swap is another device on each side', () => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     setInputs(controller('right', right), controller('left', left));
     expect(read()).toMatchObject({ leftHand: {}, rightHand: {} });
     expect(read()?.leftHand?.position.x).toBeLessThan(0);
@@ -99,7 +83,7 @@ describe('which hand it is', () => {
   });
 
   test('is what is seen of two devices on one side, in whichever order they are listed', () => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     const onTheTable = controller('left', null, 1);
     const hand = bareHand('left', left, 0.005);
     for (const listed of [
@@ -115,7 +99,7 @@ describe('which hand it is', () => {
   });
 
   test('is the hand itself while its pinch is reported as a separate pointer', () => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     const hand = bareHand('right', right, 0.005);
     setInputs(hand);
     const before = read()?.rightHand;
@@ -130,7 +114,7 @@ describe('which hand it is', () => {
   test.each(['listed first', 'listed last'])(
     'is the hand, not the controller on the table that is tracked, %s',
     (order) => {
-      const { read, setInputs, inputs } = tracked();
+      const { read, setInputs, inputs } = trackedHeadset();
       const onTheTable = controller('left', at(-0.6, 0.7, -0.5));
       const hand = bareHand('left', left);
       setInputs(...(order === 'listed first' ? [hand, onTheTable] : [onTheTable, hand]));
@@ -140,7 +124,7 @@ describe('which hand it is', () => {
   );
 
   test.each(['listed first', 'listed last'])('is of two controllers the one that moves, %s', (order) => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     const held = controller('left', left);
     const onTheTable = controller('left', at(-2, 0.7, -0.5));
     setInputs(...(order === 'listed first' ? [held, onTheTable] : [onTheTable, held]));
@@ -164,7 +148,7 @@ describe('which hand it is', () => {
   });
 
   test('is a bare hand where the device reports no joints, and it pinches where the device selects', () => {
-    const { read, setInputs, inputs, session } = tracked();
+    const { read, setInputs, inputs, session } = trackedHeadset();
     const hand = { ...controller('right', right), profiles: ['generic-hand-select'] };
     const source = { ...hand, gamepad: { buttons: [], axes: [] } };
     setInputs(source);
@@ -185,7 +169,7 @@ describe('which hand it is', () => {
   });
 
   test('is a bare hand where the device has hands but not the wrist of this one', () => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     setInputs({ ...controller('right', right, 0.8), profiles: [], hand: new Map() });
     const wrist = read()?.rightHand;
     expect(wrist && distance(wrist.position, right.position)).toBeLessThan(0.07);
@@ -193,14 +177,14 @@ describe('which hand it is', () => {
   });
 
   test('is where it pinches, of a device that reports nothing else', () => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });
     expect(read()?.rightHand).not.toBeNull();
     expect(inputs.buttons.right.trigger).toBe(1);
   });
 
   test('and of which kind, through ten changes between controllers and hands, nothing kept of the other', () => {
-    const { read, setInputs, inputs } = tracked();
+    const { read, setInputs, inputs } = trackedHeadset();
     let correct = 0;
     for (let i = 0; i < 10; i++) {
       setInputs(controller('left', left, 1), controller('right', right, 1));
@@ -265,7 +249,7 @@ describe('events', () => {
 
 describe('where the floor is', () => {
   test('after recentring lies under the head, and the hands keep their distances', () => {
-    const { read, setHead, setInputs, tracker, spaces } = tracked();
+    const { read, setHead, setInputs, tracker, spaces } = trackedHeadset();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
     setInputs(controller('right', right));
     const before = read();
@@ -284,7 +268,7 @@ describe('where the floor is', () => {
     ['again', (tracker: TrackedSession) => tracker.recentre(), 0],
     ['and turned', (tracker: TrackedSession) => tracker.turn(1), 1],
   ])('after recentring %s before the next frame lies under the head too', (_, then, yaw) => {
-    const { read, setHead, tracker } = tracked();
+    const { read, setHead, tracker } = trackedHeadset();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
     read();
     tracker.recentre();
@@ -295,7 +279,7 @@ describe('where the floor is', () => {
   });
 
   test('is as far below the user as they ask, head and hands alike, through recentring, turns and the device’s own', () => {
-    const { read, setHead, setInputs, tracker, reset } = tracked();
+    const { read, setHead, setInputs, tracker, reset } = trackedHeadset();
     setHead(at(0.2, 1.15, 0));
     setInputs(controller('right', at(0.3, 0.8, -0.3)));
     const before = read()!;
@@ -324,7 +308,7 @@ describe('where the floor is', () => {
   });
 
   test('turns about the head, which stays: thirty degrees a push, one turn for one push', () => {
-    const { read, setHead, setInputs, tracker, inputs } = tracked();
+    const { read, setHead, setInputs, tracker, inputs } = trackedHeadset();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 0.4) });
     const source = controller('right', right);
     setInputs(source);
@@ -348,7 +332,7 @@ describe('where the floor is', () => {
   });
 
   test('when the device recentres, is where the device says: what was turned here before is forgotten', () => {
-    const { read, setHead, setInputs, tracker, reset, spaces, floor } = tracked();
+    const { read, setHead, setInputs, tracker, reset, spaces, floor } = trackedHeadset();
     setInputs(controller('right', right));
     read();
     tracker.turn(1);
@@ -362,7 +346,7 @@ describe('where the floor is', () => {
   });
 
   test('is no matter of a tracker that is done with: a device that recentres later moves nothing', () => {
-    const { read, tracker, reset, spaces } = tracked();
+    const { read, tracker, reset, spaces } = trackedHeadset();
     read();
     tracker.turn(1);
     tracker.dispose();
