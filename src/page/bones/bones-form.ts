@@ -11,7 +11,7 @@ const alwaysListed = 5;
 /** What the form does with the user's map. */
 export interface BonesActions {
   /** null: forgets the user's map. */
-  give(bones: BoneMap | null): void;
+  apply(bones: BoneMap | null): void;
   cancel(): void;
 }
 
@@ -112,7 +112,7 @@ function createChooser(choices: BoneChoices) {
 }
 
 /** Lets the user map the bones of one file. */
-function createMapping(skeleton: SkeletonToMap, { give, cancel }: BonesActions) {
+function createMapping(skeleton: SkeletonToMap, { apply: give, cancel }: BonesActions) {
   const { name, joints, isShown, canForgetMap } = skeleton;
   const choices = new BoneChoices(skeleton);
   const complaint = element('p', { class: 'complaint', role: 'alert' });

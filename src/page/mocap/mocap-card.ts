@@ -52,7 +52,7 @@ export interface CardActions {
   /** Opens the form for the bones of the motion. */
   correctBones(): void;
   /** Reads the motion with these bones; null: forgets the user's map. */
-  giveBones(bones: BoneMap | null): void;
+  applyBones(bones: BoneMap | null): void;
   cancelBones(): void;
   cancel(): void;
   close(): void;
@@ -255,7 +255,7 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
   const timeline = createTimeline(actions);
   const choices = createChoices(labels, actions);
   const reading = createReading(actions);
-  const bones = createLazyBonesForm({ give: actions.giveBones, cancel: actions.cancelBones });
+  const bones = createLazyBonesForm({ apply: actions.applyBones, cancel: actions.cancelBones });
   const opened = element(
     'div',
     { class: 'opened' },

@@ -137,7 +137,7 @@ export class MocapView {
       signal.throwIfAborted();
       const motion = fileNameOf(files.motion);
       this.#show({ name: motion, sources, ...read }, request);
-      if (bones && read.map.hash !== null) boneMaps.keep(read.map.hash, bones);
+      if (bones && read.map.hash !== null) boneMaps.store(read.map.hash, bones);
       this.#bones.close();
       for (const note of read.prepared.notes) notices.show('info', `${motion}: ${note}.`);
       if (others.length > 0)
@@ -263,7 +263,7 @@ export class MocapView {
       placeTruth: (place) => this.#placeTruth(place),
       copyLink: () => void this.#copyLink(),
       correctBones: () => this.#correctBones(),
-      giveBones: (bones) => this.#bones.give(bones),
+      applyBones: (bones) => this.#bones.apply(bones),
       cancelBones: () => this.#bones.close(),
       cancel: () => this.#reading.abort(),
       close: () => {

@@ -8,7 +8,7 @@ import type { TruthPlace } from './truth-places';
 /** The bone maps that users gave for files, by the hashes of the files. */
 export interface BoneMaps {
   readonly all: Readonly<Record<string, BoneMap>>;
-  keep(hash: string, bones: BoneMap): void;
+  store(hash: string, bones: BoneMap): void;
   forget(hash: string): void;
 }
 
@@ -75,7 +75,7 @@ export class MotionBones {
   }
 
   /** Reads the motion with the user's map; null: forgets the map, and reads the motion with what is found. */
-  give(bones: BoneMap | null): void {
+  apply(bones: BoneMap | null): void {
     if (!this.#offered) return;
     const { request, hash } = this.#offered;
     if (!bones && hash !== null) this.#options.boneMaps.forget(hash);

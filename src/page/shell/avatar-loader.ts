@@ -106,7 +106,7 @@ export class AvatarLoader {
   async buildWith(checked: AvatarFile, name: string, bones: BoneMap | null): Promise<LoadedUserAvatar> {
     const loaded = await this.#build(await withBytes(checked), name, bones ?? undefined);
     const { boneMaps } = this.#options;
-    if (checked.hash !== null && bones) boneMaps.keep(checked.hash, bones);
+    if (checked.hash !== null && bones) boneMaps.store(checked.hash, bones);
     else if (checked.hash !== null) boneMaps.forget(checked.hash);
     return loaded;
   }

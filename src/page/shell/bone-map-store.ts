@@ -24,7 +24,7 @@ export class BoneMapStore {
   }
 
   /** A map that could not be read again is not kept: all that is remembered would be lost with it. */
-  keep(hash: string, bones: BoneMap): void {
+  store(hash: string, bones: BoneMap): void {
     if (!v.is(boneMap, bones)) return;
     const kept = [...this.#without(hash), [hash, bones] as const].slice(-maxFiles);
     this.#store.remember({ bones: Object.fromEntries(kept) });

@@ -192,7 +192,7 @@ export class UserAvatar {
    * Maps the bones of the file that waits for them; null: forgets the user's map. Returns false if they do not fit;
    * `waiting` has the reason.
    */
-  async giveBones(bones: BoneMap | null): Promise<boolean> {
+  async applyBones(bones: BoneMap | null): Promise<boolean> {
     const waiting = this.#waiting;
     if (!waiting) return false;
     const { name, checked } = waiting;

@@ -72,7 +72,7 @@ function files() {
           return true;
         },
         openBuiltIn: async () => true,
-        giveBones: async () => true,
+        applyBones: async () => true,
         waiting: null,
       },
       mocap: { open: async (sources) => void mocap.push(sources) },

@@ -180,7 +180,7 @@ describe('a file that is worn with a wrong bone', () => {
     await avatar.correctBones();
     expect(avatar.waiting).toMatchObject({ isShown: true, canForgetMap: false, bones: named(right) });
     expect(avatar.canCorrectBones).toBe(false);
-    expect(await avatar.giveBones({ ...avatar.waiting!.bones, ...named(wrong) })).toBe(true);
+    expect(await avatar.applyBones({ ...avatar.waiting!.bones, ...named(wrong) })).toBe(true);
     expect(fromHand(avatar, `${prefix}leftIndexProximal`)).toBeLessThan(0.02);
     expect(avatar.waiting).toBeNull();
 
@@ -195,7 +195,7 @@ describe('a file that is worn with a wrong bone', () => {
 
     await avatar.correctBones();
     expect(avatar.waiting).toMatchObject({ canForgetMap: true, confidence: {}, bones: named(wrong) });
-    expect(await avatar.giveBones(null)).toBe(true);
+    expect(await avatar.applyBones(null)).toBe(true);
     expect(fromHand(avatar, `${prefix}leftHand`)).toBeLessThan(0.02);
     expect(fromHand(avatar, `${prefix}leftIndexProximal`)).toBeGreaterThan(0.03);
     expect(store.preferences.bones).toEqual({});
@@ -209,7 +209,7 @@ describe('a file that is worn with a wrong bone', () => {
     const before = avatar.current;
     await avatar.correctBones();
     const { leftFoot: _, ...footless } = avatar.waiting!.bones;
-    expect(await avatar.giveBones(footless)).toBe(false);
+    expect(await avatar.applyBones(footless)).toBe(false);
     expect(avatar.waiting?.complaint).toBe('a VRM needs its legs: no leftFoot');
     avatar.cancel();
     expect(avatar.current).toBe(before);

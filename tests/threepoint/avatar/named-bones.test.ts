@@ -155,7 +155,7 @@ describe('a map of bones that the user makes', () => {
   test('is remembered by the file’s hash over a reload, of the newest twenty files', () => {
     const storage = memory();
     const first = new BoneMapStore(createPreferenceStore(storage));
-    for (let i = 0; i < 21; i++) first.keep(hashOf(i), { ...bones, head: `daeh${i}` });
+    for (let i = 0; i < 21; i++) first.store(hashOf(i), { ...bones, head: `daeh${i}` });
     const store = createPreferenceStore(storage);
     expect(store.complaint).toBeNull();
     const later = new BoneMapStore(store);
@@ -168,7 +168,7 @@ describe('a map of bones that the user makes', () => {
     const storage = memory();
     const store = createPreferenceStore(storage);
     store.remember({ mirror: false });
-    new BoneMapStore(store).keep(hashOf(1), { ...bones, head: 'head '.repeat(50) });
+    new BoneMapStore(store).store(hashOf(1), { ...bones, head: 'head '.repeat(50) });
     const next = createPreferenceStore(storage);
     expect(next.complaint).toBeNull();
     expect(next.preferences).toEqual({ mirror: false });

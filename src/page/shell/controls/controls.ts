@@ -114,9 +114,9 @@ export class Controls {
     this.#inHeadset.point(frame);
   }
 
-  /** Replays a file of this device, or what an address answers. `asked`: the recorder's place for this wish. */
-  openRecording(source: string | File, asked: number): Promise<void> {
-    return this.#files.openRecording(source, asked);
+  /** Replays a file of this device, or what an address answers. `requestNumber`: its number among the recorder's requests. */
+  openRecording(source: string | File, requestNumber: number): Promise<void> {
+    return this.#files.openRecording(source, requestNumber);
   }
 
   /** What changes by itself: frame times, a replay's progress, a round. */

@@ -12,7 +12,7 @@ import type { UserAvatar } from '../user-avatar';
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface FileOpenerOptions {
-  readonly avatar: Pick<UserAvatar, 'open' | 'openBuiltIn' | 'giveBones' | 'name' | 'waiting'>;
+  readonly avatar: Pick<UserAvatar, 'open' | 'openBuiltIn' | 'applyBones' | 'name' | 'waiting'>;
   readonly recorder: Recorder;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BodySolver, 'discontinuity'>;
@@ -52,10 +52,10 @@ export class FileOpener {
    * notice.
    */
   async open(file: File): Promise<void> {
-    const asked = this.#options.recorder.nextRequest();
+    const requestNumber = this.#options.recorder.nextRequest();
     if (!isJson(file)) await this.openAvatar(file);
     else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#options.mocap.open([file]);
-    else await this.openRecording(file, asked);
+    else await this.openRecording(file, requestNumber);
   }
 
   /** Shows an avatar; a file of motion without a body is opened as motion capture. */
@@ -70,10 +70,10 @@ export class FileOpener {
    * Sets the bones of the file that waits for them; null: forgets the user's map. Never rejects: the form shows what is
    * wrong.
    */
-  async giveBones(bones: BoneMap | null): Promise<void> {
+  async applyBones(bones: BoneMap | null): Promise<void> {
     const { avatar, notices } = this.#options;
     const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
-    if (await avatar.giveBones(bones)) notices.show('info', `${avatar.name} ${text}`);
+    if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`);
   }
 
   /** Ours, also after a reload. */
@@ -85,7 +85,7 @@ export class FileOpener {
   }
 
   /**
-   * Replays what the file keeps, with the body of the person in it. `asked`: the recorder's place for this wish. Never
+   * Replays what the file keeps, with the body of the person in it. `requestNumber`: its number among the recorder's requests. Never
    * rejects: what goes wrong becomes a notice.
    */
   async openRecording(source: string | File, asked = this.#options.recorder.nextRequest()): Promise<void> {

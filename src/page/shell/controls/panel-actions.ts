@@ -62,7 +62,7 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): Omit<Ava
     showBuiltInAvatar: () => files.showBuiltInAvatar(),
     cancelAvatar: () => avatar.cancel(),
     correctBones: () => void avatar.correctBones(),
-    giveBones: (bones) => void files.giveBones(bones),
+    applyBones: (bones) => void files.applyBones(bones),
   };
 }
 

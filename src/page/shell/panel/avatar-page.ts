@@ -113,7 +113,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
 
 /** Shows the form for the bones of a file, and the button that opens it for the shown avatar. */
 function createBones(actions: AvatarActions) {
-  const form = createLazyBonesForm({ give: (map) => actions.giveBones(map), cancel: () => actions.cancelAvatar() });
+  const form = createLazyBonesForm({ apply: (map) => actions.applyBones(map), cancel: () => actions.cancelAvatar() });
   const correct = button('Correct the bones…', () => actions.correctBones());
   return {
     node: form.node,

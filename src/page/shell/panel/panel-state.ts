@@ -87,7 +87,7 @@ export interface AvatarActions extends SettingActions {
   /** Opens the form for the bones of the shown file. */
   correctBones(): void;
   /** Which bone of the file that waits is which; null: forgets the user's map. */
-  giveBones(bones: BoneMap | null): void;
+  applyBones(bones: BoneMap | null): void;
 }
 
 export interface RecordingActions {

@@ -1,5 +1,5 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
-import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { RateLimiterMemory } from 'rate-limiter-flexible';
 import {
   type AuthAttempt,
   createAuthThrottle,
@@ -8,6 +8,7 @@ import {
 } from 'threepoint-http/auth-throttle';
 import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
 import { HttpError } from 'threepoint-http/http-error';
+import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/study-store';
 
@@ -42,25 +43,16 @@ export const openPlacesPerHour = 6;
 
 const digest = (secret: string) => createHash('sha256').update(secret).digest();
 
-const tooMany = (message: string, seconds: number) =>
-  new HttpError(429, message, { headers: { 'retry-after': String(seconds) } });
-
 /** Returns a function that counts the places of open studies for each network. A claim that throws is not counted. */
 function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> {
   const taken = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
 
-  async function spend(network: string): Promise<void> {
-    try {
-      await taken.consume(network);
-    } catch (error) {
-      if (!(error instanceof RateLimiterRes)) throw error;
-      const seconds = Math.ceil(error.msBeforeNext / 1000);
-      throw tooMany(`${openPlacesPerHour} places were taken from this address; try again in ${seconds} s`, seconds);
-    }
-  }
-
   return async (network, claim) => {
-    await spend(network);
+    const seconds = await consumePoint(taken, network);
+    if (seconds !== null) {
+      const message = `${openPlacesPerHour} places were taken from this address; try again in ${seconds} s`;
+      throw tooManyRequests(message, seconds);
+    }
     try {
       return claim();
     } catch (error) {
@@ -85,7 +77,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       return await throttle.attempt({ ...guess, address: requiredAddress(address) }, isRight);
     } catch (error) {
       if (!(error instanceof TooManyAttempts)) throw error;
-      throw tooMany(error.message, error.retryAfterSeconds);
+      throw tooManyRequests(error.message, error.retryAfterSeconds);
     }
   }
 
