@@ -1,8 +1,8 @@
-import { quadraticRoots } from 'threepoint/core/math/quadratic';
 import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { fallTime, gravity, type Launch, launchDirection, positionAt } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
+import { quadraticRoots } from './quadratic';
 
 /** A vertical net from the ground to `height`, which stops arrows from the inside. */
 export interface Wall {

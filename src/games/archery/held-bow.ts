@@ -1,9 +1,9 @@
 import { smoothingFactor } from 'threepoint/core/math/damper';
 import { makePose, type Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
-import { slerpDirection } from 'threepoint/core/math/slerp-direction';
 import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { bowDirection, bowInHand, nockingPointOf, turnBow } from './bow-pose';
+import { slerpDirection } from './slerp-direction';
 
 /** A press takes the bow out of the other hand within this distance of the fist from its grip [m]. */
 export const takeReach = 0.1;

@@ -2,7 +2,6 @@ import type { Button } from 'threepoint/core/input/button-presses';
 import { clamp, damp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper';
 import { makePose, type Pose } from 'threepoint/core/math/pose';
 import type { Side } from 'threepoint/core/math/side';
-import { slerpDirection } from 'threepoint/core/math/slerp-direction';
 import {
   addScaled,
   copyVec3,
@@ -17,6 +16,7 @@ import {
 import type { BowView } from './archery-state';
 import { braceHeight, maximumDraw } from './bow';
 import { arrowRestOf, bowDirection, turnBow } from './bow-pose';
+import { slerpDirection } from './slerp-direction';
 
 /** Half-life of a drawn arrow's direction [s]. */
 export const aimHalfLife = 0.05;

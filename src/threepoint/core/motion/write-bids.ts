@@ -86,7 +86,7 @@ export const bidsChannels = (): string => bidsTable(channelColumns, [latency, ..
 /** `*_channels.json`: the frame that the channels' `reference_frame` names. */
 export const bidsChannelFrames = {
   reference_frame: {
-    Description: 'Frame in which positions and orientations are told.',
+    Description: 'Frame in which positions and orientations are given.',
     Levels: {
       floor: {
         Description:

@@ -1,5 +1,5 @@
-import { identity, quat, rotate, rotationBetween, slerp } from './quat';
-import { type MutableVec3, normalise, type Vec3, vec3 } from './vec3';
+import { identity, quat, rotate, rotationBetween, slerp } from 'threepoint/core/math/quat';
+import { type MutableVec3, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 
 const arc = quat(0, 0, 0, 1);
 const turned = vec3(0, 0, 0);
