@@ -114,7 +114,7 @@ export class Controls {
     this.#inHeadset.point(frame);
   }
 
-  /** Replays a file of this device, or what an address answers. `requestNumber`: its number among the recorder's requests. */
+  /** Replays a file of this device or of an address. `requestNumber`: its number among the recorder's requests. */
   openRecording(source: string | File, requestNumber: number): Promise<void> {
     return this.#files.openRecording(source, requestNumber);
   }

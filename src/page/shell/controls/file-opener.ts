@@ -85,8 +85,8 @@ export class FileOpener {
   }
 
   /**
-   * Replays what the file keeps, with the body of the person in it. `requestNumber`: its number among the recorder's requests. Never
-   * rejects: what goes wrong becomes a notice.
+   * Replays a recording, with the body of the person in it. `requestNumber`: its number among the recorder's requests.
+   * Never rejects: what goes wrong becomes a notice.
    */
   async openRecording(source: string | File, asked = this.#options.recorder.nextRequest()): Promise<void> {
     const { recorder, notices } = this.#options;
