@@ -88,11 +88,11 @@ export class FileOpener {
    * Replays a recording, with the body of the person in it. `requestNumber`: its number among the recorder's requests.
    * Never rejects: what goes wrong becomes a notice.
    */
-  async openRecording(source: string | File, asked = this.#options.recorder.nextRequest()): Promise<void> {
+  async openRecording(source: string | File, requestNumber = this.#options.recorder.nextRequest()): Promise<void> {
     const { recorder, notices } = this.#options;
     const name = fileNameOf(source);
     try {
-      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), asked);
+      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), requestNumber);
       this.replay();
     } catch (error) {
       const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
