@@ -316,14 +316,16 @@ export const freshTest = test.extend<FreshFixtures>({
     await page.context().close();
   },
 
-  serve: ({ complaints }, use) =>
-    provideServers((serve) =>
-      use(async (settings) => {
+  serve: ({ complaints, page }, use) =>
+    provideServers(async (serve) => {
+      await use(async (settings) => {
         const server = await serve(settings);
         complaints.allow(new RegExp(`asked ${server.origin}:`));
         return server;
-      }),
-    ),
+      });
+      // A page that outlives its server complains that it cannot reconnect.
+      await page.goto('about:blank');
+    }),
 });
 
 /** Returns whether the boxes of two parts of the page overlap. */
