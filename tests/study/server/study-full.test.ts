@@ -95,6 +95,7 @@ describe('deletion by the code', () => {
     const { store } = opened(join(directory, 'studies.db'));
     store.plans.add(paperPlan(), { simulated: false, at: now });
     const { withdrawalCode } = store.places.claim('paper', 'P01', now);
+    expect(store.places.claim('paper', 'P02', now).withdrawalCode).not.toBe(withdrawalCode);
     store.records.store('paper', 'P01', completed('P01', { motion: true }), now);
     store.records.addRemark('paper', 'P01', conspicuous, now);
     const reader = new DatabaseSync(join(directory, 'studies.db'));
@@ -105,6 +106,8 @@ describe('deletion by the code', () => {
     expect(tracesOf(directory)).not.toEqual([]);
     reader.exec('COMMIT');
     expect(store.purgeDeleted()).toBe(true);
+    expect(tracesOf(directory)).toEqual([]);
+    store.close();
     expect(tracesOf(directory)).toEqual([]);
   });
 });
