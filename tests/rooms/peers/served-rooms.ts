@@ -3,7 +3,7 @@ import type { AddressInfo } from 'node:net';
 import { type AttachRoomsOptions, attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { onTestFinished } from 'vitest';
 
-/** Starts a server of somebody else's with rooms on it, until the test is over. */
+/** Starts a node:http server of another project with rooms attached. It closes when the test ends. */
 export async function servedRooms(options: AttachRoomsOptions = {}) {
   const server = createServer((request, response) => response.end(`mine: ${request.url}`));
   const rooms = attachRooms(server, { logLevel: 'silent', ...options });

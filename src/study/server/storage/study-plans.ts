@@ -129,8 +129,8 @@ export class StudyPlans {
 
   /**
    * Moves a cleared place to the newest plan, in a transaction, with the places that follow an older version only
-   * because of it. A place that the newest plan does not have is deleted. All stay if somebody who plays with them has
-   * begun.
+   * because of it. A place that the newest plan does not have is deleted. All stay if a participant of one of these
+   * places has begun.
    */
   free(id: string, participant: string): void {
     const { plan, version, versions } = this.get(id);
