@@ -49,7 +49,7 @@ export async function loadAvatar(source: AvatarSource, options: LoadAvatarOption
 }
 
 /** Checks a file in a worker, or on the calling thread if no worker starts. */
-const checkUntrusted = createWorkerCheck(startValidator, async (...file) => {
+const checkUntrusted = /* @__PURE__ */ createWorkerCheck(startValidator, async (...file) => {
   const { checkAvatar } = await import('../avatar/file/check-avatar');
   return checkAvatar(...file);
 });
