@@ -30,12 +30,11 @@ const entriesOf = (folder, { exports = {} }) =>
     source ? [`${folder}/${source.slice(2)}`.replaceAll('.', '\\.')] : [],
   );
 
-/** Tests of a package may import its modules, and those of no other package. */
 const entryRules = [...manifests].map(([folder, manifest]) => ({
   name: `entries-of-${manifest.name}`,
-  comment: `Other packages, and their tests, import ${manifest.name} by the entries that the exports of its package.json name.`,
+  comment: `Other packages import ${manifest.name} by the entries that the exports of its package.json name.`,
   severity: 'error',
-  from: { path: '^(src|server|tests|e2e)/', pathNot: `^(${folder}|(tests|e2e)/${folder.replace('src/', '')})/` },
+  from: { path: '^(src|server)/', pathNot: `^${folder}/` },
   to: { path: `^${folder}/`, pathNot: `^(${entriesOf(folder, manifest).join('|') || '-'})$|\\.css$` },
 }));
 
