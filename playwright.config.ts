@@ -1,9 +1,5 @@
 import { defineConfig } from '@playwright/test';
 import { findChromium } from './scripts/chromium.mjs';
-import { withSourceCondition } from './scripts/source-condition.mjs';
-
-// The workers that run the tests resolve packages to their sources.
-process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
 
 /**
  * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm

@@ -1,9 +1,4 @@
-import { defaultServerConditions } from 'vite';
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
-import { withSourceCondition } from './scripts/source-condition.mjs';
-
-// Child processes of tests resolve packages to their sources too.
-process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
 
 /**
  * Tests in processes of their own: pages with dynamic imports, because a file may end while an import is pending, which
@@ -17,7 +12,6 @@ const projects: TestProjectConfiguration[] = [
 ];
 
 export default defineConfig({
-  ssr: { resolve: { conditions: ['source', ...defaultServerConditions] } },
   test: {
     setupFiles: ['tests/property-runs.ts', 'tests/restore-globals.ts', 'tests/matchers/to-be-same-rotation-as.ts'],
     // Most files share a process and its loaded modules, which saves a fifth of the time. A test restores what it

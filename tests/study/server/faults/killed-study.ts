@@ -10,7 +10,6 @@ import type { ParticipantState } from 'threepoint-study/model/progress/study-api
 import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
-import { sourceResolution } from '../../../../scripts/source-condition.mjs';
 import { isAlive, kill, messageFrom } from '../../../server/child-process';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
@@ -43,7 +42,6 @@ async function bundledServer(): Promise<string> {
       'study-thread-worker': join(root, 'server/study-thread-work.ts'),
     },
     platform: 'node',
-    resolve: sourceResolution('node'),
     external: (id) => /^[^./]/.test(id) && !id.startsWith('threepoint'),
     logLevel: 'silent',
   });

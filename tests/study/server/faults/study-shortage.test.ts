@@ -5,7 +5,6 @@ import { join } from 'node:path';
 import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test } from 'vitest';
-import { withSourceCondition } from '../../../../scripts/source-condition.mjs';
 import { reportFigures } from '../../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../../server/server-child';
 import { directoryWith } from '../../../temporary-directory';
@@ -54,7 +53,7 @@ test('a heap of 64 MB refuses what does not fit with a sentence, and the server 
   tags: ['full'],
 }, async () => {
   const { directory } = studyWith(30_000);
-  const server = await forkServer({ NODE_OPTIONS: withSourceCondition('--max-old-space-size=64') }, { directory });
+  const server = await forkServer({ NODE_OPTIONS: '--max-old-space-size=64' }, { directory });
   const exported = await ask(server, 'GET', '/export');
   expect(exported.status).toBe(507);
   expect(exported.error).toMatch(/^The server is out of memory\. Give it more: .*one by one\.$/);
