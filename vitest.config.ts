@@ -1,4 +1,5 @@
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
+import { isNightly } from './tests/nightly.ts';
 
 /**
  * Tests in processes of their own: pages with dynamic imports, because a file may end while an import is pending, which
@@ -20,13 +21,15 @@ export default defineConfig({
     unstubEnvs: true,
     restoreMocks: true,
     // The limit is generous: a property with many runs is slow on a busy machine, but not wrong.
-    testTimeout: 120_000,
+    testTimeout: isNightly ? 600_000 : 120_000,
     hookTimeout: 120_000,
     // Polls wait for the same reason.
     expect: { poll: { timeout: 30_000 } },
     // One worker per core: much of the time is spent waiting for servers and sockets.
     maxWorkers: '100%',
     slowTestThreshold: 5_000,
+    // The report is for scripts/test.mjs, which counts tests.
+    reporters: ['default', ['json', { outputFile: 'artifacts/test-reports/unit.json' }]],
     tags: [{ name: 'full', description: 'What takes its time, or needs another program: npm run test:full' }],
     projects,
   },
