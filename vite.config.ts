@@ -88,7 +88,12 @@ export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
   plugins: [policyInPages, studyPluginsInPages],
-  server: { host: '127.0.0.1', port: 5173, proxy: { '/api': server, '/relay': { target: server, ws: true } } },
+  server: {
+    host: '127.0.0.1',
+    port: 5173,
+    // As objects: for a string Vite replaces Host, and the server refuses an Origin of another host.
+    proxy: { '/api': { target: server }, '/relay': { target: server, ws: true } },
+  },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they can import chunks.
   worker: { format: 'es', plugins: () => [decodersWithoutNode] },
