@@ -10,9 +10,14 @@ import { mainOf, root, run, SetupError } from './run-command.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-library');
-const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill', 'trackers'];
 /** The manifest of the workspace, whose exports are sources; those of the build are in `publishConfig`. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
+/** The source file of each entry, by the name of its built file. */
+const entries = Object.fromEntries(
+  Object.entries(own.publishConfig.exports).flatMap(([name, { default: built }]) =>
+    built ? [[built.slice(2, -3), join(root, 'src/threepoint', own.exports[name])]] : [],
+  ),
+);
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
 
 /** Files of the package other than code: path in the package to path in the repository. */
@@ -109,8 +114,6 @@ async function workerCode(module) {
   return Buffer.from(output[0].code);
 }
 
-const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
-
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
 async function bundle(input, plugins) {
   return rolldown({
@@ -149,7 +152,7 @@ async function writeBundles() {
       handler: (id) => ({ id: `../${basename(id)}`, external: 'absolute' }),
     },
   };
-  for (const name of entries) {
+  for (const name of Object.keys(entries)) {
     const build = await rolldown({
       input: join(out, `${name}.js`),
       platform: 'browser',
@@ -169,7 +172,7 @@ const sourcesFolder = 'src/threepoint';
  * larger file.
  */
 async function writeCode() {
-  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [filesInModules]);
+  const build = await bundle(entries, [filesInModules]);
   await build.write({
     format: 'esm',
     dir: out,
@@ -306,9 +309,9 @@ export const buildLibrary = () =>
 /** The measured entries, by their names in the table of src/threepoint/README.md. */
 async function measureSizes() {
   const sizes = {};
-  for (const name of entries) {
+  for (const [name, source] of Object.entries(entries)) {
     const called = name === 'index' ? own.name : `${own.name}/${name}`;
-    sizes[`\`${called}\``] = await weigh(sourceOf(name));
+    sizes[`\`${called}\``] = await weigh(source);
   }
   const weights = readFileSync(join(out, 'models/learned.bin'));
   sizes["the learned network's weights"] = { min: weights.length, brotli: brotliCompressSync(weights).length };

@@ -2,8 +2,6 @@ import { once } from 'node:events';
 import { Agent, request as httpRequest, type IncomingMessage } from 'node:http';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test } from 'vitest';
 import { reportFigures } from '../../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../../server/server-child';
