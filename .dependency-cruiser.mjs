@@ -26,9 +26,9 @@ const packageRules = [...manifests].map(([folder, { name, dependencies = {} }]) 
 
 /** The modules of a package that its exports name: its entries. */
 const entriesOf = (folder, { exports = {} }) =>
-  Object.values(exports).flatMap(({ source }) =>
-    source ? [`${folder}/${source.slice(2)}`.replaceAll('.', '\\.')] : [],
-  );
+  Object.values(exports)
+    .filter((file) => file.endsWith('.ts'))
+    .map((file) => `${folder}/${file.slice(2)}`.replaceAll('.', '\\.'));
 
 const entryRules = [...manifests].map(([folder, manifest]) => ({
   name: `entries-of-${manifest.name}`,
@@ -310,7 +310,7 @@ export default {
     combinedDependencies: true,
     enhancedResolveOptions: {
       exportsFields: ['exports'],
-      conditionNames: ['source', 'import', 'require', 'node', 'default', 'types'],
+      conditionNames: ['import', 'require', 'node', 'default', 'types'],
     },
   },
 };

@@ -1,44 +1,25 @@
 import { defineConfig } from '@playwright/test';
-import { findChromium } from './scripts/chromium.mjs';
-import { withSourceCondition } from './scripts/source-condition.mjs';
-
-// The workers that run the tests resolve packages to their sources.
-process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
-
-/**
- * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm
- * run nightly` @nightly. Asked for without a word, a file runs all but the nightly ones.
- */
-export const choices: Readonly<Record<string, { readonly grep?: RegExp; readonly grepInvert?: RegExp }>> = {
-  'day and full': { grepInvert: /@nightly/ },
-  day: { grepInvert: /@(full|realtime|nightly)/ },
-  full: { grep: /@full/ },
-  realtime: { grep: /@realtime/ },
-  nightly: { grep: /@nightly/ },
-  all: {},
-};
-
-function chosenBy(word = 'day and full') {
-  const choice = choices[word];
-  if (!choice) throw new Error(`THREEPOINT_TESTS=${word}: expected one of ${Object.keys(choices).join(', ')}`);
-  return choice;
-}
-
-const executablePath = (await findChromium()) ?? undefined;
+import { isNightly } from './tests/nightly';
 
 export default defineConfig({
   testDir: 'e2e',
   outputDir: process.env.E2E_OUTPUT ?? 'artifacts/e2e',
-  // By day and in full a page's clock is driven or does not matter, and two files run side by side. @realtime and
-  // @nightly play in real time, often with several pages: software rendering needs both cores for a steady frame rate
-  // there.
-  workers: process.env.THREEPOINT_TESTS === 'day' || process.env.THREEPOINT_TESTS === 'full' ? 2 : 1,
+  globalSetup: './e2e/global-setup.ts',
   fullyParallel: false,
+  // @realtime and @nightly play in real time, often with several pages: software rendering needs both cores for a steady
+  // frame rate there. Other tests drive their page's clock, and two files may run side by side (--workers=2).
+  workers: 1,
   forbidOnly: Boolean(process.env.CI),
-  ...chosenBy(process.env.THREEPOINT_TESTS),
+  projects: [
+    { name: 'day', grepInvert: /@(full|realtime|nightly)/ },
+    { name: 'full', grep: /@full/ },
+    { name: 'realtime', grep: /@realtime/ },
+    ...(isNightly ? [{ name: 'nightly', grep: /@nightly/ }] : []),
+  ],
   timeout: 90_000,
   expect: { timeout: 20_000 },
-  reporter: [['list']],
+  // The second report is for scripts/test.mjs, which counts tests.
+  reporter: [['list'], ['junit', { outputFile: 'artifacts/test-reports/e2e.xml' }]],
   use: {
     // What a page asks for is what a test sees; e2e/page/offline.spec.ts alone lets one be kept.
     serviceWorkers: 'block',
@@ -47,7 +28,7 @@ export default defineConfig({
     trace: { mode: 'retain-on-failure', screenshots: false, snapshots: false },
     screenshot: 'only-on-failure',
     launchOptions: {
-      ...(executablePath && { executablePath }),
+      ...(process.env.CHROMIUM_PATH && { executablePath: process.env.CHROMIUM_PATH }),
       args: [
         '--no-sandbox',
         '--use-angle=swiftshader',

@@ -1,5 +1,5 @@
 import { basename } from 'node:path';
-import { defaultClientConditions, defineConfig, type Plugin } from 'vite';
+import { defineConfig, type Plugin } from 'vite';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
 import { studyPluginPaths } from './src/study/server/plugins/plugin-paths.ts';
 
@@ -88,8 +88,12 @@ export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
   plugins: [policyInPages, studyPluginsInPages],
-  resolve: { conditions: ['source', ...defaultClientConditions] },
-  server: { host: '127.0.0.1', port: 5173, proxy: { '/api': server, '/relay': { target: server, ws: true } } },
+  server: {
+    host: '127.0.0.1',
+    port: 5173,
+    // As objects: for a string Vite replaces Host, and the server refuses an Origin of another host.
+    proxy: { '/api': { target: server }, '/relay': { target: server, ws: true } },
+  },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they can import chunks.
   worker: { format: 'es', plugins: () => [decodersWithoutNode] },

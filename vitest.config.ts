@@ -1,9 +1,5 @@
-import { defaultServerConditions } from 'vite';
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
-import { withSourceCondition } from './scripts/source-condition.mjs';
-
-// Child processes of tests resolve packages to their sources too.
-process.env.NODE_OPTIONS = withSourceCondition(process.env.NODE_OPTIONS);
+import { isNightly } from './tests/nightly.ts';
 
 /**
  * Tests in processes of their own: pages with dynamic imports, because a file may end while an import is pending, which
@@ -17,7 +13,6 @@ const projects: TestProjectConfiguration[] = [
 ];
 
 export default defineConfig({
-  ssr: { resolve: { conditions: ['source', ...defaultServerConditions] } },
   test: {
     setupFiles: ['tests/property-runs.ts', 'tests/restore-globals.ts', 'tests/matchers/to-be-same-rotation-as.ts'],
     // Most files share a process and its loaded modules, which saves a fifth of the time. A test restores what it
@@ -26,13 +21,15 @@ export default defineConfig({
     unstubEnvs: true,
     restoreMocks: true,
     // The limit is generous: a property with many runs is slow on a busy machine, but not wrong.
-    testTimeout: 120_000,
+    testTimeout: isNightly ? 600_000 : 120_000,
     hookTimeout: 120_000,
     // Polls wait for the same reason.
     expect: { poll: { timeout: 30_000 } },
     // One worker per core: much of the time is spent waiting for servers and sockets.
     maxWorkers: '100%',
     slowTestThreshold: 5_000,
+    // The report is for scripts/test.mjs, which counts tests.
+    reporters: ['default', ['json', { outputFile: 'artifacts/test-reports/unit.json' }]],
     tags: [{ name: 'full', description: 'What takes its time, or needs another program: npm run test:full' }],
     projects,
   },

@@ -1,13 +1,11 @@
 import { fileURLToPath } from 'node:url';
-import { defaultClientConditions, defineConfig } from 'vite';
+import { defineConfig } from 'vite';
 
 const path = (relative: string) => fileURLToPath(new URL(relative, import.meta.url));
 
 export default defineConfig({
   root: path('./page'),
   publicDir: path('../public'),
-  // The packages of this repository are read from their sources.
-  resolve: { conditions: ['source', ...defaultClientConditions] },
   worker: { format: 'es' },
   build: {
     outDir: path('../.cache/bench'),

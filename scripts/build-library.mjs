@@ -7,16 +7,15 @@ import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
 import { staleSizes } from './library-sizes.mjs';
 import { mainOf, root, run, SetupError } from './run-command.mjs';
-import { sourceResolution } from './source-condition.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-library');
-/** The manifest of the workspace; the published one omits what only this repository can resolve. */
+/** The manifest of the workspace, whose exports are sources; those of the build are in `publishConfig`. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
 /** The source file of each entry, by the name of its built file. */
 const entries = Object.fromEntries(
-  Object.values(own.exports).flatMap(({ source, default: built }) =>
-    source ? [[built.slice(2, -3), join(root, 'src/threepoint', source)]] : [],
+  Object.entries(own.publishConfig.exports).flatMap(([name, { default: built }]) =>
+    built ? [[built.slice(2, -3), join(root, 'src/threepoint', own.exports[name])]] : [],
   ),
 );
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
@@ -41,29 +40,19 @@ const documents = {
   'models/accuracy.md': 'docs/accuracy.md',
 };
 
-/** Returns a manifest's exports without those that only this repository can resolve. */
-export function builtExports(exports) {
-  const outside = Object.entries(exports).flatMap(([name, target]) => {
-    if (typeof target === 'string') return [[name, target]];
-    const { source: _, ...built } = target;
-    return Object.keys(built).length > 0 ? [[name, built]] : [];
-  });
-  return Object.fromEntries(outside);
-}
-
 /**
  * Returns the manifest to publish: without sources and internal rooms. It has no dependencies: all but the peers is
  * bundled.
  */
 function published() {
-  const { private: _, devDependencies: __, dependencies: ___, exports, ...rest } = own;
+  const { private: _, devDependencies: __, dependencies: ___, publishConfig, ...rest } = own;
   const { engines } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
   return {
     ...rest,
+    ...publishConfig,
     engines,
     // The worker's modules answer messages; a bundler would drop the others' imports for side effects.
     sideEffects: ['./onnx-worker.js', './onnx/inference-worker.js'],
-    exports: builtExports(exports),
   };
 }
 
@@ -131,7 +120,6 @@ async function bundle(input, plugins) {
     input,
     cwd: root,
     platform: 'browser',
-    resolve: sourceResolution('browser'),
     external,
     plugins,
     tsconfig: join(root, 'tsconfig.json'),

@@ -3,9 +3,8 @@
 import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { rolldown } from 'rolldown';
-import { builtExports, documentInPackage, writeDeclarations } from './build-library.mjs';
+import { documentInPackage, writeDeclarations } from './build-library.mjs';
 import { mainOf, root } from './run-command.mjs';
-import { sourceResolution } from './source-condition.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-rooms');
@@ -36,7 +35,6 @@ async function writeCode(platform, modules) {
     ),
     cwd: root,
     platform,
-    resolve: sourceResolution(platform),
     external,
     tsconfig: join(root, 'tsconfig.json'),
   });
@@ -55,11 +53,11 @@ async function writeTypes() {
 
 /** Returns the manifest to publish: without sources and internal modules. */
 function published() {
-  const { private: _, devDependencies: __, exports, dependencies, ...rest } = own;
+  const { private: _, devDependencies: __, publishConfig, dependencies, ...rest } = own;
   return {
     ...rest,
+    ...publishConfig,
     sideEffects: false,
-    exports: { ...builtExports(exports), './package.json': './package.json' },
     dependencies: Object.fromEntries(Object.entries(dependencies).filter(([name]) => !bundled.includes(name))),
   };
 }

@@ -5,7 +5,6 @@ import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { rolldown } from 'rolldown';
 import { mainOf, root, SetupError } from './run-command.mjs';
-import { sourceResolution } from './source-condition.mjs';
 
 /** The default output folder, next to server/: the server reads ../package.json, ../dist/ and ../study-data/. */
 const usualOut = 'dist-server';
@@ -47,7 +46,6 @@ async function buildServer(out) {
     input: entries(),
     cwd: root,
     platform: 'node',
-    resolve: sourceResolution('node'),
     external: (id) => id.startsWith('node:') || packageOf(id) !== undefined,
     tsconfig: join(root, 'tsconfig.json'),
   });

@@ -2,7 +2,6 @@ import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join, sep } from 'node:path';
 import { root } from './run-command.mjs';
-import { sourceResolution } from './source-condition.mjs';
 
 /** The pages that are not cached, because they need their server. */
 const otherPages = ['experimenter.html', 'preview.html', 'results.html', 'withdraw.html'];
@@ -66,7 +65,6 @@ export async function buildServiceWorker(directory) {
   const bundle = await rolldown({
     input: join(root, 'src/page/offline/service-worker.ts'),
     platform: 'browser',
-    resolve: sourceResolution('browser'),
     transform: { define: { 'process.env.NODE_ENV': '"production"' }, target: 'es2022' },
   });
   const { output } = await bundle.generate({ format: 'iife', minify: true });

@@ -65,7 +65,7 @@ async function compileConsumer(consumer, types) {
 async function runProgram(name) {
   const program = join(folder, name);
   copyFileSync(join(root, 'examples', name), program);
-  const { code, output } = await run(process.execPath, [program], { capture: true, limitSeconds: 60 });
+  const { code, output } = await run(process.execPath, [program], { capture: true });
   if (code !== 0) throw new SetupError(`${name}, a program of Node, ends with code ${code}:\n${output}`);
 }
 
@@ -101,7 +101,7 @@ async function importWithoutBrowser() {
   const imports = entries.filter((entry) => entry !== 'threepoint/onnx-worker').map((entry) => `import '${entry}';`);
   const program = join(folder, 'without-browser.mjs');
   writeFileSync(program, imports.join('\n'));
-  const { code, output } = await run(process.execPath, [program], { capture: true, limitSeconds: 60 });
+  const { code, output } = await run(process.execPath, [program], { capture: true });
   if (code !== 0) throw new SetupError(`An entry cannot be imported without a browser:\n${output}`);
 }
 

@@ -34,7 +34,6 @@ await main(async () => {
   const [ending, ended] = [new AbortController(), new AbortController()];
   const program = run('npm', ['start', '--', '--port', String(port), '--studies', studies], {
     env: { EXPERIMENTER_TOKEN: token },
-    limitSeconds: 600,
     signal: ending.signal,
   }).finally(() => ended.abort());
   try {

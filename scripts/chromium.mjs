@@ -13,7 +13,7 @@ const installedNames = [
 
 /** Returns whether this browser starts: Ubuntu's chromium-browser may be a stub that asks for a snap. */
 async function starts(executable) {
-  const result = await runQuietly(executable, ['--version', '--no-sandbox'], { limitSeconds: 30 });
+  const result = await runQuietly(executable, ['--version', '--no-sandbox'], { signal: AbortSignal.timeout(30_000) });
   return result !== null && result.code === 0 && /Chrom/.test(result.output);
 }
 
@@ -47,11 +47,11 @@ export async function findChromium() {
 
 async function installWithPlaywright() {
   const cli = join(root, 'node_modules/@playwright/test/cli.js');
-  const installed = await run(process.execPath, [cli, 'install', 'chromium'], { limitSeconds: 600 });
+  const installed = await run(process.execPath, [cli, 'install', 'chromium']);
   if (installed.code !== 0) return null;
   const path = await playwrightsOwn();
   if (path !== null || process.getuid?.() !== 0) return path;
-  await run(process.execPath, [cli, 'install-deps', 'chromium'], { limitSeconds: 600 });
+  await run(process.execPath, [cli, 'install-deps', 'chromium']);
   return playwrightsOwn();
 }
 

@@ -16,7 +16,6 @@ const usage =
   'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--gaits DIR]\n' +
   'npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/accuracy.md says the rest.';
-const twoHours = { limitSeconds: 2 * 3600 };
 
 const flags = ['robustness', 'speed', 'hands-measured', 'forearm-typed'];
 /** The options of an evaluation on motion capture that --legs does not take. */
@@ -44,13 +43,13 @@ function options() {
 await main(async () => {
   const given = { models: join(root, 'public/models'), ...options() };
   await ensureInstalled();
-  if (given.recording) return runProgram('bench/evaluate/recorded.ts', [JSON.stringify(given)], twoHours);
+  if (given.recording) return runProgram('bench/evaluate/recorded.ts', [JSON.stringify(given)]);
   const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
   try {
-    const code = await prepareRecordings(given, recordings, twoHours);
+    const code = await prepareRecordings(given, recordings);
     if (code !== 0) return code;
     const program = given.legs ? 'bench/evaluate/legs/legs.ts' : 'bench/evaluate/main.ts';
-    return await runProgram(program, [JSON.stringify({ ...given, recordings })], twoHours);
+    return await runProgram(program, [JSON.stringify({ ...given, recordings })]);
   } finally {
     rmSync(recordings, { recursive: true, force: true });
   }

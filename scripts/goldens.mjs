@@ -11,7 +11,6 @@ import { main, root, runProgram, SetupError } from './run-command.mjs';
 const usage =
   'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
   'DIR holds the recordings that the goldens were frozen with; docs/accuracy.md says the rest.';
-const halfAnHour = 1800;
 
 function options() {
   const known = { texts: ['only'], paths: ['mocap', 'frames', 'models'], flags: ['compare', 'write', 'quick', 'all'] };
@@ -44,7 +43,7 @@ async function prepareOnce(mocap, folder) {
   mkdirSync(join(root, '.cache/goldens'), { recursive: true });
   const unfinished = `${folder}.${process.pid}`;
   try {
-    const code = await prepareRecordings({ mocap }, unfinished, { limitSeconds: halfAnHour });
+    const code = await prepareRecordings({ mocap }, unfinished);
     if (code === 0) renameSync(unfinished, folder);
     return code;
   } finally {
@@ -63,5 +62,5 @@ await main(async () => {
     (path) => join(root, path),
   );
   const request = JSON.stringify({ models, frames, ...given, golden, recordings });
-  return runProgram('bench/evaluate/golden/goldens.ts', [request], { limitSeconds: halfAnHour });
+  return runProgram('bench/evaluate/golden/goldens.ts', [request]);
 });

@@ -17,7 +17,7 @@ const planOf = ({ rest, plan }) => [...rest, ...(plan ? [plan] : [])];
 
 /**
  * The programs by the names of their npm scripts: how each is used, its options as `readOptions` takes them, and the
- * check of them. `hours`: the time after which it is stopped; 1 by default.
+ * check of them.
  */
 const programs = {
   /** Measures what other people's bodies cost, by the format in which they are sent. */
@@ -60,7 +60,6 @@ const programs = {
       if (!given.to) throw new Error('--to is needed');
     },
     argumentsOf: ({ rest: [file], ...given }) => [JSON.stringify({ ...given, file })],
-    hours: 2,
   },
   /** Prints the errors of a plan, or its duration and what its participants see. */
   'study:check': {
@@ -115,19 +114,12 @@ await main(async () => {
   // The name is taken out of the arguments; what is left are those of the npm script.
   const [name] = process.argv.splice(2, 1);
   if (!(name in programs)) throw new SetupError(`program: there are ${Object.keys(programs).join(', ')}`);
-  const {
-    program,
-    usage,
-    options,
-    check,
-    argumentsOf = (given) => [JSON.stringify(given)],
-    hours = 1,
-  } = programs[name];
+  const { program, usage, options, check, argumentsOf = (given) => [JSON.stringify(given)] } = programs[name];
   if (process.argv.some((word) => word === '--help' || word === '-h')) {
     console.log(usage);
     return 0;
   }
   const programArguments = argumentsOf(readOptions(name, usage, options, check));
   await ensureInstalled();
-  return runProgram(program, programArguments, { limitSeconds: hours * 3600 });
+  return runProgram(program, programArguments);
 });

@@ -55,12 +55,11 @@ for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:
  */
 async function installPackages(python, wanted) {
   const pip = ['-m', 'pip', 'install', '--no-input', '--disable-pip-version-check', '--prefer-binary'];
-  const limits = { limitSeconds: 1800 };
   if ((await runQuietly(python, [...pip, uv]))?.code === 0) {
-    if ((await run(python, ['-m', 'uv', 'pip', 'install', '--python', python, ...wanted], limits)).code === 0) return;
+    if ((await run(python, ['-m', 'uv', 'pip', 'install', '--python', python, ...wanted])).code === 0) return;
     console.log('uv could not install them; pip tries.');
   }
-  const { code } = await run(python, [...pip, ...wanted], limits);
+  const { code } = await run(python, [...pip, ...wanted]);
   if (code !== 0) throw new SetupError(`pip install failed with exit code ${code}; its messages are above.`);
 }
 

@@ -13,5 +13,5 @@ await main(async () => {
     process.env.CHROMIUM_PATH = await ensureChromium();
     await buildWhenStale();
   }
-  return runProgram('scripts/reliability/main.ts', options, { limitSeconds: 7200 });
+  return runProgram('scripts/reliability/main.ts', options);
 });

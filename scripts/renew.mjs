@@ -8,7 +8,6 @@ const usage =
   'npm run renew -- --mocap DIR [--from STEP] [--only STEP]\n' +
   'npm run renew -- --list [--from STEP] [--only STEP]\n' +
   'DIR holds the .asf and .amc or .bvh files of everyone; STEP is one of those that --list names.';
-const oneDay = 24 * 3600;
 
 // The first fold's networks with 32-bit weights, which cross-validation writes for the comparison in the report.
 const fp32 = join(root, '.cache/fp32');
@@ -126,7 +125,7 @@ await mainOf(import.meta.url, async () => {
     const title = `renew ${number + 1} of ${chosen.length}, ${step.name}`;
     console.log(`\n${title}: ${step.renews}; about ${step.takes}\n${commandLineOf(step, folder)}`);
     const start = performance.now();
-    const { code } = await run(process.execPath, commandOf(step, folder), { limitSeconds: oneDay });
+    const { code } = await run(process.execPath, commandOf(step, folder));
     const took = duration(performance.now() - start);
     if (code !== 0) {
       const again = commandLine('renew', '--mocap', mocap, given.only ? '--only' : '--from', step.name);

@@ -19,10 +19,8 @@ const usage =
   'it, are measured with and without calibrated hands. --models names the folder of the networks (default: ' +
   '.cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 wrote. The command ' +
   'renews docs/accuracy.md.';
-const sixHours = 6 * 3600;
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');
-const python = { limitSeconds: 600 };
 
 function options() {
   const known = { texts: ['people'], paths: ['mocap', 'skeleton', 'models', 'fp32'], flags: ['redraw', 'legs'] };
@@ -36,7 +34,7 @@ function options() {
 /** Runs npm run evaluate on the given motion with these additional options; resolves to its exit code. */
 async function evaluate(given, ...beside) {
   const command = [join(root, 'scripts/evaluate.mjs'), ...passedOn(given, ['mocap', 'skeleton']), ...beside];
-  return (await run(process.execPath, command, { limitSeconds: sixHours })).code;
+  return (await run(process.execPath, command)).code;
 }
 
 /** Measures the legs and renews their tables. */
@@ -49,7 +47,7 @@ async function reportLegs(given) {
     throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
   const beside = ['--legs', '--json', json, '--gaits', gaits, ...passedOn(given, ['people', 'models'])];
   const code = await evaluate(given, ...beside);
-  return code || (await runTraining('threepoint_training.legs_page', ['--legs', json], python)).code;
+  return code || (await runTraining('threepoint_training.legs_page', ['--legs', json])).code;
 }
 
 /**
@@ -66,7 +64,7 @@ const laboratories = Object.fromEntries(
 /** Returns the people of the tables and of another laboratory; Python maps files to people. */
 async function peopleIn(mocap) {
   const list = ['--mocap', mocap];
-  const { code, output } = await runTraining('threepoint_training.report_people', list, { ...python, capture: true });
+  const { code, output } = await runTraining('threepoint_training.report_people', list, { capture: true });
   if (code !== 0) throw new SetupError(`report: ${output.trim()}\n${usage}`);
   return JSON.parse(output);
 }
@@ -114,5 +112,5 @@ await main(async () => {
   }
   const draw = ['--evaluation', evaluation, '--figures', figures, '--models', models];
   for (const [group, files] of Object.entries(laboratories)) draw.push(`--${group}`, ...files);
-  return (await runTraining('threepoint_training.accuracy_page', draw, { ...python, extras: ['report'] })).code;
+  return (await runTraining('threepoint_training.accuracy_page', draw, { extras: ['report'] })).code;
 });

@@ -21,9 +21,6 @@ function satisfies(version, range) {
   });
 }
 
-// Child processes resolve the project's packages to their sources too (node -C source).
-process.env.NODE_OPTIONS = `${process.env.NODE_OPTIONS || ''} --conditions=source`;
-
 if (!satisfies(found, needed)) {
   console.error(`threepoint needs Node ${needed}; this is Node ${found} (${process.execPath}).
 Install a current one from https://nodejs.org or with your version manager, for instance: nvm install 22`);

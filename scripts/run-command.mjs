@@ -43,9 +43,9 @@ function watchSignals() {
 
 /**
  * Runs a program in the repository's root with its standard input closed, until `signal` aborts. Resolves to its exit
- * code, its output (with `capture`) and whether it ran past `limitSeconds`. Rejects only if the program does not exist.
+ * code and its output (with `capture`). Rejects only if the program does not exist.
  */
-export function run(command, args, { env = {}, cwd = root, capture = false, limitSeconds = 3600, signal } = {}) {
+export function run(command, args, { env = {}, cwd = root, capture = false, signal } = {}) {
   return new Promise((resolve, reject) => {
     const child = spawn(command, args, {
       cwd,
@@ -62,29 +62,22 @@ export function run(command, args, { env = {}, cwd = root, capture = false, limi
         output += text;
       });
     }
-    let timedOut = false;
-    const timer = setTimeout(() => {
-      timedOut = true;
-      killGroup(child, 'SIGTERM');
-      setTimeout(() => killGroup(child, 'SIGKILL'), 5000).unref();
-    }, limitSeconds * 1000);
     const end = () => killGroup(child, 'SIGTERM');
     signal?.addEventListener('abort', end);
     const settle = (action) => {
-      clearTimeout(timer);
       signal?.removeEventListener('abort', end);
       running.delete(child);
       watchSignals();
       action();
     };
     child.once('error', (error) => settle(() => reject(error)));
-    child.once('close', (code, signal) => settle(() => resolve({ code: code ?? 1, signal, output, timedOut })));
+    child.once('close', (code) => settle(() => resolve({ code: code ?? 1, output })));
   });
 }
 
 /** Runs a TypeScript program of the repository; resolves to its exit code. */
-export async function runProgram(program, args, options) {
-  const { code } = await run(process.execPath, ['--import', 'tsx', program, ...args], options);
+export async function runProgram(program, args) {
+  const { code } = await run(process.execPath, ['--import', 'tsx', program, ...args]);
   return code;
 }
 
@@ -103,8 +96,8 @@ export async function installWithApt(...packages) {
   if (process.getuid?.() !== 0 || (await runQuietly('apt-get', ['--version'])) === null) return false;
   const env = { DEBIAN_FRONTEND: 'noninteractive' };
   console.log(`Installing ${packages.join(' and ')} ...`);
-  await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
-  await run('apt-get', ['install', '-y', '-qq', '--no-install-recommends', ...packages], { env, limitSeconds: 900 });
+  await run('apt-get', ['update', '-qq'], { env });
+  await run('apt-get', ['install', '-y', '-qq', '--no-install-recommends', ...packages], { env });
   return true;
 }
 

@@ -1,67 +1,56 @@
 import { existsSync, readFileSync } from 'node:fs';
-import { relative, sep } from 'node:path';
+import { join, relative, sep } from 'node:path';
+import { root } from './run-command.mjs';
 
-/** Returns the path of a file from here, with slashes on every platform. */
-const shortPath = (file) => relative('.', file).split(sep).join('/');
+/** The folder of the runners' reports, as vitest.config.ts, playwright.config.ts and test-python.mjs name them. */
+export const reports = join(root, 'artifacts/test-reports');
 
-/** Returns the specs of a suite in Playwright's report, including those of nested suites. */
-const specsOf = ({ specs = [], suites = [] }) => [...specs, ...suites.flatMap(specsOf)];
+/** Reads a report in JUnit's form, as pytest and Playwright write it. */
+export function readJUnit(text) {
+  const cases = [...text.matchAll(/<testcase\s([^>]*?)(?:\/>|>(.*?)<\/testcase>)/gs)];
+  const withTag = (tag) => cases.filter(([, , body]) => new RegExp(`<(${tag})[\\s>/]`).test(body ?? ''));
+  const attribute = (attributes, name) => new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
+  const failures = withTag('failure|error').map(
+    ([, attributes]) => `${attribute(attributes, 'classname')}: ${attribute(attributes, 'name')}`,
+  );
+  const skipped = withTag('skipped').length;
+  return { passed: cases.length - failures.length - skipped, failed: failures.length, skipped, failures };
+}
 
-const readers = {
-  /**
-   * Reads Vitest's report. `chosen`: whether tests of these tags were selected; the runner counts all others as
-   * skipped.
-   */
-  vitest(text, chosen = () => true) {
-    const report = JSON.parse(text);
-    const tests = report.testResults.flatMap((file) =>
-      file.assertionResults.map((test) => ({ ...test, file: shortPath(file.name) })),
-    );
-    const asked = tests.filter(({ tags = [] }) => chosen(tags));
-    const of = (...kinds) => asked.filter(({ status }) => kinds.includes(status));
-    // A file that fails to load has no tests that could fail.
-    const broken = report.testResults.filter((file) => file.status === 'failed' && file.assertionResults.length === 0);
-    return {
-      passed: of('passed').length,
-      failures: [
-        ...broken.map((file) => `${shortPath(file.name)} does not load`),
-        ...of('failed').map(({ file, fullName }) => `${file}: ${fullName}`),
-      ],
-      skipped: of('skipped', 'pending', 'todo').length,
-    };
-  },
-  pytest(text) {
-    const skipped = [...text.matchAll(/<skipped\s/g)].length;
-    const cases = [...text.matchAll(/<testcase\s([^>]*?)(?:\/>|>(.*?)<\/testcase>)/gs)];
-    const attribute = (attributes, name) => new RegExp(`\\s${name}="([^"]*)"`).exec(` ${attributes}`)?.[1];
-    const failures = cases
-      .filter(([, , body]) => /<(failure|error)\s/.test(body ?? ''))
-      .map(([, attributes]) => `${attribute(attributes, 'classname')}: ${attribute(attributes, 'name')}`);
-    return { passed: cases.length - failures.length - skipped, failures, skipped };
-  },
-  playwright(text) {
-    const { stats, errors, suites } = JSON.parse(text);
-    const specs = suites.flatMap(specsOf).filter(({ ok }) => !ok);
-    return {
-      passed: stats.expected + stats.flaky,
-      // These errors are outside all tests: a configuration that does not load, a server that does not start.
-      failures: [
-        ...errors.map(({ message = 'an error without words' }) => message.split('\n')[0]),
-        ...specs.map(({ file, title }) => `${file}: ${title}`),
-      ],
-      skipped: stats.skipped,
-    };
-  },
-};
+/**
+ * Reads Vitest's own report of the tests that are tagged `full`, or of all others. The runner counts tests that its
+ * filter left out as skipped.
+ */
+export function readVitest(text, isFull) {
+  const files = JSON.parse(text).testResults.map((file) => ({
+    ...file,
+    name: relative(root, file.name).replaceAll(sep, '/'),
+  }));
+  const tests = files.flatMap(({ name, assertionResults }) =>
+    assertionResults
+      .filter(({ tags }) => tags.includes('full') === isFull)
+      .map((test) => ({ ...test, title: `${name}: ${test.fullName}` })),
+  );
+  const having = (...kinds) => tests.filter(({ status }) => kinds.includes(status));
+  // A file that fails to load has no tests that could fail.
+  const broken = files.filter(({ status, assertionResults }) => status === 'failed' && assertionResults.length === 0);
+  const failures = [
+    ...broken.map(({ name }) => `${name} does not load`),
+    ...having('failed').map(({ title }) => title),
+  ];
+  const skipped = having('skipped', 'pending', 'todo').length;
+  return { passed: having('passed').length, failed: failures.length, skipped, failures };
+}
 
-/** Returns the counts of a runner's report file by outcome and the names of failed tests; null if there is no file. */
-export function readResults(runner, file, chosen) {
+/** Returns the counts of an npm script by its report, with the names of failed tests; null if it wrote none. */
+export function readResults(script) {
+  const [runner] = /unit|e2e|python/.exec(script) ?? [];
+  const file = join(reports, `${runner}.${runner === 'unit' ? 'json' : 'xml'}`);
   if (!existsSync(file)) return null;
-  const { passed, failures, skipped } = readers[runner](readFileSync(file, 'utf8'), chosen);
-  return { passed, failed: failures.length, skipped, failures };
+  const text = readFileSync(file, 'utf8');
+  return runner === 'unit' ? readVitest(text, script.endsWith('-full')) : readJUnit(text);
 }
 
 /** Returns the last line of a run: '12 passed, 0 failed', and the skipped tests if there are any. */
-export function countLine({ passed, failed, skipped }) {
-  return `${passed} passed, ${failed} failed${skipped ? `, ${skipped} skipped` : ''}`;
-}
+export const countLine = ({ passed, failed, skipped }) =>
+  `${passed} passed, ${failed} failed${skipped ? `, ${skipped} skipped` : ''}`;

@@ -11,7 +11,7 @@ import { prepareRecordings, runTraining } from './python-environment.mjs';
 import { main, root, runProgram } from './run-command.mjs';
 
 const usage = 'npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]';
-const python = { extras: ['train'], limitSeconds: 2 * 3600 };
+const python = { extras: ['train'] };
 
 await main(async () => {
   const known = { texts: ['people', 'steps', 'seed'], paths: ['mocap', 'skeleton'] };
@@ -30,7 +30,7 @@ await main(async () => {
   try {
     return (
       (await prepareRecordings(given, recordings, python)) ||
-      (await runProgram('bench/evaluate/legs/gait-frames.ts', [inputs], { limitSeconds: python.limitSeconds })) ||
+      (await runProgram('bench/evaluate/legs/gait-frames.ts', [inputs])) ||
       (await runTraining('threepoint_training.train_gait', training, python)).code
     );
   } finally {

@@ -3,10 +3,8 @@
 import { runTraining } from './python-environment.mjs';
 import { main, typedPath } from './run-command.mjs';
 
-const oneDay = 24 * 3600;
-
 await main(async () => {
   // Paths are relative to the directory in which the command was typed.
-  const options = { extras: ['train'], cwd: typedPath('.'), limitSeconds: oneDay };
+  const options = { extras: ['train'], cwd: typedPath('.') };
   return (await runTraining('threepoint_training', process.argv.slice(2), options)).code;
 });

@@ -155,7 +155,7 @@ test('a headset check measures the known noise and losses of the emulator, and w
   expect(report.bodyTracking.frames).toBeGreaterThan(100);
   expect(report.bodyTracking.joints!.leftLowerArm).toBeLessThan(15);
 
-  const program = ['-C', 'source', '--import', 'tsx', 'bench/evaluate/check-headset.ts', file];
+  const program = ['--import', 'tsx', 'bench/evaluate/check-headset.ts', file];
   const printed = execFileSync(process.execPath, program, { cwd: root, encoding: 'utf8' });
   expect(printed).toContain(`${file}: valid`);
   expect(printed).toContain('Noise at rest');

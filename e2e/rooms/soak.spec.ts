@@ -2,7 +2,6 @@ import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { type CDPSession, expect, type Page } from '@playwright/test';
-import { withSourceCondition } from '../../scripts/source-condition.mjs';
 import { printFigures } from '../../tests/print-figures';
 import { memoryOf } from '../browser-processes';
 import { freePort } from '../free-port';
@@ -228,7 +227,7 @@ test('two people talk and play with a bot, match after match: what pages and ser
 }) => {
   test.setTimeout((minutes + 15) * 60_000);
   const port = await freePort();
-  const { origin } = await serve({ NODE_OPTIONS: withSourceCondition(`--inspect=127.0.0.1:${port}`) });
+  const { origin } = await serve({ NODE_OPTIONS: `--inspect=127.0.0.1:${port}` });
   const light = { seldomDrawn: true, viewport: { width: 160, height: 120 } };
   const ann = await talker(origin, 'Ann', { query: 'bots=on', ...light });
   const ben = await talker(origin, 'Ben', light);

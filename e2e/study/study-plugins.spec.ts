@@ -14,7 +14,7 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 /** Runs a script of the project with a plug-in, whose path is relative to `directory`; returns its output. */
 function script(directory: string, plugins: string, ...args: readonly string[]): string {
   const env = { ...process.env, INIT_CWD: directory, THREEPOINT_STUDY_PLUGINS: plugins };
-  const { status, stdout, stderr } = spawnSync(process.execPath, ['-C', 'source', ...args], {
+  const { status, stdout, stderr } = spawnSync(process.execPath, args, {
     cwd: root,
     env,
     encoding: 'utf8',
@@ -113,7 +113,7 @@ test('a plug-in that cannot be loaded stops the server with its path @full', asy
   writeFileSync(join(directory, 'broken.mjs'), 'export default 5;');
   const { status, stderr } = spawnSync(
     process.execPath,
-    ['-C', 'source', '--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', join(directory, 'studies')],
+    ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', join(directory, 'studies')],
     {
       cwd: root,
       env: { ...process.env, THREEPOINT_STUDY_PLUGINS: join(directory, 'broken.mjs') },

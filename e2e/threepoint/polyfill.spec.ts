@@ -1,12 +1,11 @@
 import { fileURLToPath } from 'node:url';
 import { expect, test } from '@playwright/test';
 import { rolldown } from 'rolldown';
-import { sourceResolution } from '../../scripts/source-condition.mjs';
 
 /** The page's script in one piece. */
 async function bundled(): Promise<string> {
   const input = fileURLToPath(new URL('../polyfill-page.ts', import.meta.url));
-  const build = await rolldown({ input, platform: 'browser', resolve: sourceResolution('browser') });
+  const build = await rolldown({ input, platform: 'browser' });
   const { output } = await build.generate({ format: 'esm', codeSplitting: false });
   await build.close();
   return output[0].code;

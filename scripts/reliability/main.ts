@@ -17,7 +17,7 @@ const suites = {
 };
 
 function runTests(script: string, args: readonly string[]): boolean {
-  const env = { ...process.env, RELIABILITY_FIGURES: figuresFile, THREEPOINT_NIGHTLY: '1', THREEPOINT_TESTS: 'all' };
+  const env = { ...process.env, RELIABILITY_FIGURES: figuresFile, THREEPOINT_NIGHTLY: '1' };
   return (
     spawnSync(process.execPath, [`node_modules/${script}`, ...args], { cwd: root, env, stdio: 'inherit' }).status === 0
   );
@@ -27,7 +27,7 @@ let passed = true;
 if (!redraw) {
   mkdirSync(`${root}artifacts`, { recursive: true });
   rmSync(figuresFile, { force: true });
-  passed = runTests('vitest/vitest.mjs', ['run', '--testTimeout=600000', ...suites.unit]);
+  passed = runTests('vitest/vitest.mjs', ['run', ...suites.unit]);
   if (!unitOnly) {
     const skip = long ? [] : ['--grep-invert', '@long'];
     passed = runTests('@playwright/test/cli.js', ['test', ...suites.e2e, ...skip]) && passed;

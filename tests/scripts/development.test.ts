@@ -36,17 +36,23 @@ test('npm run dev serves the page, and passes rooms with their WebSockets to the
   );
 });
 
-test('a page of the development server may use the relay, a page of another site may not', async () => {
-  const origin = await startDevelopment();
-  const token = await tokenFor(origin, 'development');
+test('a page of the development server may use rooms and the relay, a page of another site may not', async () => {
+  const server = await startDevelopment();
+  for (const origin of [server, 'https://evil.example']) {
+    const headers = { origin, 'content-type': 'application/json' };
+    const body = JSON.stringify({ room: 'development', kind: 'ball' });
+    const { status } = await fetch(`${server}/api/rooms/token`, { method: 'POST', headers, body });
+    expect(status, origin).toBe(origin === server ? 200 : 403);
+  }
+  const token = await tokenFor(server, 'development');
   const outcomeFor = (from: string) => {
-    const socket = rawSocket(origin, token, 'development', { origin: from });
+    const socket = rawSocket(server, token, 'development', { origin: from });
     onTestFinished(() => void socket.disconnect());
     return new Promise<string>((resolve) => {
       socket.on('connect', () => resolve('connected'));
       socket.on('connect_error', () => resolve('refused'));
     });
   };
-  expect(await outcomeFor(origin)).toBe('connected');
+  expect(await outcomeFor(server)).toBe('connected');
   expect(await outcomeFor('https://evil.example')).toBe('refused');
 });

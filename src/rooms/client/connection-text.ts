@@ -9,6 +9,7 @@ const endings: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   closed: 'The room was closed.',
   stopping: 'The server is being restarted.',
   unreachable: 'The server cannot be reached.',
+  forbidden: "The server does not accept requests from this page's address. Open the page at the server's own.",
   refused: 'The server does not let you into this room. Open the link again.',
   'old-page': 'This page and the server have different versions. Reload the page.',
 };

@@ -21,7 +21,7 @@ export interface ConnectionStatus {
   /** Seconds until the next attempt; null: one is under way, or none will be made. */
   readonly retryIn: number | null;
   /** Why it ended, or why the last attempt failed; null: neither has happened. */
-  readonly reason: DisconnectReason | 'unreachable' | 'refused' | null;
+  readonly reason: DisconnectReason | 'unreachable' | 'forbidden' | 'refused' | null;
 }
 
 /** The room as this page knows it. */

@@ -4,7 +4,7 @@ import type { RoomTerms } from '../protocol/messages';
 export interface RoomPass {
   /**
    * Resolves to the newest token; `afresh`: a renewed one, after a refusal. Rejects with a sentence if the server
-   * issues none.
+   * issues none, and with the HTTP status as its cause.
    */
   token(afresh: boolean): Promise<string>;
 }
@@ -56,6 +56,7 @@ export function createRoomPass(
       if (!response.ok || typeof answer.token !== 'string') {
         throw new Error(
           `the server issued no pass for this room: ${typeof answer.error === 'string' ? answer.error : response.status}`,
+          { cause: response.status },
         );
       }
       token = answer.token;

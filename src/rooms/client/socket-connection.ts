@@ -169,7 +169,7 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
         this.#socket.auth = { token };
         this.#socket.connect();
       },
-      () => this.#retryLater('unreachable'),
+      (error: Error) => this.#retryLater(error.cause === 403 ? 'forbidden' : 'unreachable'),
     );
   }
 

@@ -156,6 +156,7 @@ async function connect<Game extends HostedGame>(
 
 const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>> = {
   unreachable: 'the server does not answer',
+  forbidden: 'this page may not use the server',
   refused: 'the server refuses the pass',
   replaced: 'the same person has joined in another page',
   yielded: 'another person has the place',

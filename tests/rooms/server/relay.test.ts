@@ -1,12 +1,12 @@
-import { defaultCalibration } from 'threepoint/core';
 import type { BallState } from 'threepoint-games/ball';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import type { ConnectionStatus } from '../../../src/rooms/client/connection';
 import { bannerText } from '../../../src/rooms/client/connection-text';
 import { protocolVersion } from '../../../src/rooms/protocol/messages';
 import { messageEvent } from '../../../src/rooms/protocol/socket-parsers';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
-import { type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
+import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 import { personOfTest } from './until-finished';
 
 let server: RunningRelay;
@@ -43,6 +43,17 @@ describe('a relay', () => {
     expect(bannerText(status)).toBe('This page and the server have different versions. Reload the page.');
     expect(ann.connection.status.phase).toBe('joined');
     expect(ann.connection.room?.seats.filter(Boolean)).toHaveLength(1);
+  });
+
+  test('reports to the page of another site that it may not use the server', async () => {
+    const send = fetch;
+    vi.stubGlobal('fetch', (url: string, request: RequestInit) =>
+      send(url, { ...request, headers: { ...request.headers, origin: 'https://evil.example' } }),
+    );
+    const { connection, stop } = arrive(server.url, 'forbidden', 'Ann');
+    onTestFinished(stop);
+    await until('the refusal', () => connection.status.reason !== null);
+    expect(bannerText(connection.status)).toMatch(/^The server does not accept requests from this page's address\./);
   });
 
   test('a seat that is left is free at once', async () => {

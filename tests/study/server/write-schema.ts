@@ -1,4 +1,4 @@
-// node -C source --import tsx tests/study/server/write-schema.ts: writes a database of the current schema, and what is
+// node --import tsx tests/study/server/write-schema.ts: writes a database of the current schema, and what is
 // in it, into tests/golden. Later versions of the program must open it (tests/study/server/released-schemas.test.ts).
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -4,7 +4,6 @@ import { fileURLToPath } from 'node:url';
 import { isDeepStrictEqual } from 'node:util';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { rolldown } from 'rolldown';
-import { sourceResolution } from '../../../../scripts/source-condition.mjs';
 import { participantsOf, type StudyPlan } from '../../../../src/study/model/plan/plan';
 import { type Schedule, scheduleFor } from '../../../../src/study/model/plan/schedule';
 import type { ParticipantState } from '../../../../src/study/model/progress/study-api';
@@ -43,7 +42,6 @@ async function bundledServer(): Promise<string> {
       'study-thread-worker': join(root, 'server/study-thread-work.ts'),
     },
     platform: 'node',
-    resolve: sourceResolution('node'),
     external: (id) => /^[^./]/.test(id) && !id.startsWith('threepoint'),
     logLevel: 'silent',
   });

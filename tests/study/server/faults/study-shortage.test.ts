@@ -3,7 +3,6 @@ import { Agent, request as httpRequest, type IncomingMessage } from 'node:http';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { expect, onTestFinished, test } from 'vitest';
-import { withSourceCondition } from '../../../../scripts/source-condition.mjs';
 import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
 import { openStudyStore } from '../../../../src/study/server/storage/study-store';
 import { reportFigures } from '../../../reliability/report-figures';
@@ -54,7 +53,7 @@ test('a heap of 64 MB refuses what does not fit with a sentence, and the server 
   tags: ['full'],
 }, async () => {
   const { directory } = studyWith(30_000);
-  const server = await forkServer({ NODE_OPTIONS: withSourceCondition('--max-old-space-size=64') }, { directory });
+  const server = await forkServer({ NODE_OPTIONS: '--max-old-space-size=64' }, { directory });
   const exported = await ask(server, 'GET', '/export');
   expect(exported.status).toBe(507);
   expect(exported.error).toMatch(/^The server is out of memory\. Give it more: .*one by one\.$/);
