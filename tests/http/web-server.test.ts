@@ -61,6 +61,35 @@ describe('the port', () => {
   });
 });
 
+describe('an exception', () => {
+  const fail = () => {
+    throw new Error('a fault of this test');
+  };
+  const offer = { connection: 'Upgrade', upgrade: 'h2c' };
+
+  test('in the listener of requests gets 500, its error goes to the log, and the server goes on', async () => {
+    const faults: unknown[] = [];
+    const server = await serve(fail, { host: '127.0.0.1', port: 0, onFault: (error) => faults.push(error) });
+    onTestFinished(() => server.close());
+    for (const headers of [{}, offer]) {
+      const { status, body } = await ask(`http://127.0.0.1:${server.port}`, '/', { headers });
+      expect(status).toBe(500);
+      expect(JSON.parse(body.toString())).toEqual({ error: expect.stringMatching(/^the server failed/), field: null });
+    }
+    expect(faults).toEqual([new Error('a fault of this test'), new Error('a fault of this test')]);
+  });
+
+  test('in the listener of upgrades closes the connection, its error goes to the log, and the server goes on', async () => {
+    const faults: unknown[] = [];
+    const onFault = (error: unknown) => faults.push(error);
+    const server = await serve(hello, { host: '127.0.0.1', port: 0, upgrade: fail, onFault });
+    onTestFinished(() => server.close());
+    await expect(ask(`http://127.0.0.1:${server.port}`, '/', { headers: offer })).rejects.toThrow(/socket hang up/);
+    expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');
+    expect(faults).toEqual([new Error('a fault of this test')]);
+  });
+});
+
 describe('HTTPS with a certificate of our own', () => {
   async function secured() {
     const directory = directoryWith();

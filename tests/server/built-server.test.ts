@@ -2,6 +2,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { unzipSync } from 'fflate';
 import { expect, test } from 'vitest';
+import { reportFigures } from '../reliability/report-figures';
 import { guestOfTest } from '../rooms/server/until-finished';
 import { paperPlan } from '../study/model/studies';
 import { directoryWith } from '../temporary-directory';
@@ -32,9 +33,11 @@ test('the built server answers 400 to percent signs that encode no text, and liv
   tags: ['full'],
 }, async () => {
   const { origin, errors, isAlive } = await runBuiltServer(directoryWith());
-  for (const path of ['/%', '/%E0%A4%A', '/api/rooms/%', '/relay/%', '/api/studies/%/records', '/%ff.html']) {
+  const paths = ['/%', '/%E0%A4%A', '/api/rooms/%', '/relay/%', '/api/studies/%/records', '/%ff.html'];
+  for (const path of paths) {
     expect((await ask(origin, path)).status, path).toBe(400);
   }
   expect(isAlive()).toBe(true);
   expect(errors()).toBe('');
+  reportFigures('undecodable-paths', { 'paths refused': `${paths.length} of ${paths.length}`, 'processes ended': 0 });
 });

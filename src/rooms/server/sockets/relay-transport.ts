@@ -6,8 +6,8 @@ import { Server as Engine } from 'engine.io';
 import { Server, type Socket } from 'socket.io';
 import { HttpError } from 'threepoint-http/http-error';
 import { parseRequestTarget } from 'threepoint-http/request-target';
-import { errorResponse, sendRawResponse } from 'threepoint-http/response';
-import { handshakeTimeoutMs } from 'threepoint-http/web-server';
+import { sendError } from 'threepoint-http/response';
+import { handshakeTimeoutMs, lastResponse } from 'threepoint-http/web-server';
 import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
 import { TokenBucket } from '../../room/token-bucket';
@@ -149,7 +149,7 @@ export function createRelayTransport(context: RelayContext) {
         socket.once('close', admit(request, target.query));
       } catch (error) {
         if (!(error instanceof HttpError)) throw error;
-        sendRawResponse(socket, errorResponse(error));
+        sendError(request, lastResponse(request, socket), error);
         return true;
       }
       engine.handleUpgrade(request as never, socket, head);
