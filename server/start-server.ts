@@ -61,6 +61,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
   const prepared = prepareServer(createRouter([studies.service], page, site), {
     ...(credentials && { credentials }),
     connectionLimiter,
+    checkHost: site.checkHost,
     onFault: (error) => log(`a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
   });
   const rooms = attachRooms(prepared.http, {

@@ -15,6 +15,7 @@ import { guarded } from './guarded';
 import { HttpError, internalError } from './http-error';
 import { hostProblem, parseRequestTarget } from './request-target';
 import { announcesBody, closeAfterAnswer, errorResponse, sendError, sendRawResponse, sendResponse } from './response';
+import type { SitePolicy } from './site-policy';
 
 /** A private key and its certificate, PEM. */
 export interface Credentials {
@@ -43,6 +44,8 @@ export interface WebServerOptions {
   readonly upgrade?: UpgradeListener;
   /** Limits the connections of each address; every connection is accepted without it. */
   readonly connectionLimiter?: ConnectionLimiter;
+  /** Checks the Host of requests that are redirected to https; every one is accepted without it. */
+  readonly checkHost?: SitePolicy['checkHost'];
   /** Receives the exceptions of the listeners, after which the server goes on. Default: writes them to the console. */
   readonly onFault?: FaultListener;
   /**
@@ -61,17 +64,24 @@ export const requestTimeoutMs = 120_000;
 /** Interval at which Node checks these timeouts [ms]. */
 const checkMs = 1000;
 
-/** Redirects plain HTTP to https, because people omit the "https://". */
-const redirectToHttps: RequestListener = (request, response) => {
-  const host = request.headers.host;
-  const target = parseRequestTarget(request.url);
-  if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
-    sendError(request, response, new HttpError(400, 'the address of this request is malformed'));
-    return;
-  }
-  const search = target.query.size > 0 ? `?${target.query}` : '';
-  sendResponse(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
-};
+/** Returns a listener that redirects plain HTTP to https, because people omit the "https://". */
+const redirectToHttps =
+  (checkHost: SitePolicy['checkHost']): RequestListener =>
+  (request, response) => {
+    const host = request.headers.host;
+    const target = parseRequestTarget(request.url);
+    if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
+      sendError(request, response, new HttpError(400, 'the address of this request is malformed'));
+      return;
+    }
+    const refusal = checkHost(request);
+    if (refusal) {
+      sendError(request, response, new HttpError(refusal.status, refusal.message));
+      return;
+    }
+    const search = target.query.size > 0 ? `?${target.query}` : '';
+    sendResponse(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
+  };
 
 /** Returns the refusal for an error of Node's HTTP parser. */
 function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
@@ -283,6 +293,7 @@ export function prepareServer(
     credentials,
     upgrade = () => false,
     connectionLimiter,
+    checkHost = () => null,
     onFault = (error) => console.error(error),
     idleTimeoutMs = 30_000,
   }: WebServerOptions,
@@ -292,7 +303,7 @@ export function prepareServer(
     : createHttpServer(limits);
   answerAll(requests, listener, upgrade, onFault);
   const redirects = createHttpServer(limits);
-  answerAll(redirects, redirectToHttps, () => false, onFault);
+  answerAll(redirects, redirectToHttps(checkHost), () => false, onFault);
   const entrance: NetServer = credentials ? splitByProtocol(requests, redirects) : requests;
   for (const server of [requests, redirects]) {
     server.timeout = idleTimeoutMs;

@@ -5,6 +5,7 @@ import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { createSitePolicy } from 'threepoint-http/site-policy';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
@@ -94,7 +95,8 @@ describe('HTTPS with a certificate of our own', () => {
   async function secured() {
     const directory = directoryWith();
     const credentials = await certificateFor(['127.0.0.2'], directory, now);
-    const server = await serve(hello, { host: '0.0.0.0', port: 0, credentials });
+    const { checkHost } = createSitePolicy({ origins: [], hosts: [], trustProxy: false });
+    const server = await serve(hello, { host: '0.0.0.0', port: 0, credentials, checkHost });
     onTestFinished(() => server.close());
     return { server, credentials };
   }
@@ -124,6 +126,15 @@ describe('HTTPS with a certificate of our own', () => {
     const { status, headers } = await ask(`http://127.0.0.1:${server.port}`, '/?estimator=ik');
     expect(status).toBe(308);
     expect(headers.location).toBe(`https://127.0.0.1:${server.port}/?estimator=ik`);
+  });
+
+  test('plain HTTP under a name of another site is refused, not redirected', async () => {
+    const { server } = await secured();
+    const asked = { headers: { host: 'evil.example' } };
+    const { status, headers, body } = await ask(`http://127.0.0.1:${server.port}`, '/', asked);
+    expect(status).toBe(421);
+    expect(headers.location).toBeUndefined();
+    expect(body.toString()).toContain('does not accept the name evil.example');
   });
 });
 
