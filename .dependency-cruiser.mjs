@@ -107,7 +107,7 @@ const activities = 'archery|ball|mocap|studio';
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
 
 const pure = '^src/(threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/';
-const runsInNode = '^src/(http/(?!server-presence)|rooms/server/|study/(server|cli)/)';
+const runsInNode = '^src/(http|rooms/server|study/(server|cli))/';
 
 export default {
   forbidden: [

@@ -4,7 +4,6 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { MutablePointer } from 'threepoint/core/input/pointer';
 import { vec3 } from 'threepoint/core/math/vec3';
 import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import { ServerPresence } from 'threepoint-http/server-presence';
 import type { ActivityServices } from 'threepoint-page/activity/activity-context';
 import type { Surroundings } from 'threepoint-page/scene/surroundings';
 import { fetchBuiltInAvatar } from 'threepoint-page/shell/avatar-loader';
@@ -13,6 +12,7 @@ import type { PageStudy } from 'threepoint-page/shell/study/page-study';
 import { readSwitches } from 'threepoint-page/shell/switches';
 import type { StudyRun } from 'threepoint-study/participant/study-run';
 import type { Notice } from 'threepoint-ui/notices';
+import { ServerPresence } from 'threepoint-ui/server-presence';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 

@@ -5,11 +5,11 @@ import type { Pose } from 'threepoint/core/math/pose';
 import type { Ray } from 'threepoint/core/math/ray';
 import type { Side } from 'threepoint/core/math/side';
 import type { PageClock } from 'threepoint/core/tracking/page-clock';
-import type { ServerPresence } from 'threepoint-http/server-presence';
 import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
 import type { StudyRun } from 'threepoint-study/participant/study-run';
 import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
 import type { Notices } from 'threepoint-ui/notices';
+import type { ServerPresence } from 'threepoint-ui/server-presence';
 import type { Quality } from '../scene/renderer';
 import type { SurroundingsHost } from '../scene/surroundings';
 

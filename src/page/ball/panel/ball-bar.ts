@@ -1,8 +1,8 @@
-import type { ServerState } from 'threepoint-http/server-presence';
 import { button, element } from 'threepoint-ui/element';
 import { ballRulesText, rulesList } from 'threepoint-ui/game-rules-text';
 import { createRoomLink } from 'threepoint-ui/invitation';
 import { isTouchFirst } from 'threepoint-ui/mouse-aim';
+import type { ServerState } from 'threepoint-ui/server-presence';
 import { toggle } from 'threepoint-ui/toggle';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
