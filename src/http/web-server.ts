@@ -208,9 +208,13 @@ function answerAll(
     if (!socket.writable) return;
     const refusal = refusalOfParser(error);
     const newest = newestUnanswered(socket);
-    // The error is in the body of the newest request, and its response is sent in its turn.
-    if (newest && !newest.req.complete) sendError(newest.req, newest, refusal);
-    else {
+    if (newest && !newest.req.complete) {
+      // The error is in the body of the newest request, and its response is sent in its turn.
+      if (newest.headersSent) return;
+      // Its handler may still wait for the body.
+      newest.once('close', () => newest.req.destroy());
+      sendError(newest.req, newest, refusal);
+    } else {
       // Nothing more is read before the answer; Node reports an error for each chunk.
       socket.pause();
       afterEarlierAnswers(socket, () => sendRawResponse(socket, errorResponse(refusal)));
