@@ -231,11 +231,11 @@ function answerAll(
 }
 
 /** Creates a server that splits one port: TLS goes to `secure`, plain HTTP to `plain`. */
-function splitByProtocol(secure: HttpServer, plain: HttpServer): NetServer {
+function splitByProtocol(secure: HttpServer, plain: HttpServer, onFault: FaultListener): NetServer {
   return createNetServer((socket) => {
     socket.setTimeout(handshakeTimeoutMs, () => socket.destroy());
     socket.once('error', () => socket.destroy());
-    socket.once('data', (chunk: Buffer) => {
+    const passOn = (chunk: Buffer): void => {
       socket.setTimeout(0);
       socket.removeAllListeners('timeout');
       socket.pause();
@@ -243,7 +243,12 @@ function splitByProtocol(secure: HttpServer, plain: HttpServer): NetServer {
       (chunk[0] === tlsHandshake ? secure : plain).emit('connection', socket);
       // The new owner reads only after it has attached its listeners.
       process.nextTick(() => socket.resume());
-    });
+    };
+    const endSocket = (error: unknown): void => {
+      onFault(error);
+      socket.destroy();
+    };
+    socket.once('data', guarded(passOn, endSocket));
   });
 }
 
@@ -308,7 +313,7 @@ export function prepareServer(
   answerAll(requests, listener, upgrade, onFault);
   const redirects = createHttpServer(limits);
   answerAll(redirects, redirectToHttps(checkHost), () => false, onFault);
-  const entrance: NetServer = credentials ? splitByProtocol(requests, redirects) : requests;
+  const entrance: NetServer = credentials ? splitByProtocol(requests, redirects, onFault) : requests;
   for (const server of [requests, redirects]) {
     server.timeout = idleTimeoutMs;
     // Node starts to check timeouts on this event; a server that receives its connections from another never emits it.

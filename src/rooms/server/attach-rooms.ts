@@ -103,8 +103,6 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
     return true;
   }
 
-  const ignoreOffered = (request: IncomingMessage, socket: Duplex): void => ignoreOffer(httpServer, request, socket);
-
   const restore = [
     // The server's own listener would answer 404: it receives the other requests alone.
     interceptEvent(httpServer, 'request', (passOn) => (request, response) => {
@@ -116,17 +114,18 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
     interceptEvent(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
       const [asked, connection] = [request as IncomingMessage, socket as Duplex];
       const { url } = asked;
+      // Without another listener, the offer is to be ignored: this listener made Node hand over the connection.
+      const ignore = handingOver(() => ignoreOffer(httpServer, asked, connection), onFault);
       const passOnOffer = (): void => {
-        // No other listener answers: this one made Node hand over the connection.
-        if (!passOn(asked, connection, head)) handingOver(ignoreOffered, onFault)(asked, connection, head as Buffer);
+        if (!passOn(asked, connection, head)) ignore(asked, connection, head as Buffer);
       };
-      if (!takeOwnUrl(asked)) passOnOffer();
-      else
-        handingOver((...upgrade) => {
-          if (relay.upgrade(...upgrade)) return;
-          asked.url = url;
-          passOnOffer();
-        }, onFault)(asked, connection, head as Buffer);
+      const answerOwn = handingOver((...offer) => {
+        if (relay.upgrade(...offer)) return;
+        asked.url = url;
+        passOnOffer();
+      }, onFault);
+      if (takeOwnUrl(asked)) answerOwn(asked, connection, head as Buffer);
+      else passOnOffer();
     }),
   ];
   return {
