@@ -66,7 +66,7 @@ export function hostSockets(
       closeConnection(socket);
     };
     listen(socket, {
-      onPose: guarded((bytes: Uint8Array) => messages.onPose(client, bytes), endClient),
+      onPose: (bytes) => messages.onPose(client, bytes),
       onFault: guarded(
         (fault: WireFault) => messages.kick(client, fault === 'slow' ? 'slow' : 'misbehaved', fault),
         endClient,
