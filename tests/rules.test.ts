@@ -12,7 +12,8 @@ const root = fileURLToPath(new URL('..', import.meta.url));
 
 /** Creates a project of these files alone, under the repository's rules. */
 function projectOf(files: Readonly<Record<string, string>>): string {
-  const ours = ['biome.json', 'scripts/no-chance-in-core.grit', 'tsconfig.json', 'package.json'];
+  const plugins = ['scripts/no-chance-in-core.grit', 'scripts/no-unused-result.grit'];
+  const ours = ['biome.json', ...plugins, 'tsconfig.json', 'package.json'];
   const directory = directoryWith({
     ...Object.fromEntries(ours.map((file) => [file, readFileSync(join(root, file))])),
     ...files,
