@@ -1,5 +1,5 @@
 import { randomBytes } from 'node:crypto';
-import { secretWeakness } from 'threepoint-http/secret-strength';
+import { secretWeakness } from '../../src/http/secret-strength';
 import { expect, test } from 'vitest';
 
 test('a secret of fewer than 32 characters is refused, with the command for another', () => {

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import type { RequestListener } from 'node:http';
-import { ServerPresence, type ServerState } from 'threepoint-ui/server-presence';
+import { ServerPresence, type ServerState } from '../../src/ui/server-presence';
 import { expect, test } from 'vitest';
 import { answeringHost, says } from '../rooms/client/answering-host';
 

@@ -1,8 +1,5 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { button, element } from 'threepoint-ui/element';
-import { chooser } from 'threepoint-ui/fields';
-import { pageFolder } from 'threepoint-ui/page-folder';
-import { ServerPresence } from 'threepoint-ui/server-presence';
+import { reasonOf } from 'threepoint/core';
+import { button, element, chooser, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
 import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
 

@@ -1,9 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { ballRulesText, rulesList } from 'threepoint-ui/game-rules-text';
-import { createRoomLink } from 'threepoint-ui/invitation';
-import { isTouchFirst } from 'threepoint-ui/mouse-aim';
-import type { ServerState } from 'threepoint-ui/server-presence';
-import { toggle } from 'threepoint-ui/toggle';
+import { button, element, ballRulesText, rulesList, createRoomLink, isTouchFirst, type ServerState, toggle } from 'threepoint-ui';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
