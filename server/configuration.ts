@@ -18,7 +18,7 @@ export const usage = `Usage: npm start -- [options]
   --lan          HTTPS for every device on the network, with a self-signed certificate
   --studies DIR  folder of the studies (or the environment variable STUDIES); default study-data
   --help         this text
-The environment variable EXPERIMENTER_TOKEN (128 bits or more, as from "openssl rand -base64 32") replaces the token that the server
+The environment variable EXPERIMENTER_TOKEN (32 characters or more, as from "openssl rand -base64 32") replaces the token that the server
 generates. THREEPOINT_STUDY_PLUGINS names modules with kinds of questions, separated by commas.`;
 
 function portFrom(text: string, source: string): number {
@@ -58,13 +58,13 @@ export function configurationFrom(
         : 3333;
   const experimenterToken = environment.EXPERIMENTER_TOKEN || null;
   if (experimenterToken !== null) {
-    if (!/^[\w~+/.-]{16,256}={0,2}$/.test(experimenterToken)) {
-      throw new ConfigurationError(
-        'The environment variable EXPERIMENTER_TOKEN must have 16 to 256 characters: letters, digits and - _ ~ + / .',
-      );
-    }
     const weakness = secretWeakness(experimenterToken);
     if (weakness) throw new ConfigurationError(`The token in the environment variable EXPERIMENTER_TOKEN ${weakness}`);
+    if (!/^[\w~+/.-]{1,256}={0,2}$/.test(experimenterToken)) {
+      throw new ConfigurationError(
+        'The environment variable EXPERIMENTER_TOKEN must have at most 256 characters: letters, digits and - _ ~ + / .',
+      );
+    }
   }
   const studyDirectory = values.studies ?? (environment.STUDIES || null);
   if (studyDirectory === '') throw new ConfigurationError('--studies needs the name of a folder.');

@@ -7,13 +7,22 @@ export { clientAddressOf, findClientAddress, requiredAddress } from './client-ad
 export { ConfigurationError } from './configuration-error';
 export { ConnectionLimiter, createSlotCounter } from './connection-limiter';
 export { GroupCommit } from './group-commit';
+export { guarded } from './guarded';
 export { HttpError } from './http-error';
 export { consumePoint, tooManyRequests } from './rate-limit';
 export { readBody } from './request-body';
 export { parseRequestTarget } from './request-target';
 export { shortageOf } from './resource-shortage';
 export type { HttpResponse } from './response';
-export { errorResponse, jsonResponse, noContent, sendRawResponse, sendResponse, textResponse } from './response';
+export {
+  errorResponse,
+  jsonResponse,
+  noContent,
+  sendError,
+  sendRawResponse,
+  sendResponse,
+  textResponse,
+} from './response';
 export type { Call, Route, Service } from './router';
 export { createRouter, jsonOf, noPage, refusalOf, textOf } from './router';
 export { secretWeakness } from './secret-strength';
@@ -24,4 +33,12 @@ export type { Software } from './software-version';
 export { readSoftwareVersion } from './software-version';
 export { answerCalls, logFrom, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
 export type { Credentials, UpgradeListener } from './web-server';
-export { handshakeTimeoutMs, prepareServer, refusesUpgrade, withHostCheck } from './web-server';
+export {
+  answering,
+  followResponse,
+  handingOver,
+  handshakeTimeoutMs,
+  ignoreOffer,
+  lastResponse,
+  prepareServer,
+} from './web-server';

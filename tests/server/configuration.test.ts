@@ -29,11 +29,11 @@ describe('the configuration', () => {
     [['--port', 'many'], {}, /--port must be a port number from 0 to 65535, not "many"/],
     [['--port', '70000'], {}, /not "70000"/],
     [[], { PORT: '-1' }, /environment variable PORT must be a port number.*"-1"/],
-    [[], { EXPERIMENTER_TOKEN: 'short' }, /EXPERIMENTER_TOKEN must have 16/],
+    [[], { EXPERIMENTER_TOKEN: 'a token with spaces in it, and long' }, /EXPERIMENTER_TOKEN must have at most 256/],
     [
       [],
       { EXPERIMENTER_TOKEN: 'our-laboratory-token' },
-      /EXPERIMENTER_TOKEN has some \d+ bits; it needs 128. Generate one: openssl rand -base64 32/,
+      /EXPERIMENTER_TOKEN has 20 characters; it needs 32. Generate one: openssl rand -base64 32/,
     ],
     [['--studies='], {}, /--studies needs/],
     [['--lam'], {}, /--lam[\s\S]*Usage: npm start/],

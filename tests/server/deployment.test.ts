@@ -87,7 +87,7 @@ describe('compose.yaml', () => {
   test('does not start without a secret', () => {
     expect(() => environmentOf('relay-1', {})).toThrow('set THREEPOINT_SECRET');
     expect(() => relayConfigurationFrom(environmentOf('relay-1', { THREEPOINT_SECRET: 'short' }))).toThrow(
-      '32 characters',
+      'it needs 32',
     );
   });
 

@@ -2,14 +2,16 @@ import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
 import {
+  answering,
   createRouter,
   createSitePolicy,
+  followResponse,
+  handingOver,
+  ignoreOffer,
   noPage,
   parseRequestTarget,
-  refusesUpgrade,
   type SitePolicy,
   sendResponse,
-  withHostCheck,
 } from 'threepoint-http';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { RoomKinds } from './hosting/room-kinds';
@@ -93,9 +95,10 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const relay = createRelay(configuration, secret, connections, kinds);
   const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
-  const answer = withHostCheck((request, response) => {
+  const { onFault } = relay.service;
+  const answer = answering((request, response) => {
     if (allowOrigin(request, response, site)) router(request, response);
-  });
+  }, onFault);
 
   /** Returns whether the address is the rooms', and takes the path off it. */
   function takeOwnUrl(request: IncomingMessage): boolean {
@@ -110,19 +113,26 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const restore = [
     // The server's own listener would answer 404: it receives the other requests alone.
     interceptEvent(httpServer, 'request', (passOn) => (request, response) => {
-      if (takeOwnUrl(request as IncomingMessage)) answer(request as IncomingMessage, response as ServerResponse);
-      else passOn(request, response);
+      const [asked, answered] = [request as IncomingMessage, response as ServerResponse];
+      followResponse(asked, answered);
+      if (takeOwnUrl(asked)) answer(asked, answered);
+      else passOn(asked, answered);
     }),
     interceptEvent(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
       const [asked, connection] = [request as IncomingMessage, socket as Duplex];
       const { url } = asked;
-      if (takeOwnUrl(asked)) {
-        connection.on('error', () => connection.destroy());
-        if (refusesUpgrade(asked, connection) || relay.upgrade(asked, connection, head as Buffer)) return;
+      // Without another listener, the offer is to be ignored: this listener made Node hand over the connection.
+      const ignore = handingOver(() => ignoreOffer(httpServer, asked, connection), onFault);
+      const passOnOffer = (): void => {
+        if (!passOn(asked, connection, head)) ignore(asked, connection, head as Buffer);
+      };
+      const answerOwn = handingOver((...offer) => {
+        if (relay.upgrade(...offer)) return;
         asked.url = url;
-      }
-      // No other listener answers.
-      if (!passOn(asked, connection, head)) connection.destroy();
+        passOnOffer();
+      }, onFault);
+      if (takeOwnUrl(asked)) answerOwn(asked, connection, head as Buffer);
+      else passOnOffer();
     }),
   ];
   return {

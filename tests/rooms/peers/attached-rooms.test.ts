@@ -3,11 +3,12 @@ import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { Group, Vector3 } from 'three';
-import { distance } from 'threepoint/math';
 import { loadAvatar } from 'threepoint/three';
-import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
+import { distance } from 'threepoint/math';
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from '../../../src/rooms/drawing/join-room';
 import { attachRooms } from '../../../src/rooms/server/attach-rooms';
+import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
+import { ask } from '../../server/running-server';
 import { changed } from '../../threepoint/avatar/glb';
 import { countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
 import { until } from '../server/running-relay';
@@ -263,6 +264,14 @@ test('requests with two names of the server reach no room, as requests and as We
     expect(answer.toString()).toMatch(/^HTTP\/1.1 400 /);
     socket.destroy();
   }
+});
+
+test('an offer of another protocol than the rooms’ is answered as a request without one', async () => {
+  const { url } = await servedRooms();
+  const headers = { connection: 'Upgrade', upgrade: 'h2c' };
+  const [own, rooms] = [await ask(url, '/hello', { headers }), await ask(url, '/api/rooms', { headers })];
+  expect(own.body.toString()).toBe('mine: /hello');
+  expect(JSON.parse(rooms.body.toString())).toEqual({ rooms: [], complete: true });
 });
 
 test('a room that cannot be joined is refused with a sentence', async () => {

@@ -1,5 +1,4 @@
-import type { ServerState } from 'threepoint-ui';
-import { ballRulesText, button, createRoomLink, element, isTouchFirst, rulesList, toggle } from 'threepoint-ui';
+import { button, element, ballRulesText, rulesList, createRoomLink, isTouchFirst, type ServerState, toggle } from 'threepoint-ui';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';

@@ -3,7 +3,7 @@ import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync
 import { join } from 'node:path';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core';
-import { ConfigurationError, type Software, secretWeakness } from 'threepoint-http';
+import { ConfigurationError, secretWeakness, type Software } from 'threepoint-http';
 import { DatabaseProblem } from './schema';
 import { StoreRefusal, sqliteBusy, sqliteCodeOf } from './store-refusal';
 import { createPrivateFile } from './study-database';
@@ -18,16 +18,13 @@ export interface StudyFolder {
   close(): void;
 }
 
-/** The format of the tokens that this server generates or has generated. */
-const generatedToken = /^([\w-]{43}|[\w-]{32})$/;
-
 const modeOf = (path: string): string => (statSync(path).mode & 0o777).toString(8).padStart(4, '0');
 
 /** Returns the token in this file, which is generated and written with access for its owner only if it is missing. */
 function readOrCreateToken(file: string): string {
   if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
   const token = readFileSync(file, 'utf8').trim();
-  const weakness = generatedToken.test(token) ? null : secretWeakness(token);
+  const weakness = secretWeakness(token);
   if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
   return token;
 }
