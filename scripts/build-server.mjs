@@ -37,7 +37,7 @@ const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'packa
  * Bundles the server's own files into `out`; packages and Node's modules are imported at run time. The written
  * package.json names those packages alone, so that npm prune removes the page's packages.
  */
-async function buildServer(out) {
+export async function buildServer(out) {
   const { version, type } = manifestIn('.');
   const manifests = packages.map(manifestIn);
   const dependencies = Object.assign({}, ...manifests.map((manifest) => manifest.dependencies));

@@ -2,7 +2,7 @@ import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
 import { expect, test } from 'vitest';
-import { collectGarbage } from '../collect-garbage';
+import { collectGarbage } from '../collect-garbage.mjs';
 import { isNightly } from '../nightly';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';

@@ -5,7 +5,7 @@ import { TransientError } from 'threepoint/core/errors/transient-error';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import { RoomAvatarLoader } from 'threepoint-rooms/drawing/room-avatar-loader';
 import { expect, onTestFinished, test } from 'vitest';
-import { collectGarbage } from '../../collect-garbage';
+import { collectGarbage } from '../../collect-garbage.mjs';
 import { answeringHost } from '../client/answering-host';
 
 const hash = createHash('sha256').update('an avatar').digest('base64url') as AvatarHash;

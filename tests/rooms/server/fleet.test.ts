@@ -1,4 +1,5 @@
 // @module-tag full
+
 import { type ChildProcess, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import type { AddressInfo } from 'node:net';
@@ -8,8 +9,8 @@ import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
 import { printFigures } from '../../print-figures';
 import { installed } from '../../server/installed';
-import { forkRelay } from './relay-child';
-import { arrive, pause, testSecret, until } from './running-relay';
+import { type StartedServer, startServer } from '../../server/started-server';
+import { arrive, pause, until } from './running-relay';
 
 const programs = { haproxy: installed('haproxy'), redis: installed('redis-server') };
 const missing = Object.values(programs).includes(null);
@@ -76,7 +77,7 @@ describe.skipIf(missing)(
   () => {
     let redis: ChildProcess | null = null;
     let redisPort = 0;
-    let relays: Awaited<ReturnType<typeof forkRelay>>[] = [];
+    let relays: StartedServer[] = [];
     let proxies: { readonly url: string; readonly process: ChildProcess }[] = [];
     let people: ReturnType<typeof arrive>[] = [];
     const rooms = ['amber', 'birch', 'cedar', 'daisy', 'elder', 'fern'];
@@ -85,13 +86,12 @@ describe.skipIf(missing)(
       redisPort = await freePort();
       redis = await startRedis(redisPort);
       const environment = {
-        THREEPOINT_SECRET: testSecret,
         THREEPOINT_REDIS_URL: `redis://127.0.0.1:${redisPort}`,
         THREEPOINT_TRUST_PROXY: '1',
         THREEPOINT_JOINS_PER_MINUTE: '1000',
         THREEPOINT_ADMIN_TOKEN: adminToken,
       };
-      relays = [await forkRelay(environment), await forkRelay(environment)];
+      relays = await Promise.all([1, 2].map(() => startServer(environment)));
       proxies = await Promise.all(
         [0, 1].map(async () => {
           const port = await freePort();

@@ -13,6 +13,7 @@ import { messageEvent, pageParser } from 'threepoint-rooms/protocol/socket-parse
 import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../../server/room-kinds';
+import { testSecret } from '../../server/started-server';
 import { createPerson, visitor } from '../client/people';
 import { countingKind, countingPolicy } from '../room/counting-game';
 import { poseOf } from '../room/posed-head';
@@ -20,8 +21,6 @@ import { joinMessage } from '../room/test-room';
 
 /** Rooms whose names begin so are of the tests' own game, with as many seats as there may be. */
 const kindOf = (room: string): string => (room.startsWith(countingKind) ? countingKind : ballKind);
-
-export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 
 /** A relay of this process on a free port of loopback. */
 export async function startRelay(environment: Record<string, string> = {}, port = 0) {

@@ -12,7 +12,7 @@ import { createStudySeats } from 'threepoint-study/server/routes/seats';
 import { createStudyService, openStudyService } from 'threepoint-study/server/service';
 import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished } from 'vitest';
-import { testSecret } from '../../rooms/server/running-relay';
+import { testSecret } from '../../server/started-server';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 

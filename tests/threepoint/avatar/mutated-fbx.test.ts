@@ -3,7 +3,7 @@ import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
 import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { releaseMemory } from '../../collect-garbage';
+import { releaseMemory } from '../../collect-garbage.mjs';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';
 import { builtFbx } from './built-fbx';
