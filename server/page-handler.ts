@@ -123,7 +123,7 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
     }
     const target = parseRequestTarget(url);
     if (!target) return textResponse('This address is not well formed.', 400);
-    const path = decodeURIComponent(target.path);
+    const { decodedPath: path } = target;
     if (path === '/healthz') return textResponse('ok');
     const name = path.endsWith('/') ? `${path}index.html` : path;
     // Pages are requested by name: /results is results.html.

@@ -4,6 +4,8 @@ import type { IncomingMessage } from 'node:http';
 export interface RequestTarget {
   /** The path as sent: it begins with one slash; percent signs and dots are not decoded. */
   readonly path: string;
+  /** The path with its percent signs decoded. */
+  readonly decodedPath: string;
   readonly query: URLSearchParams;
 }
 
@@ -11,6 +13,16 @@ export interface RequestTarget {
 const absolute = /^https?:\/\/[^/?#]+/i;
 /** Visible ASCII without the backslash, which some clients read as a slash. */
 const wellFormed = /^\/(?!\/)[!-[\]-~]*$/;
+
+/** Returns the text with its percent signs decoded, or null where they encode no text. */
+function decoded(text: string): string | null {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    // reason: decodeURIComponent throws nothing but a URIError, and null is the result for it
+    return null;
+  }
+}
 
 /** Returns the target of a request line, or null where it is not well formed. Never throws. */
 export function parseRequestTarget(url: string | undefined): RequestTarget | null {
@@ -20,13 +32,9 @@ export function parseRequestTarget(url: string | undefined): RequestTarget | nul
   const cut = relative.indexOf('?');
   const path = cut < 0 ? relative : relative.slice(0, cut) || '/';
   if (!wellFormed.test(path)) return null;
-  try {
-    decodeURIComponent(path);
-  } catch (error) {
-    if (error instanceof URIError) return null;
-    throw error;
-  }
-  return { path, query: new URLSearchParams(cut < 0 ? '' : relative.slice(cut)) };
+  const decodedPath = decoded(path);
+  if (decodedPath === null) return null;
+  return { path, decodedPath, query: new URLSearchParams(cut < 0 ? '' : relative.slice(cut)) };
 }
 
 /**

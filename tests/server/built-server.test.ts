@@ -4,6 +4,7 @@ import { unzipSync } from 'fflate';
 import { expect, test } from 'vitest';
 import { guestOfTest } from '../rooms/server/until-finished';
 import { paperPlan } from '../study/model/studies';
+import { ask } from './running-server';
 import { forkServer } from './server-child';
 import { experimenterToken } from './started-server';
 
@@ -18,6 +19,15 @@ test('the built server serves the page and rooms, stores studies in their thread
   expect(exported.status).toBe(200);
   const files = Object.keys(unzipSync(new Uint8Array(await exported.arrayBuffer())));
   expect(files.some((file) => file.endsWith('analysis/analyse.py'))).toBe(true);
+});
+
+test('the built server answers 400 to percent signs that encode no text, and lives on', async () => {
+  const server = await forkServer();
+  for (const path of ['/%', '/%E0%A4%A', '/api/rooms/%', '/relay/%', '/api/studies/%/records', '/%ff.html']) {
+    expect((await ask(server.url, path)).status, path).toBe(400);
+  }
+  expect(server.isAlive()).toBe(true);
+  expect(server.faults()).toEqual([]);
 });
 
 test('the image gets the packages that the server imports, and none of the page', () => {

@@ -130,27 +130,25 @@ export function parseRecording(text: string): Recording {
   return { device: file.device, rateHz: file.rateHz, calibration: parseCalibration(file.calibration), frames };
 }
 
-function parseJson(text: string): unknown {
+/** Returns the value of a JSON text, or the error that says where it is none. */
+function parsed(text: string): unknown {
   try {
     return JSON.parse(text);
   } catch (error) {
-    if (!(error instanceof SyntaxError)) throw error;
-    throw new Error(`The recording is not valid JSON${placeOfSyntaxError(text, error.message)}.`);
+    return error;
   }
+}
+
+function parseJson(text: string): unknown {
+  const value = parsed(text);
+  if (!(value instanceof Error)) return value;
+  throw new Error(`The recording is not valid JSON${placeOfSyntaxError(text, value.message)}.`);
 }
 
 /** Returns the place of a syntax error: each frame is one line, and the first line that does not parse is damaged. */
 function placeOfSyntaxError(text: string, message: string): string {
   const lines = text.split('\n');
-  const broken = lines.slice(1, -2).findIndex((line) => {
-    try {
-      JSON.parse(line.replace(/,\s*$/, ''));
-      return false;
-    } catch {
-      // reason: the line that does not parse is the one that is searched for.
-      return true;
-    }
-  });
+  const broken = lines.slice(1, -2).findIndex((line) => parsed(line.replace(/,\s*$/, '')) instanceof Error);
   return lines.length > 3 && broken >= 0 ? `: line ${broken + 2} is damaged` : `: ${message}`;
 }
 
