@@ -4,6 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSyn
 import { join } from 'node:path';
 import { rolldown } from 'rolldown';
 import { builtExports, documentInPackage, writeDeclarations } from './build-library.mjs';
+import { packageCollector, writeLicences } from './licences.mjs';
 import { mainOf, root } from './run-command.mjs';
 import { sourceResolution } from './source-condition.mjs';
 import { buildPackage } from './source-hash.mjs';
@@ -26,7 +27,8 @@ const external = (id) =>
   id === 'threepoint/three' ||
   imported.some((name) => id === name || id.startsWith(`${name}/`));
 
-async function writeCode(platform, folders) {
+/** Bundles the entries in these folders, and adds the packages that are bundled with them to `packages`. */
+async function writeCode(platform, folders, packages) {
   const build = await rolldown({
     input: Object.fromEntries(
       Object.entries(folders).map(([name, folder]) => [name, join(root, `src/rooms/${folder}/index.ts`)]),
@@ -35,6 +37,7 @@ async function writeCode(platform, folders) {
     platform,
     resolve: sourceResolution(platform),
     external,
+    plugins: [packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
   });
   await build.write({ dir: out, format: 'esm', chunkFileNames: 'shared-[hash].js', sourcemap: true });
@@ -65,7 +68,9 @@ export const buildRooms = () =>
   buildPackage('dist-rooms', async () => {
     rmSync(out, { recursive: true, force: true });
     mkdirSync(out);
-    for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
+    const packages = new Set();
+    for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders, packages);
+    writeLicences(out, packages);
     await writeTypes();
     copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));
     const readme = readFileSync(join(root, documents['README.md']), 'utf8');

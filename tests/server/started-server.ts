@@ -30,10 +30,7 @@ interface StartOptions {
 
 const pathInRepository = (path: string): string => fileURLToPath(new URL(`../../${path}`, import.meta.url));
 
-/**
- * Returns the arguments of Node: those of the image, and with THREEPOINT_SERVER=source those of `npm start`, which needs
- * a built page.
- */
+/** Returns the arguments of Node: those of the image, or with THREEPOINT_SERVER=source those of `npm start`. */
 function serverCommand(): readonly string[] {
   if (process.env.THREEPOINT_SERVER === 'source') return ['--import', 'tsx', pathInRepository('server/main.ts')];
   const image = process.env.THREEPOINT_IMAGE;
