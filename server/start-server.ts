@@ -57,9 +57,12 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     perAddress: relaying.connectionsPerAddress,
     behindProxy: relaying.trustProxy,
   });
-  const prepared = prepareServer(createRouter([studies.service], page, createSitePolicy(relaying)), {
+  const site = createSitePolicy(relaying);
+  const prepared = prepareServer(createRouter([studies.service], page, site), {
     ...(credentials && { credentials }),
     connectionLimiter,
+    checkHost: site.checkHost,
+    onFault: (error) => log(`a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
   });
   const rooms = attachRooms(prepared.http, {
     ...relaying,

@@ -16,3 +16,6 @@ export class HttpError extends Error {
     this.headers = headers;
   }
 }
+
+/** Returns what a client receives for a fault of the server; the log has the details. */
+export const internalError = (): HttpError => new HttpError(500, 'the server failed, and stored nothing; try again');

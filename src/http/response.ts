@@ -42,7 +42,8 @@ const headersOf = ({ headers, body }: HttpResponse): Record<string, string | num
   ...headers,
 });
 
-const announcesBody = ({ headers }: IncomingMessage): boolean =>
+/** Returns whether the head of a request says that a body follows. */
+export const announcesBody = ({ headers }: IncomingMessage): boolean =>
   headers['transfer-encoding'] !== undefined || Number(headers['content-length'] ?? 0) > 0;
 
 /** Drains the body, then calls `done`: at its end, or when `lingerBytes` or `lingerMs` is exceeded. */
@@ -81,14 +82,20 @@ export function sendResponse(request: IncomingMessage, response: ServerResponse,
 export const sendError = (request: IncomingMessage, response: ServerResponse, error: HttpError): void =>
   sendResponse(request, response, errorResponse(error));
 
-/** Sends a response on a raw socket, because the request could not be parsed or is an upgrade. */
-export function sendRawResponse(socket: Duplex, answer: HttpResponse): void {
-  const headers = { ...headersOf(answer), connection: 'close' };
-  const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
-  const head = `HTTP/1.1 ${answer.status} ${STATUS_CODES[answer.status]}\r\n${lines.join('')}\r\n`;
+/** Closes a connection when its client has read the answer, at most `lingerMs` later. */
+export function closeAfterAnswer(socket: Duplex): void {
   const timer = setTimeout(() => socket.destroy(), lingerMs);
   socket.once('close', () => clearTimeout(timer));
   // Without a reader the end of the client's stream is not detected.
   socket.resume();
-  socket.end(Buffer.concat([Buffer.from(head, 'latin1'), Buffer.from(answer.body ?? '')]));
+  socket.end();
+}
+
+/** Sends a response on a raw socket, because the request could not be parsed, and closes the connection. */
+export function sendRawResponse(socket: Duplex, answer: HttpResponse): void {
+  const headers = { ...headersOf(answer), connection: 'close' };
+  const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
+  const head = `HTTP/1.1 ${answer.status} ${STATUS_CODES[answer.status]}\r\n${lines.join('')}\r\n`;
+  socket.write(Buffer.concat([Buffer.from(head, 'latin1'), Buffer.from(answer.body ?? '')]));
+  closeAfterAnswer(socket);
 }

@@ -1,6 +1,6 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from 'threepoint/core/validation/validation';
-import { HttpError } from './http-error';
+import { HttpError, internalError } from './http-error';
 import { readWholeBody } from './request-body';
 import { parseRequestTarget } from './request-target';
 import { errorResponse, type HttpResponse, sendError, sendResponse } from './response';
@@ -76,6 +76,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
   const pattern = new RegExp(`^${route.path.replace(/:\w+/g, segment)}/?$`);
   return {
     route,
+    onFault: service.onFault,
     /** Returns the named segments; null: the path does not match. */
     match(path: string): Readonly<Record<string, string>> | null {
       const found = pattern.exec(path);
@@ -93,7 +94,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       const known = refusalOf(error) ?? service.refusalOf(error);
       if (known) return errorResponse(known);
       service.onFault(error);
-      return errorResponse(new HttpError(500, 'the server failed, and stored nothing; try again'));
+      return errorResponse(internalError());
     },
   };
 }
@@ -148,7 +149,10 @@ export function createRouter(
       .answer({ request, names, query })
       .catch((error: unknown) => matcher.answerTo(error))
       .then((answer) => sendResponse(request, response, answer))
-      .catch(() => response.destroy());
+      .catch((error: unknown) => {
+        matcher.onFault(error);
+        response.destroy();
+      });
   };
 }
 

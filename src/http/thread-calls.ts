@@ -83,6 +83,7 @@ export class ThreadCalls<Api extends ThreadApi> {
       if ('log' in message) log(message.log);
       else this.#settle(message);
     });
+    worker.on('messageerror', (error) => log(`a message of the thread could not be read: ${error.message}`));
   }
 
   /**

@@ -11,9 +11,11 @@ import { type AddressInfo, createServer as createNetServer, type Server as NetSe
 import type { Duplex } from 'node:stream';
 import { ConfigurationError } from './configuration-error';
 import type { ConnectionLimiter } from './connection-limiter';
-import { HttpError } from './http-error';
+import { guarded } from './guarded';
+import { HttpError, internalError } from './http-error';
 import { hostProblem, parseRequestTarget } from './request-target';
-import { errorResponse, sendError, sendRawResponse, sendResponse } from './response';
+import { announcesBody, closeAfterAnswer, errorResponse, sendError, sendRawResponse, sendResponse } from './response';
+import type { SitePolicy } from './site-policy';
 
 /** A private key and its certificate, PEM. */
 export interface Credentials {
@@ -42,6 +44,10 @@ export interface WebServerOptions {
   readonly upgrade?: UpgradeListener;
   /** Limits the connections of each address; every connection is accepted without it. */
   readonly connectionLimiter?: ConnectionLimiter;
+  /** Checks the Host of requests that are redirected to https; every one is accepted without it. */
+  readonly checkHost?: SitePolicy['checkHost'];
+  /** Receives the exceptions of the listeners, after which the server goes on. Default: writes them to the console. */
+  readonly onFault?: FaultListener;
   /**
    * Idle timeout of a connection [ms], also while a client does not read; WebSockets have their own pings. Default:
    * 30,000.
@@ -58,17 +64,24 @@ export const requestTimeoutMs = 120_000;
 /** Interval at which Node checks these timeouts [ms]. */
 const checkMs = 1000;
 
-/** Redirects plain HTTP to https, because people omit the "https://". */
-const redirectToHttps: RequestListener = (request, response) => {
-  const host = request.headers.host;
-  const target = parseRequestTarget(request.url);
-  if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
-    sendError(request, response, new HttpError(400, 'the address of this request is malformed'));
-    return;
-  }
-  const search = target.query.size > 0 ? `?${target.query}` : '';
-  sendResponse(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
-};
+/** Returns a listener that redirects plain HTTP to https, because people omit the "https://". */
+const redirectToHttps =
+  (checkHost: SitePolicy['checkHost']): RequestListener =>
+  (request, response) => {
+    const host = request.headers.host;
+    const target = parseRequestTarget(request.url);
+    if (!target || !host || !/^[\w.:[\]-]+$/.test(host)) {
+      sendError(request, response, new HttpError(400, 'the address of this request is malformed'));
+      return;
+    }
+    const refusal = checkHost(request);
+    if (refusal) {
+      sendError(request, response, new HttpError(refusal.status, refusal.message));
+      return;
+    }
+    const search = target.query.size > 0 ? `?${target.query}` : '';
+    sendResponse(request, response, { status: 308, headers: { location: `https://${host}${target.path}${search}` } });
+  };
 
 /** Returns the refusal for an error of Node's HTTP parser. */
 function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
@@ -78,82 +91,138 @@ function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
   return new HttpError(400, 'this is not an HTTP request');
 }
 
-/** Refuses requests with a wrong Host before the listener, and tolerates clients that disconnect. */
-export const withHostCheck =
-  (listener: RequestListener): RequestListener =>
-  (request, response) => {
-    // A client may disconnect before it has read its answer; that is not an error.
-    request.on('error', () => undefined);
-    response.on('error', () => undefined);
-    const complaint = hostProblem(request);
-    if (complaint === null) listener(request, response);
-    else sendError(request, response, new HttpError(400, complaint));
-  };
+/** Receives the exceptions of a server's handlers, for its log. */
+export type FaultListener = (error: unknown) => void;
 
-/** Answers an upgrade request with a wrong Host; returns whether it did. */
-export function refusesUpgrade(request: IncomingMessage, socket: Duplex): boolean {
-  const complaint = hostProblem(request);
-  if (complaint !== null) sendRawResponse(socket, errorResponse(new HttpError(400, complaint)));
-  return complaint !== null;
+/** The responses that each connection has not sent yet, in the order of their requests. */
+const unanswered = new WeakMap<Duplex, Set<ServerResponse>>();
+
+const newestUnanswered = (socket: Duplex): ServerResponse | undefined => [...(unanswered.get(socket) ?? [])].at(-1);
+
+/** Counts a response as unanswered until it is sent. */
+export function followResponse({ socket }: IncomingMessage, response: ServerResponse): void {
+  const responses = unanswered.get(socket) ?? new Set();
+  unanswered.set(socket, responses.add(response));
+  response.once('close', () => responses.delete(response));
 }
 
-/** The response that each connection waits for. */
-const answering = new WeakMap<Duplex, ServerResponse>();
+/** Calls `next` when the connection has sent all earlier answers, unless one of them closes it. */
+function afterEarlierAnswers(socket: Duplex, next: () => void): void {
+  const newest = newestUnanswered(socket);
+  if (newest) newest.once('close', () => afterEarlierAnswers(socket, next));
+  else if (socket.writable) next();
+}
 
-class FollowedResponse extends ServerResponse {
-  override assignSocket(socket: Socket): void {
-    answering.set(socket, this);
-    super.assignSocket(socket);
-  }
+/**
+ * Returns a listener for requests that never throws and tolerates clients that disconnect. It refuses requests with a
+ * wrong Host, and answers 500 to those whose listener throws.
+ */
+export const answering = (listener: RequestListener, onFault: FaultListener): RequestListener =>
+  guarded(
+    (request, response) => {
+      followResponse(request, response);
+      // A client may disconnect before it has read its answer; that is not an error.
+      request.on('error', () => undefined);
+      response.on('error', () => undefined);
+      const complaint = hostProblem(request);
+      if (complaint === null) listener(request, response);
+      else sendError(request, response, new HttpError(400, complaint));
+    },
+    (error, request, response) => {
+      onFault(error);
+      if (response.headersSent) response.destroy();
+      else sendError(request, response, internalError());
+    },
+  );
+
+/** Returns the response to a request whose connection Node has handed over; the connection closes with it. */
+export function lastResponse(request: IncomingMessage, socket: Duplex): ServerResponse {
+  const response = new ServerResponse(request);
+  response.shouldKeepAlive = false;
+  response.assignSocket(socket as Socket);
+  response.once('finish', () => closeAfterAnswer(socket));
+  return response;
+}
+
+/**
+ * Returns a listener for connections that Node hands over, of upgrades and of tunnels, that never throws. It refuses
+ * requests with a wrong Host. The answers to earlier requests on the connection are sent before.
+ */
+export const handingOver =
+  (listener: (request: IncomingMessage, socket: Duplex, head: Buffer) => void, onFault: FaultListener) =>
+  (request: IncomingMessage, socket: Duplex, head: Buffer): void => {
+    // Node has removed its own listeners.
+    socket.on('error', () => socket.destroy()).on('timeout', () => socket.destroy());
+    const answer = guarded(
+      () => {
+        const complaint = hostProblem(request);
+        if (complaint === null) listener(request, socket, head);
+        else sendError(request, lastResponse(request, socket), new HttpError(400, complaint));
+      },
+      (error) => {
+        onFault(error);
+        socket.destroy();
+      },
+    );
+    afterEarlierAnswers(socket, answer);
+  };
+
+/**
+ * Answers a request that offers another protocol as if it had none, and closes the connection. Requests with a body are
+ * refused, because Node has not read it.
+ */
+export function ignoreOffer(server: HttpServer, request: IncomingMessage, socket: Duplex): void {
+  const response = lastResponse(request, socket);
+  if ((request.method === 'GET' || request.method === 'HEAD') && !announcesBody(request)) {
+    // Node has set the timeout between two requests.
+    response.setTimeout(server.timeout);
+    server.emit('request', request, response);
+  } else sendError(request, response, new HttpError(400, 'this address supports no upgrade'));
 }
 
 /** Attaches handlers for everything that reaches a server: requests, upgrades, tunnels and malformed input. */
-function answerAll(server: HttpServer, listener: RequestListener, upgrade: UpgradeListener): void {
-  const refused = new WeakSet<Duplex>();
-
+function answerAll(
+  server: HttpServer,
+  listener: RequestListener,
+  upgrade: UpgradeListener,
+  onFault: FaultListener,
+): void {
   // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the
   // answer.
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
-  server.on('request', withHostCheck(listener));
-  server.on('checkExpectation', (request: IncomingMessage, response: ServerResponse) => {
+  server.on('request', answering(listener, onFault));
+  const refuseExpectation: RequestListener = (request, response) =>
     sendError(request, response, new HttpError(417, 'this server supports no expectation but 100-continue'));
-  });
-  server.on('connect', (_request: IncomingMessage, socket: Duplex) => {
-    socket.on('error', () => socket.destroy());
-    sendRawResponse(
-      socket,
-      errorResponse(new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } })),
-    );
-  });
-  server.on('upgrade', (request: IncomingMessage, socket: Duplex, head: Buffer) => {
-    socket.on('error', () => socket.destroy());
-    if (refusesUpgrade(request, socket) || upgrade(request, socket, head)) return;
-    if (head.length > 0) {
-      sendRawResponse(socket, errorResponse(new HttpError(400, 'this address supports no upgrade')));
-      return;
+  server.on('checkExpectation', answering(refuseExpectation, onFault));
+  const refuseTunnel = (request: IncomingMessage, socket: Duplex): void => {
+    const refusal = new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } });
+    sendError(request, lastResponse(request, socket), refusal);
+  };
+  server.on('connect', handingOver(refuseTunnel, onFault));
+  const handleUpgrade = (request: IncomingMessage, socket: Duplex, head: Buffer): void => {
+    if (!upgrade(request, socket, head)) ignoreOffer(server, request, socket);
+  };
+  server.on('upgrade', handingOver(handleUpgrade, onFault));
+  const refuseGarbage = (error: NodeJS.ErrnoException, socket: Duplex): void => {
+    if (error.code === 'ECONNRESET') socket.destroy();
+    if (!socket.writable) return;
+    const refusal = refusalOfParser(error);
+    const newest = newestUnanswered(socket);
+    // The error is in the body of the newest request, and its response is sent in its turn.
+    if (newest && !newest.req.complete) sendError(newest.req, newest, refusal);
+    else {
+      // Nothing more is read before the answer; Node reports an error for each chunk.
+      socket.pause();
+      afterEarlierAnswers(socket, () => sendRawResponse(socket, errorResponse(refusal)));
     }
-    // A server may ignore an offer of another protocol; the request is answered as if it had none.
-    const response = new FollowedResponse(request);
-    response.shouldKeepAlive = false;
-    response.assignSocket(socket as Socket);
-    response.once('finish', () => socket.end());
-    server.emit('request', request, response);
-  });
-  server.on('clientError', (error: NodeJS.ErrnoException, socket: Duplex) => {
-    if (refused.has(socket)) return;
-    if (error.code === 'ECONNRESET' || !socket.writable) {
+  };
+  server.on(
+    'clientError',
+    guarded(refuseGarbage, (error, _cause, socket) => {
+      onFault(error);
       socket.destroy();
-      return;
-    }
-    const response = answering.get(socket);
-    if (response?.headersSent && !response.writableEnded) {
-      // The answer is being sent and closes the connection; the error is in the rest of an unread body.
-      response.end();
-      return;
-    }
-    refused.add(socket);
-    sendRawResponse(socket, errorResponse(refusalOfParser(error)));
-  });
+    }),
+  );
   server.on('tlsClientError', (_error: Error, socket: Socket) => socket.destroy());
 }
 
@@ -180,7 +249,6 @@ const limits = {
   connectionsCheckingInterval: checkMs,
   // Answered by `hostProblem` instead, with a sentence and the security headers.
   requireHostHeader: false,
-  ServerResponse: FollowedResponse,
 };
 
 /** The number of ports that are tried. */
@@ -221,14 +289,21 @@ export interface PreparedServer {
 /** Prepares a server: HTTP, or with credentials HTTPS and a redirect from HTTP. */
 export function prepareServer(
   listener: RequestListener,
-  { credentials, upgrade = () => false, connectionLimiter, idleTimeoutMs = 30_000 }: WebServerOptions,
+  {
+    credentials,
+    upgrade = () => false,
+    connectionLimiter,
+    checkHost = () => null,
+    onFault = (error) => console.error(error),
+    idleTimeoutMs = 30_000,
+  }: WebServerOptions,
 ): PreparedServer {
   const requests: HttpServer = credentials
     ? createHttpsServer({ ...credentials, ...limits, handshakeTimeout: handshakeTimeoutMs })
     : createHttpServer(limits);
-  answerAll(requests, listener, upgrade);
+  answerAll(requests, listener, upgrade, onFault);
   const redirects = createHttpServer(limits);
-  answerAll(redirects, redirectToHttps, () => false);
+  answerAll(redirects, redirectToHttps(checkHost), () => false, onFault);
   const entrance: NetServer = credentials ? splitByProtocol(requests, redirects) : requests;
   for (const server of [requests, redirects]) {
     server.timeout = idleTimeoutMs;
@@ -251,7 +326,12 @@ export function prepareServer(
     });
   return {
     http: requests,
-    listen: async ({ host, port }) => ({ port: await listenOnFreePort(entrance, host, port), close }),
+    async listen({ host, port }) {
+      const chosen = await listenOnFreePort(entrance, host, port);
+      // A connection that could not be accepted, for example without a free file handle.
+      entrance.on('error', onFault);
+      return { port: chosen, close };
+    },
   };
 }
 

@@ -4,6 +4,7 @@ import { statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { join } from 'node:path';
+import { createSitePolicy } from 'threepoint-http/site-policy';
 import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
@@ -54,11 +55,41 @@ describe('the port', () => {
   });
 });
 
+describe('an exception', () => {
+  const fail = () => {
+    throw new Error('a fault of this test');
+  };
+  const offer = { connection: 'Upgrade', upgrade: 'h2c' };
+
+  test('in the listener of requests gets 500, its error goes to the log, and the server goes on', async () => {
+    const faults: unknown[] = [];
+    const server = await serve(fail, { host: '127.0.0.1', port: 0, onFault: (error) => faults.push(error) });
+    onTestFinished(() => server.close());
+    for (const headers of [{}, offer]) {
+      const { status, body } = await ask(`http://127.0.0.1:${server.port}`, '/', { headers });
+      expect(status).toBe(500);
+      expect(JSON.parse(body.toString())).toEqual({ error: expect.stringMatching(/^the server failed/), field: null });
+    }
+    expect(faults).toEqual([new Error('a fault of this test'), new Error('a fault of this test')]);
+  });
+
+  test('in the listener of upgrades closes the connection, its error goes to the log, and the server goes on', async () => {
+    const faults: unknown[] = [];
+    const onFault = (error: unknown) => faults.push(error);
+    const server = await serve(hello, { host: '127.0.0.1', port: 0, upgrade: fail, onFault });
+    onTestFinished(() => server.close());
+    await expect(ask(`http://127.0.0.1:${server.port}`, '/', { headers: offer })).rejects.toThrow(/socket hang up/);
+    expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');
+    expect(faults).toEqual([new Error('a fault of this test')]);
+  });
+});
+
 describe('HTTPS with a certificate of our own', () => {
   async function secured() {
     const directory = directoryWith();
     const credentials = await certificateFor(['127.0.0.2'], directory, now);
-    const server = await serve(hello, { host: '0.0.0.0', port: 0, credentials });
+    const { checkHost } = createSitePolicy({ origins: [], hosts: [], trustProxy: false });
+    const server = await serve(hello, { host: '0.0.0.0', port: 0, credentials, checkHost });
     onTestFinished(() => server.close());
     return { server, credentials };
   }
@@ -88,6 +119,15 @@ describe('HTTPS with a certificate of our own', () => {
     const { status, headers } = await ask(`http://127.0.0.1:${server.port}`, '/?estimator=ik');
     expect(status).toBe(308);
     expect(headers.location).toBe(`https://127.0.0.1:${server.port}/?estimator=ik`);
+  });
+
+  test('plain HTTP under a name of another site is refused, not redirected', async () => {
+    const { server } = await secured();
+    const asked = { headers: { host: 'evil.example' } };
+    const { status, headers, body } = await ask(`http://127.0.0.1:${server.port}`, '/', asked);
+    expect(status).toBe(421);
+    expect(headers.location).toBeUndefined();
+    expect(body.toString()).toContain('does not accept the name evil.example');
   });
 });
 

@@ -252,6 +252,19 @@ export const attackRows = {
     shows: ['without an answer', 'faults'],
     tests: ['tests/server/any-request.test.ts'],
   },
+  'undecodable-paths': {
+    inject: 'Paths whose percent signs encode no text, sent to the built server',
+    sees: 'Each gets 400',
+    target: '0 processes ended',
+    tests: ['tests/server/built-server.test.ts'],
+  },
+  pipelines: {
+    inject: '1,000,000 answers to pipelines of requests, upgrades, tunnels and garbage (4,000 by day)',
+    sees: 'Each request gets its own answer in its turn, from the built server',
+    target: '0 missing or out of turn, 0 processes ended',
+    shows: ['answers', 'missing or out of turn', 'processes ended'],
+    tests: ['tests/server/pipelined-requests.test.ts'],
+  },
   'any-packet': {
     inject: '100,000 WebSocket frames by a grammar (2,000 by day)',
     sees: 'An invalid packet ends its own connection only',

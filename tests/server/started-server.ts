@@ -95,6 +95,8 @@ export async function startServer(
     },
     /** Everything printed so far. */
     printed: () => output + errors,
+    /** Everything printed so far on the stream of errors: the log of the studies, and exceptions. */
+    errors: () => errors,
     /** The faults of the studies that were logged so far. */
     faults: () => errors.split('\n').filter((line) => line.startsWith('study, a fault: ')),
     /** Moves the clock of the server, and of nothing else, to this far from the machine's [s]. */

@@ -5,7 +5,7 @@ import { parseRequestTarget } from 'threepoint-http/request-target';
 import { sendResponse } from 'threepoint-http/response';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
-import { refusesUpgrade, withHostCheck } from 'threepoint-http/web-server';
+import { answering, followResponse, handingOver, ignoreOffer } from 'threepoint-http/web-server';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createRelay } from './relay';
@@ -88,9 +88,10 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const relay = createRelay(configuration, secret, connections, kinds);
   const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
-  const answer = withHostCheck((request, response) => {
+  const { onFault } = relay.service;
+  const answer = answering((request, response) => {
     if (allowOrigin(request, response, site)) router(request, response);
-  });
+  }, onFault);
 
   /** Returns whether the address is the rooms', and takes the path off it. */
   function takeOwnUrl(request: IncomingMessage): boolean {
@@ -102,22 +103,30 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
     return true;
   }
 
+  const ignoreOffered = (request: IncomingMessage, socket: Duplex): void => ignoreOffer(httpServer, request, socket);
+
   const restore = [
     // The server's own listener would answer 404: it receives the other requests alone.
     interceptEvent(httpServer, 'request', (passOn) => (request, response) => {
-      if (takeOwnUrl(request as IncomingMessage)) answer(request as IncomingMessage, response as ServerResponse);
-      else passOn(request, response);
+      const [asked, answered] = [request as IncomingMessage, response as ServerResponse];
+      followResponse(asked, answered);
+      if (takeOwnUrl(asked)) answer(asked, answered);
+      else passOn(asked, answered);
     }),
     interceptEvent(httpServer, 'upgrade', (passOn) => (request, socket, head) => {
       const [asked, connection] = [request as IncomingMessage, socket as Duplex];
       const { url } = asked;
-      if (takeOwnUrl(asked)) {
-        connection.on('error', () => connection.destroy());
-        if (refusesUpgrade(asked, connection) || relay.upgrade(asked, connection, head as Buffer)) return;
-        asked.url = url;
-      }
-      // No other listener answers.
-      if (!passOn(asked, connection, head)) connection.destroy();
+      const passOnOffer = (): void => {
+        // No other listener answers: this one made Node hand over the connection.
+        if (!passOn(asked, connection, head)) handingOver(ignoreOffered, onFault)(asked, connection, head as Buffer);
+      };
+      if (!takeOwnUrl(asked)) passOnOffer();
+      else
+        handingOver((...upgrade) => {
+          if (relay.upgrade(...upgrade)) return;
+          asked.url = url;
+          passOnOffer();
+        }, onFault)(asked, connection, head as Buffer);
     }),
   ];
   return {

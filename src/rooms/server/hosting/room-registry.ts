@@ -1,8 +1,10 @@
 import { randomBytes } from 'node:crypto';
 import type { Server } from 'socket.io';
+import { guarded } from 'threepoint-http/guarded';
 import { messageEvent } from '../../protocol/socket-parsers';
 import type { HostedGame } from '../../room/match-policy';
 import { Room, type RoomCensus } from '../../room/room';
+import type { FreshPose } from '../../room/room-host';
 import type { PassClaims } from '../access/room-tokens';
 import type { RelayContext } from '../relay-context';
 import type { HostCensus } from '../settings/relay-metrics';
@@ -26,6 +28,8 @@ export interface RegisteredRoom extends ScheduledRoom {
   emptySince: number | null;
   /** Time of the next tick [s]. */
   tickAt: number;
+  /** Ticks the room; a room whose tick fails is closed. `now`: seconds. */
+  tick(now: number): void;
 }
 
 /** An empty room is closed after this time [s]. */
@@ -135,6 +139,10 @@ export class RoomRegistry {
     if (!policy) return false;
     this.#created += 1;
     const clients = new Map<string, Client>();
+    const endRoom = (error: unknown): void => {
+      log.error({ error: String(error), room: id, kind }, 'the room failed');
+      this.end(id);
+    };
     const room = new Room(
       policy,
       {
@@ -149,7 +157,10 @@ export class RoomRegistry {
           if (client) send(client, message);
         },
         broadcast: (message) => void this.#io.to(id).emit(messageEvent, message),
-        sendPoses: (poses) => sendPoses(clients.values(), poses, metrics.counts),
+        sendPoses: guarded(
+          (poses: readonly FreshPose[]) => sendPoses(clients.values(), poses, metrics.counts),
+          endRoom,
+        ),
         disconnect(id, reason) {
           const client = clients.get(id);
           clients.delete(id);
@@ -162,7 +173,8 @@ export class RoomRegistry {
       },
     );
     log.info({ room: id, kind, terms }, 'room opened');
-    this.#rooms.set(id, { room, listed: assigned === null, clients, sentAt: 0, emptySince: null, tickAt: 0 });
+    const tick = guarded((now: number) => room.tick(now), endRoom);
+    this.#rooms.set(id, { room, listed: assigned === null, clients, sentAt: 0, emptySince: null, tickAt: 0, tick });
     return true;
   }
 
@@ -183,7 +195,7 @@ export class RoomRegistry {
     const latest = started + 0.5 / configuration.tickHz;
     for (const hosted of this.#active) {
       if (hosted.tickAt > latest) continue;
-      hosted.room.tick(now());
+      hosted.tick(now());
       hosted.tickAt = started + hosted.room.tickPeriod;
       if (hosted.room.isIdle) this.#active.delete(hosted);
     }

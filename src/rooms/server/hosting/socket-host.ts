@@ -1,9 +1,10 @@
 import { RateLimiterMemory } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
+import { guarded } from 'threepoint-http/guarded';
 import { consumePoint } from 'threepoint-http/rate-limit';
 import { messageEvent } from '../../protocol/socket-parsers';
 import type { RelayContext } from '../relay-context';
-import type { RelayTransport } from '../sockets/relay-transport';
+import { closeConnection, type RelayTransport, type WireFault } from '../sockets/relay-transport';
 import { type Client, createClient, disconnect } from './client';
 import { MessageHandler } from './message-handler';
 import type { RoomRegistry } from './room-registry';
@@ -60,30 +61,49 @@ export function hostSockets(
   io.on('connection', (socket) => {
     const client = createClient(socket, configuration, now());
     clients.add(client);
+    const endClient = (error: unknown): void => {
+      log.error({ error: String(error), room: client.pass.room, client: client.id }, 'a message failed');
+      closeConnection(socket);
+    };
     listen(socket, {
-      onPose: (bytes) => messages.onPose(client, bytes),
-      onFault: (fault) => messages.kick(client, fault === 'slow' ? 'slow' : 'misbehaved', fault),
+      onPose: guarded((bytes: Uint8Array) => messages.onPose(client, bytes), endClient),
+      onFault: guarded(
+        (fault: WireFault) => messages.kick(client, fault === 'slow' ? 'slow' : 'misbehaved', fault),
+        endClient,
+      ),
     });
-    socket.on(messageEvent, (value: unknown) => messages.onMessage(client, value));
-    socket.onAny((event: string) => {
-      if (event !== messageEvent) messages.kick(client, 'misbehaved', 'unknown-event');
-    });
-    socket.on('disconnect', (reason) => {
-      client.ended = true;
-      clients.delete(client);
-      messages.onDisconnect(client);
-      log.debug({ room: client.pass.room, client: client.id, reason }, 'disconnected');
-    });
+    socket.on(
+      messageEvent,
+      guarded((value: unknown) => messages.onMessage(client, value), endClient),
+    );
+    socket.onAny(
+      guarded((event: string) => {
+        if (event !== messageEvent) messages.kick(client, 'misbehaved', 'unknown-event');
+      }, endClient),
+    );
+    socket.on(
+      'disconnect',
+      guarded((reason: string) => {
+        client.ended = true;
+        clients.delete(client);
+        messages.onDisconnect(client);
+        log.debug({ room: client.pass.room, client: client.id, reason }, 'disconnected');
+      }, endClient),
+    );
   });
 
-  const sweeping = setInterval(() => {
+  const sweep = (): void => {
     const at = now();
     for (const client of clients) {
       const waitsToJoin = !client.ended && !client.joined;
       if (waitsToJoin && at - client.connectedAt > joinTimeout) messages.kick(client, 'misbehaved', 'no-join');
     }
     rooms.sweep(at);
-  }, sweepMs);
+  };
+  const sweeping = setInterval(
+    guarded(sweep, (error) => log.error({ error: String(error) }, 'the rooms could not be swept')),
+    sweepMs,
+  );
 
   return async () => {
     clearInterval(sweeping);

@@ -4,10 +4,11 @@ import type { Socket as NetSocket } from 'node:net';
 import type { Duplex } from 'node:stream';
 import { Server as Engine } from 'engine.io';
 import { Server, type Socket } from 'socket.io';
+import { guarded } from 'threepoint-http/guarded';
 import { HttpError } from 'threepoint-http/http-error';
 import { parseRequestTarget } from 'threepoint-http/request-target';
-import { errorResponse, sendRawResponse } from 'threepoint-http/response';
-import { handshakeTimeoutMs } from 'threepoint-http/web-server';
+import { sendError } from 'threepoint-http/response';
+import { handshakeTimeoutMs, lastResponse } from 'threepoint-http/web-server';
 import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
 import { TokenBucket } from '../../room/token-bucket';
@@ -56,16 +57,22 @@ export function closeConnection(socket: Socket): void {
  * Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns
  * whether to handle it.
  */
-function routeBinaryMessages(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
+function routeBinaryMessages(
+  conn: Socket['conn'],
+  take: () => boolean,
+  listener: (bytes: Uint8Array) => void,
+  onFault: (error: unknown) => void,
+): void {
   // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
   const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
   for (const engines of websocket.listeners('message')) {
     websocket.off('message', engines as () => void);
-    websocket.on('message', (received: Buffer, isBinary: boolean) => {
+    const pass = (received: Buffer, isBinary: boolean): void => {
       if (!take()) return;
       if (isBinary) listener(received);
       else engines.call(websocket, received, isBinary);
-    });
+    };
+    websocket.on('message', guarded(pass, onFault));
   }
   websocket.on('ping', take);
   websocket.on('pong', take);
@@ -121,10 +128,14 @@ export function createRelayTransport(context: RelayContext) {
     const raw = conn.request.socket;
     slowReaders.watch(conn);
     const take = createFloodLimiter(now, () => end(conn, 'flood'));
-    routeBinaryMessages(conn, take, (bytes) => {
+    const onBinaryMessage = (bytes: Uint8Array): void => {
       const listener = listeners.get(conn);
       if (listener) listener.onPose(bytes);
       else conn.close();
+    };
+    routeBinaryMessages(conn, take, onBinaryMessage, (error) => {
+      log.error({ error: String(error) }, 'a frame failed');
+      conn.close();
     });
     conn.once('close', () => destroySoon(raw));
   });
@@ -149,7 +160,7 @@ export function createRelayTransport(context: RelayContext) {
         socket.once('close', admit(request, target.query));
       } catch (error) {
         if (!(error instanceof HttpError)) throw error;
-        sendRawResponse(socket, errorResponse(error));
+        sendError(request, lastResponse(request, socket), error);
         return true;
       }
       engine.handleUpgrade(request as never, socket, head);
