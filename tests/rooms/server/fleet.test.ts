@@ -71,6 +71,44 @@ async function metric(url: string, name: string): Promise<number> {
   return Number(new RegExp(`^${name} (\\S+)$`, 'm').exec(text)?.[1] ?? Number.NaN);
 }
 
+const head = (line: string, ...headers: readonly string[]): string =>
+  [`${line} HTTP/1.1`, 'Host: localhost', ...headers, '', ''].join('\r\n');
+const offer = (protocol: string): string[] => ['Connection: Upgrade', `Upgrade: ${protocol}`];
+const body = '{"kind":"ball"}';
+
+/** Requests that follow each other on one connection, each with the status of its answer. */
+const pipelined: readonly (readonly [request: string, status: string])[] = [
+  [head('GET /'), '200'],
+  [head('GET /%'), '400'],
+  [head('GET /api/rooms', ...offer('h2c'), 'HTTP2-Settings: AAMAAABkAAQAAP__'), '200'],
+  [head('POST /api/rooms/match', 'Content-Type: application/json', `Content-Length: ${body.length}`) + body, '200'],
+  [head('GET /api/studies/%/records'), '400'],
+  [head('GET /', ...offer('nothing/1')), '200'],
+  [head('GET /relay/'), '426'],
+  [head('HEAD /'), '200'],
+  [head('GET /absent'), '404'],
+];
+const webSocket = head(
+  'GET /relay/?EIO=4&transport=websocket&room=pipeline',
+  ...offer('websocket'),
+  'Sec-WebSocket-Version: 13',
+  'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==',
+);
+
+/** Sends these requests at once on one connection, and resolves to the statuses of the answers. */
+async function statusesOf(url: string, requests: readonly string[]): Promise<readonly string[]> {
+  const socket = connect(Number(new URL(url).port), '127.0.0.1');
+  let text = '';
+  const statuses = () => [...text.matchAll(/HTTP\/1\.1 (\d{3}) /g)].map(([, status]) => status as string);
+  socket.setEncoding('latin1').on('data', (chunk: string) => {
+    text += chunk;
+  });
+  socket.write(requests.join(''));
+  await until(`${requests.length} answers`, () => statuses().length >= requests.length || socket.closed, 120);
+  socket.destroy();
+  return statuses();
+}
+
 // Programs of the distribution, not ours to install: apt-get install haproxy redis-server
 describe.skipIf(missing)(
   `two relay processes, Redis and a proxy${missing ? ' (haproxy or redis-server is not installed)' : ''}`,
@@ -170,6 +208,27 @@ describe.skipIf(missing)(
       for (const { room } of guests) expect((await end(room, adminToken)).status).toBe(200);
       await until('all out', () => guests.every(({ person }) => person.connection.status.reason === 'closed'));
       for (const { person } of guests) person.stop();
+    });
+
+    test('requests on one connection, offers of upgrades among them, are answered in their turn through the proxy', async () => {
+      const requests = [
+        ...Array.from({ length: isNightly ? 100 : 5 }, () => pipelined).flat(),
+        [webSocket, '101'] as const,
+      ];
+      const connections = isNightly ? 50 : 20;
+      const answers = await Promise.all(
+        Array.from({ length: connections }, (_, i) =>
+          statusesOf(
+            proxies[i % 2]!.url,
+            requests.map(([request]) => request),
+          ),
+        ),
+      );
+      for (const statuses of answers) expect(statuses).toEqual(requests.map(([, status]) => status));
+      expect(relays.map((relay) => relay.isAlive())).toEqual([true, true]);
+      expect(relays.map((relay) => relay.errors())).toEqual(['', '']);
+      expect(people.every(({ connection }) => connection.status.phase === 'joined')).toBe(true);
+      printFigures('pipelines through the proxy', { connections, answers: answers.flat().length });
     });
 
     test('without Redis every room goes on, and the lobby says that it is not complete', async () => {
