@@ -7,7 +7,8 @@ const loopDelay = monitorEventLoopDelay({ resolution: 2 });
 loopDelay.enable();
 const machineNow = Date.now;
 
-process.on('message', ({ aheadSeconds, collect }) => {
+process.on('message', ({ aheadSeconds, atSeconds, collect }) => {
+  if (atSeconds !== undefined) Date.now = () => 1000 * atSeconds;
   if (aheadSeconds !== undefined) Date.now = () => machineNow() + 1000 * aheadSeconds;
   if (collect) releaseMemory();
   const { heapUsed, external, rss } = process.memoryUsage();

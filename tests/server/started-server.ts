@@ -19,6 +19,12 @@ export interface ServerState {
   readonly loop: { readonly p99Ms: number; readonly maxMs: number };
 }
 
+interface Question {
+  readonly aheadSeconds?: number;
+  readonly atSeconds?: number;
+  readonly collect?: boolean;
+}
+
 interface StartOptions {
   /** Holds the folder of the studies. Default: a new one, which is deleted with the server. */
   readonly directory?: string;
@@ -78,7 +84,7 @@ export async function startServer(
       if (address) resolve(Number(address[1]));
     });
   });
-  const ask = async (question: { readonly aheadSeconds?: number; readonly collect?: boolean }) => {
+  const ask = async (question: Question) => {
     child.send(question);
     return messageFrom<ServerState>(child);
   };
@@ -101,6 +107,8 @@ export async function startServer(
     faults: () => errors.split('\n').filter((line) => line.startsWith('study, a fault: ')),
     /** Moves the clock of the server, and of nothing else, to this far from the machine's [s]. */
     setClock: (aheadSeconds: number) => ask({ aheadSeconds }),
+    /** Stops the clock of the server at this time [s]. */
+    stopClock: (atSeconds: number) => ask({ atSeconds }),
     /** `collect`: after garbage collection, without the memory that V8 reserves for new objects. */
     inspect: ({ collect = false } = {}) => ask({ collect }),
   };
