@@ -10,8 +10,11 @@ import { sourceResolution } from './source-condition.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-rooms');
-/** The entries and their folders, by the platform that they are for. */
-const entries = { browser: { index: 'peers', three: 'drawing', react: 'react' }, node: { server: 'server' } };
+/** The entries and their modules, by the platform that they are for. */
+const entries = {
+  browser: { index: 'index', room: 'room', socket: 'socket', three: 'drawing/index', react: 'react/index' },
+  node: { server: 'server/index' },
+};
 const own = JSON.parse(readFileSync(join(root, 'src/rooms/package.json'), 'utf8'));
 
 /** The documents of the package: path in the package to path in the repository. */
@@ -31,7 +34,7 @@ const external = (id) =>
 async function writeCode(platform, folders, packages) {
   const build = await rolldown({
     input: Object.fromEntries(
-      Object.entries(folders).map(([name, folder]) => [name, join(root, `src/rooms/${folder}/index.ts`)]),
+      Object.entries(modules).map(([name, module]) => [name, join(root, `src/rooms/${module}.ts`)]),
     ),
     cwd: root,
     platform,

@@ -1,6 +1,5 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { defaultCalibration, createEstimator } from 'threepoint/core';
+import { ArcheryPlay } from '../../src/page/archery/archery-play';
 import { expect, test } from 'vitest';
 import { collectGarbage } from '../collect-garbage.mjs';
 import { isNightly } from '../nightly';

@@ -1,7 +1,7 @@
 import { setTimeout as after } from 'node:timers/promises';
 import fc from 'fast-check';
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { ballKind } from 'threepoint-games/ball';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
 import { expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { isNightly } from '../../nightly';

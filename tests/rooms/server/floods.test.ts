@@ -1,4 +1,4 @@
-import { lobbyNamespace } from 'threepoint-rooms/server/lobby/lobby-publisher';
+import { lobbyNamespace } from '../../../src/rooms/server/lobby/lobby-publisher';
 import { expect, onTestFinished, test } from 'vitest';
 import type { WebSocket } from 'ws';
 import { sharedServer } from '../../server/server-child';

@@ -1,4 +1,4 @@
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { expect, onTestFinished, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { forkServer } from '../../server/server-child';

@@ -1,6 +1,6 @@
 import { createHmac } from 'node:crypto';
-import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import type { SignalBody } from '../../../src/rooms/protocol/voice-messages';
+import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
 import { describe, expect, test } from 'vitest';
 import { forkServer, sharedServer } from '../../server/server-child';
 import { paperPlan } from '../../study/model/studies';

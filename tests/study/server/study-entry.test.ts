@@ -1,6 +1,6 @@
 import { connect } from 'node:net';
-import { participantsOf } from 'threepoint-study/model/plan/plan';
-import { openPlacesPerHour } from 'threepoint-study/server/routes/guard';
+import { participantsOf } from '../../../src/study/model/plan/plan';
+import { openPlacesPerHour } from '../../../src/study/server/routes/guard';
 import { describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan } from '../model/studies';

@@ -1,9 +1,9 @@
 import { io } from 'socket.io-client';
-import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { pageParser } from 'threepoint-rooms/protocol/socket-parsers';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { createStudySeats } from 'threepoint-study/server/routes/seats';
+import { createRoomPass } from '../../../src/rooms/client/room-pass';
+import { pageParser } from '../../../src/rooms/protocol/socket-parsers';
+import { RoomTokens } from 'threepoint-rooms/server';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { rawGuest, rawSocket, tokenFor, until } from '../../rooms/server/running-relay';

@@ -1,7 +1,7 @@
 import { deflateSync } from 'node:zlib';
-import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
-import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
-import { createRandom } from 'threepoint/core/math/random';
+import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
+import type { SceneParts } from '../../../src/threepoint/avatar/file/fbx/glb-of-scene';
+import { createRandom } from '../../../src/threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { releaseMemory } from '../../collect-garbage.mjs';
 import { reportFigures } from '../../reliability/report-figures';

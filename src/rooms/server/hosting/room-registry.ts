@@ -1,6 +1,6 @@
 import { randomBytes } from 'node:crypto';
 import type { Server } from 'socket.io';
-import { guarded } from 'threepoint-http/guarded';
+import { guarded } from 'threepoint-http';
 import { messageEvent } from '../../protocol/socket-parsers';
 import type { HostedGame } from '../../room/match-policy';
 import { Room, type RoomCensus } from '../../room/room';

@@ -1,7 +1,6 @@
 import { RateLimiterMemory } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
-import { guarded } from 'threepoint-http/guarded';
-import { consumePoint } from 'threepoint-http/rate-limit';
+import { guarded, consumePoint } from 'threepoint-http';
 import { messageEvent } from '../../protocol/socket-parsers';
 import type { RelayContext } from '../relay-context';
 import { closeConnection, type RelayTransport, type WireFault } from '../sockets/relay-transport';

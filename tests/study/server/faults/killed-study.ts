@@ -1,12 +1,12 @@
 import { join } from 'node:path';
 import { isDeepStrictEqual } from 'node:util';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import { type Schedule, scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
-import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
+import { participantsOf, type StudyPlan } from '../../../../src/study/model/plan/plan';
+import { type Schedule, scheduleFor } from '../../../../src/study/model/plan/schedule';
+import type { ParticipantState } from '../../../../src/study/model/progress/study-api';
+import type { StudyRecord } from '../../../../src/study/model/records/study-record';
+import { openStudyStore } from '../../../../src/study/server/storage/study-store';
+import { type RandomSource, randomSource } from '../../../../src/study/simulation/random-source';
 import { experimenterToken, startServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
