@@ -1,5 +1,7 @@
-import { basename } from 'node:path';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
 import { defineConfig, type Plugin } from 'vite';
+import { packageCollector, packagesFile } from './scripts/licences.mjs';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
 import { studyPluginPaths } from './src/study/server/plugins/plugin-paths.ts';
 
@@ -81,13 +83,26 @@ const pages =
     ? { input: ['check.html'], first: false }
     : { input: ['index.html', 'results.html', 'experimenter.html', 'preview.html', 'withdraw.html'], first: true };
 
+const packages = new Set<string>();
+
+/** Adds the packages of this build, workers included, to a list for scripts/build.mjs. */
+const packageList: Plugin = {
+  name: 'package-list',
+  apply: 'build',
+  writeBundle({ dir = 'dist' }) {
+    const file = join(dir, packagesFile);
+    const earlier: string[] = pages.first ? [] : JSON.parse(readFileSync(file, 'utf8'));
+    writeFileSync(file, JSON.stringify([...earlier, ...packages]));
+  },
+};
+
 /** The server for rooms and studies: `npm start`, which runs next to the development server, on the same PORT. */
 const server = `http://127.0.0.1:${process.env.PORT ?? 3333}`;
 
 export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
-  plugins: [policyInPages, studyPluginsInPages],
+  plugins: [policyInPages, studyPluginsInPages, packageCollector(packages), packageList],
   server: {
     host: '127.0.0.1',
     port: 5173,
@@ -96,7 +111,7 @@ export default defineConfig({
   },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they can import chunks.
-  worker: { format: 'es', plugins: () => [decodersWithoutNode] },
+  worker: { format: 'es', plugins: () => [decodersWithoutNode, packageCollector(packages)] },
   build: {
     target: 'es2022',
     // The server's policy allows scripts from files of the same origin only: nothing may be inlined as a data: URL.

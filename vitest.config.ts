@@ -8,7 +8,16 @@ import { isNightly } from './tests/nightly.ts';
 const apart = ['tests/page/shell/**/*.test.ts', 'tests/ui/vr-touch.test.ts'];
 
 const projects: TestProjectConfiguration[] = [
-  { extends: true, test: { name: 'shared', include: ['tests/**/*.test.ts'], exclude: apart, isolate: false } },
+  {
+    extends: true,
+    test: {
+      name: 'shared',
+      include: ['tests/**/*.test.ts'],
+      exclude: apart,
+      isolate: false,
+      globalSetup: 'tests/server/built-server.ts',
+    },
+  },
   { extends: true, test: { name: 'apart', include: apart } },
 ];
 

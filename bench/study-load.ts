@@ -1,11 +1,9 @@
 // npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one study
 // at once on one server process, each as the page behaves.
 
-import { type ChildProcess, spawn } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { fileURLToPath } from 'node:url';
 import { parsePlan, participantsOf, type StudyPlan } from '../src/study/model/plan/plan';
 import { scheduleFor } from '../src/study/model/plan/schedule';
 import { begin } from '../src/study/model/progress/progress';
@@ -13,11 +11,11 @@ import type { ParticipantState } from '../src/study/model/progress/study-api';
 import { recordVersion, type StudyRecord } from '../src/study/model/records/study-record';
 import { randomSource } from '../src/study/simulation/random-source';
 import { quantile } from '../src/threepoint/core/math/statistics';
-import { kill, messageFrom } from '../tests/server/child-process';
+import provideBuiltServer from '../tests/server/built-server';
+import { experimenterToken, startServer } from '../tests/server/started-server';
 import { paperFile } from '../tests/study/model/studies';
 import { playedRound } from '../tests/study/participant/played-round';
 
-const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 /** The interval at which the page polls for commands and sends new records [s]. */
 const exchangeSeconds = 2;
 /** Something is recorded about so often: an answer handed in, a pause, a trial [s]. */
@@ -94,7 +92,7 @@ async function takePart(
   const random = randomSource(1, participant);
   const own = `/${plan.id}/participants/${participant}`;
   await pause(exchangeSeconds * random.uniform());
-  const { token } = await ask('claim', 'POST', `${own}/claim`, experimenter, JSON.stringify({ invitation }));
+  const { token } = await ask('claim', 'POST', `${own}/claim`, experimenterToken, JSON.stringify({ invitation }));
   const envelope = { version: recordVersion, study: plan.id, participant, simulated: false } as const;
   const consent: StudyRecord = {
     ...{ ...envelope, at: 1e9, kind: 'consent', id: 'consent' },
@@ -123,48 +121,31 @@ async function takePart(
   return acknowledged;
 }
 
-const inspect = async (server: ChildProcess) => {
-  server.send('inspect');
-  return messageFrom<{ rssBytes: number; cpuSeconds: number }>(server);
-};
-
 const directory = mkdtempSync(join(tmpdir(), 'threepoint-load-'));
 /** -D: the server stays the child, which is asked and killed. */
 const slowDisk = (ms: number) =>
   `-D -f --seccomp-bpf -qqq -o /dev/null -e trace=fsync,fdatasync -e inject=fsync,fdatasync:delay_exit=${1000 * ms}`.split(
     ' ',
   );
-const [command, ...words] = [
-  ...(flushMs > 0 ? ['strace', ...slowDisk(flushMs)] : []),
-  ...[
-    process.execPath,
-    '--import',
-    'tsx',
-    fileURLToPath(new URL('../tests/study/server/faults/study-process.ts', import.meta.url)),
-  ],
-  directory,
-];
-const server = spawn(command as string, words, {
-  stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
-  env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
-});
-const { port } = await messageFrom<{ port: number }>(server);
+const deleteImage = await provideBuiltServer();
+const through = flushMs > 0 ? ['strace', ...slowDisk(flushMs)] : [];
+const server = await startServer({}, { directory, through });
 const times: Times = new Map();
 const refused: string[] = [];
-const ask = client(`http://127.0.0.1:${port}`, times, refused);
+const ask = client(server.url, times, refused);
 const plan = remotePlan();
-await ask('begin', 'POST', '', experimenter, JSON.stringify({ plan, simulated: false }));
-const { participants } = (await ask('overview', 'GET', `/${plan.id}/participants`, experimenter)) as {
+await ask('begin', 'POST', '', experimenterToken, JSON.stringify({ plan, simulated: false }));
+const { participants } = (await ask('overview', 'GET', `/${plan.id}/participants`, experimenterToken)) as {
   participants: ParticipantState[];
 };
 if (participants.length !== participantsOf(plan).length) throw new Error('the study has other participants');
-const before = await inspect(server);
+const before = await server.inspect();
 const start = performance.now();
 const until = start + 1000 * seconds;
 // The experimenter's page looks on.
 const watching = (async () => {
   while (performance.now() < until) {
-    await ask('overview', 'GET', `/${plan.id}/participants`, experimenter);
+    await ask('overview', 'GET', `/${plan.id}/participants`, experimenterToken);
     await pause(exchangeSeconds);
   }
 })();
@@ -174,9 +155,10 @@ const acknowledged = (await Promise.all(participants.map((one) => takePart(ask, 
 );
 await watching;
 const took = (performance.now() - start) / 1000;
-const after = await inspect(server);
-const stored = (await ask('all', 'GET', `/${plan.id}/records`, experimenter)) as { records: unknown[] };
-await kill(server);
+const after = await server.inspect();
+const stored = (await ask('all', 'GET', `/${plan.id}/records`, experimenterToken)) as { records: unknown[] };
+await server.kill();
+deleteImage();
 rmSync(directory, { recursive: true, force: true });
 
 const rows = [...times].map(([kind, ms]) => ({

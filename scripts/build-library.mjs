@@ -6,6 +6,7 @@ import { basename, dirname, join, posix, relative } from 'node:path';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
 import { staleSizes } from './library-sizes.mjs';
+import { packageCollector, writeLicences } from './licences.mjs';
 import { mainOf, root, run, SetupError } from './run-command.mjs';
 import { buildPackage } from './source-hash.mjs';
 
@@ -29,8 +30,6 @@ const copied = {
   'models/paper.onnx': 'public/models/paper.onnx',
   'avatars/mannequin.vrm': 'public/avatars/mannequin.vrm',
   LICENSE: 'LICENSE',
-  'bundled/gltf-validator-LICENSE.txt': 'node_modules/gltf-validator/LICENSE',
-  'bundled/gltf-validator-NOTICES.txt': 'node_modules/gltf-validator/NOTICES',
 };
 
 /** The documents of the package: path in the package to path in the repository. */
@@ -114,6 +113,11 @@ async function workerCode(module) {
   return Buffer.from(output[0].code);
 }
 
+/** The folders of the packages in the library and in its worker. */
+const packages = new Set();
+
+const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
+
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
 async function bundle(input, plugins) {
   return rolldown({
@@ -121,7 +125,7 @@ async function bundle(input, plugins) {
     cwd: root,
     platform: 'browser',
     external,
-    plugins,
+    plugins: [...plugins, packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
     // In Node, gltf-validator would call `require`, which a module has not; it runs there as in a browser.
     transform: { define: { 'process.versions': 'undefined' } },
@@ -266,6 +270,7 @@ function writeFiles() {
     writeFileSync(join(out, to), documentInPackage(text, to, { ...copied, ...documents }));
   }
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(), null, 2)}\n`);
+  writeLicences(out, packages);
 }
 
 /** The entry of a page that draws its own avatars, as a bundler sees it. */

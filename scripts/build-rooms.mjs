@@ -4,6 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSyn
 import { join } from 'node:path';
 import { rolldown } from 'rolldown';
 import { documentInPackage, writeDeclarations } from './build-library.mjs';
+import { packageCollector, writeLicences } from './licences.mjs';
 import { mainOf, root } from './run-command.mjs';
 import { buildPackage } from './source-hash.mjs';
 
@@ -28,7 +29,8 @@ const external = (id) =>
   id === 'threepoint/three' ||
   imported.some((name) => id === name || id.startsWith(`${name}/`));
 
-async function writeCode(platform, modules) {
+/** Bundles the entries in these folders, and adds the packages that are bundled with them to `packages`. */
+async function writeCode(platform, folders, packages) {
   const build = await rolldown({
     input: Object.fromEntries(
       Object.entries(modules).map(([name, module]) => [name, join(root, `src/rooms/${module}.ts`)]),
@@ -36,6 +38,7 @@ async function writeCode(platform, modules) {
     cwd: root,
     platform,
     external,
+    plugins: [packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
   });
   await build.write({ dir: out, format: 'esm', chunkFileNames: 'shared-[hash].js', sourcemap: true });
@@ -66,7 +69,9 @@ export const buildRooms = () =>
   buildPackage('dist-rooms', async () => {
     rmSync(out, { recursive: true, force: true });
     mkdirSync(out);
-    for (const [platform, modules] of Object.entries(entries)) await writeCode(platform, modules);
+    const packages = new Set();
+    for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders, packages);
+    writeLicences(out, packages);
     await writeTypes();
     copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));
     const readme = readFileSync(join(root, documents['README.md']), 'utf8');

@@ -4,6 +4,7 @@ import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, write
 import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { rolldown } from 'rolldown';
+import { installedFolders, writeLicences } from './licences.mjs';
 import { mainOf, root, SetupError } from './run-command.mjs';
 
 /** The default output folder, next to server/: the server reads ../package.json, ../dist/ and ../study-data/. */
@@ -34,9 +35,9 @@ const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'packa
 
 /**
  * Bundles the server's own files into `out`; packages and Node's modules are imported at run time. The written
- * package.json names those packages alone, so that npm prune removes the page's packages.
+ * package.json names those packages alone, so that npm prune removes the page's packages. Writes their licences, too.
  */
-async function buildServer(out) {
+export async function buildServer(out) {
   const { version, type } = manifestIn('.');
   const manifests = packages.map(manifestIn);
   const dependencies = Object.assign({}, ...manifests.map((manifest) => manifest.dependencies));
@@ -69,6 +70,7 @@ async function buildServer(out) {
   const own = Object.fromEntries(Object.entries(dependencies).filter(([known]) => imported.has(known)));
   const manifest = { name: 'threepoint-server', version, type, private: true, dependencies: own };
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
+  writeLicences(out, installedFolders(Object.keys(own)));
   cpSync(join(root, 'src/study/server/export/analysis'), join(out, 'analysis'), { recursive: true });
 }
 

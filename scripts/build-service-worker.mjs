@@ -1,6 +1,7 @@
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join, sep } from 'node:path';
+import { packageCollector } from './licences.mjs';
 import { root } from './run-command.mjs';
 
 /** The pages that are not cached, because they need their server. */
@@ -55,19 +56,22 @@ export function keptFiles(directory, manifest) {
 /** Returns the list of files as the service worker reads it; a changed list is a new version. */
 const listed = (files) => `self.keptFiles=${JSON.stringify(files)};\n`;
 
-/** Writes sw.js, bundled into one file, into the directory of a built page. */
+/** Writes sw.js, bundled into one file, into the directory of a built page. Returns the folders of its packages. */
 export async function buildServiceWorker(directory) {
   const manifestFile = join(directory, '.vite/manifest.json');
   const files = keptFiles(directory, JSON.parse(readFileSync(manifestFile, 'utf8')));
   rmSync(join(directory, '.vite'), { recursive: true });
   // The import is dynamic, because the commands that install missing packages load this file first.
   const { rolldown } = await import('rolldown');
+  const packages = new Set();
   const bundle = await rolldown({
     input: join(root, 'src/page/offline/service-worker.ts'),
     platform: 'browser',
+    plugins: [packageCollector(packages)],
     transform: { define: { 'process.env.NODE_ENV': '"production"' }, target: 'es2022' },
   });
   const { output } = await bundle.generate({ format: 'iife', minify: true });
   await bundle.close();
   writeFileSync(join(directory, 'sw.js'), listed(files) + output[0].code);
+  return packages;
 }

@@ -1,8 +1,9 @@
-import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs, promisify } from 'node:util';
 import { brotliCompress, constants, gzip } from 'node:zlib';
 import { buildServiceWorker } from './build-service-worker.mjs';
+import { packagesFile, writeLicences } from './licences.mjs';
 import { mainOf, root, run, SetupError } from './run-command.mjs';
 import { filesUnder, isStamped, sourceHash } from './source-hash.mjs';
 
@@ -21,6 +22,7 @@ const sources = [
   'src',
   'scripts/build.mjs',
   'scripts/build-service-worker.mjs',
+  'scripts/licences.mjs',
 ];
 
 const stampFile = '.source-hash';
@@ -114,9 +116,12 @@ export async function build({ base, out, filesFrom = usual.filesFrom } = usual) 
     if (code !== 0) throw new SetupError(`The build failed with exit code ${code}; its messages are above.`);
   };
   await buildPages('all');
-  await buildServiceWorker(out);
+  const inServiceWorker = await buildServiceWorker(out);
   // After the service worker, whose list is what the other pages load.
   await buildPages('check');
+  const list = join(out, packagesFile);
+  writeLicences(out, [...inServiceWorker, ...JSON.parse(readFileSync(list, 'utf8'))]);
+  rmSync(list);
   await precompress(out);
   writeFileSync(join(out, stampFile), hash);
 }

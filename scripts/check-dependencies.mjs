@@ -2,17 +2,9 @@
 // of what ships, and that docs/architecture.md gives a reason for each dependency.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { isPermissive, permissive } from './licences.mjs';
 import { readManifests } from './manifests.mjs';
 import { mainOf, root, SetupError } from './run-command.mjs';
-
-/** The licences that what ships may have. */
-const permissive = ['0BSD', 'Apache-2.0', 'BSD-2-Clause', 'BSD-3-Clause', 'BSL-1.0', 'ISC', 'MIT', 'Unlicense'];
-
-/** The licences of packages whose manifests name none of SPDX, as their licence files grant them. */
-const granted = { '@pmndrs/handle': 'MIT', '@pmndrs/pointer-events': 'MIT', 'xmlhttprequest-ssl': 'MIT' };
-
-const isPermissive = (license = '') =>
-  license.split(' OR ').some((choice) => choice.split(' AND ').every((part) => permissive.includes(part)));
 
 /** Returns the installed packages of a lock file, each with its name; links to this repository's packages are none. */
 const lockedPackages = ({ packages }) =>
@@ -26,7 +18,7 @@ function lockFaults(lock) {
     ...(resolved === undefined || resolved.startsWith('https://registry.npmjs.org/')
       ? []
       : [`package-lock.json fetches ${name} from ${resolved}, not from the registry`]),
-    ...(dev || isPermissive(granted[name] ?? license)
+    ...(dev || isPermissive(name, license)
       ? []
       : [`${name} ${version} ships with the licence ${license ?? '(none)'}, which is not among ${permissive}`]),
   ]);

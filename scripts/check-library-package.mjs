@@ -89,6 +89,17 @@ function licencePaths() {
     .map((path) => `LICENSE names ${path}, which is not there`);
 }
 
+/** Returns a message for each package of a bundled module, by the sources of the maps, that licences.txt lacks. */
+function missingLicences(folder) {
+  const named = readFileSync(join(folder, 'licences.txt'), 'utf8');
+  const maps = filesOf(folder).filter((file) => file.endsWith('.js.map'));
+  const sources = maps.flatMap((file) => JSON.parse(readFileSync(file, 'utf8')).sources);
+  const bundled = new Set(sources.flatMap((source) => /.*node_modules\/((?:@[^/]+\/)?[^/]+)/.exec(source)?.[1] ?? []));
+  return [...bundled]
+    .filter((name) => !named.includes(`\n${name} `))
+    .map((name) => `${relative(root, folder)}/licences.txt lacks ${name}`);
+}
+
 function missingFields(folder) {
   const manifest = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
   const needed = ['name', 'version', 'description', 'license', 'engines', 'sideEffects', 'exports', 'peerDependencies'];
@@ -136,7 +147,7 @@ async function lostWorker() {
 
 await main(async () => {
   const faults = [
-    ...packages.flatMap((folder) => [...deadLinks(folder), ...missingFields(folder)]),
+    ...packages.flatMap((folder) => [...deadLinks(folder), ...missingFields(folder), ...missingLicences(folder)]),
     ...faultyMaps(),
     ...missingMaps(),
     ...licencePaths(),

@@ -42,6 +42,14 @@ test.beforeAll(async () => {
 });
 test.afterAll(() => rmSync(out, { recursive: true, force: true }));
 
+test('the licences of the packages in pages, workers and the service worker are next to the page @full', async ({
+  page,
+}) => {
+  const text = await (await page.request.get('licences.txt')).text();
+  for (const name of ['three', 'onnxruntime-web', 'gltf-validator', 'workbox-precaching', 'iwer'])
+    expect(text).toMatch(new RegExp(`^${name} \\d`, 'm'));
+});
+
 test('the page draws the learned body, and the study pages say in a sentence that there is no server @full', async ({
   page,
   address,

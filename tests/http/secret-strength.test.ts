@@ -1,6 +1,6 @@
 import { randomBytes } from 'node:crypto';
-import { secretWeakness } from '../../src/http/secret-strength';
 import { expect, test } from 'vitest';
+import { secretWeakness } from '../../src/http/secret-strength';
 
 test('a secret of fewer than 32 characters is refused, with the command for another', () => {
   for (const secret of ['', 'secret', 'x'.repeat(31)]) {

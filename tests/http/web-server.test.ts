@@ -1,19 +1,17 @@
-import { fork } from 'node:child_process';
 import { X509Certificate } from 'node:crypto';
+import { once } from 'node:events';
 import { statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { join } from 'node:path';
-import { fileURLToPath } from 'node:url';
-import { createSitePolicy } from '../../src/http/site-policy';
-import { serve } from '../../src/http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
 import { lanAddresses } from '../../server/lan-addresses';
+import { createSitePolicy } from '../../src/http/site-policy';
+import { serve } from '../../src/http/web-server';
 import { hasFileModes, hasLoopbackNetwork } from '../platform';
-import { until } from '../rooms/server/running-relay';
-import { isAlive, kill } from '../server/child-process';
 import { ask } from '../server/running-server';
+import { forkServer } from '../server/server-child';
 import { directoryWith } from '../temporary-directory';
 
 const now = new Date();
@@ -36,16 +34,11 @@ describe('the port', () => {
   });
 
   test('where none is free, the server says so and its process ends', async () => {
-    const script = fileURLToPath(new URL('../server/unserved-process.ts', import.meta.url));
-    const child = fork(script, [directoryWith()], { execArgv: ['--import', 'tsx'], stdio: 'pipe' });
-    onTestFinished(() => kill(child));
-    let said = '';
-    child.stderr?.on('data', (text: Buffer) => {
-      said += text;
-    });
-    await until('the end of the process', () => !isAlive(child), 30);
-    expect(child.exitCode).toBe(1);
-    expect(said).toContain('are in use. Choose another');
+    const other = createServer().listen(65_535, '127.0.0.1');
+    // A port that another program has is taken as well.
+    await Promise.race([once(other, 'listening'), once(other, 'error')]);
+    onTestFinished(() => void other.close());
+    await expect(forkServer({}, { port: 65_535 })).rejects.toThrow(/ended with 1: .*are in use\. Choose another/);
   });
 
   test('is free again once the server has closed, even with a connection open', async () => {

@@ -1,7 +1,7 @@
 import { createEstimator, defaultCalibration } from 'threepoint/core';
 import { expect, test } from 'vitest';
 import { ArcheryPlay } from '../../src/page/archery/archery-play';
-import { collectGarbage } from '../collect-garbage';
+import { collectGarbage } from '../collect-garbage.mjs';
 import { isNightly } from '../nightly';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';

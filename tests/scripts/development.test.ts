@@ -2,13 +2,13 @@ import { join } from 'node:path';
 import { createServer } from 'vite';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { root } from '../../scripts/run-command.mjs';
-import { arrive, rawSocket, startRelay, tokenFor, until } from '../rooms/server/running-relay';
+import { arrive, rawSocket, tokenFor, until } from '../rooms/server/running-relay';
+import { forkServer } from '../server/server-child';
 
 /** Starts the server of `npm run dev` on a free port, in front of a relay of its own. Resolves to its origin. */
 async function startDevelopment(): Promise<string> {
-  const relay = await startRelay();
-  onTestFinished(() => relay.close());
-  vi.stubEnv('PORT', String(relay.port));
+  const { port } = await forkServer();
+  vi.stubEnv('PORT', String(port));
   const server = await createServer({
     root,
     configFile: join(root, 'vite.config.ts'),

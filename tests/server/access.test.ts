@@ -1,22 +1,21 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
-import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener } from 'node:http';
+import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
-import { ConnectionLimiter, createRouter, createSitePolicy, prepareServer } from 'threepoint-http';
-import { attachRooms, relayConfigurationFrom } from 'threepoint-rooms/server';
-import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
-import { shippedRoomKinds } from '../../server/room-kinds';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
+import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
+import { startServer as startFromSource } from '../../server/start-server';
 import { poseEvent } from '../../src/rooms/protocol/socket-parsers';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { begin } from '../../src/study/model/progress/progress';
 import { checkedRecord } from '../../src/study/model/records/study-record';
 import { openStudyStore } from '../../src/study/server/storage/study-store';
 import { reportFigures } from '../reliability/report-figures';
-import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from '../rooms/server/running-relay';
+import { poseBytes, rawGuest, rawSocket, tokenFor, until } from '../rooms/server/running-relay';
 import { guestOfTest } from '../rooms/server/until-finished';
 import { paperPlan, session } from '../study/model/studies';
-import { experimenter, now, studiesInThisThread, studySeats } from '../study/server/running-studies';
+import { studySeats } from '../study/server/running-studies';
 import { directoryWith } from '../temporary-directory';
 import { mannequin } from '../threepoint/avatar/glb';
 import {
@@ -30,16 +29,18 @@ import {
   socketRows,
   withLists,
 } from './access-rows';
+import { sharedServer } from './server-child';
+import { experimenterToken, startServer, testSecret } from './started-server';
 
 const adminToken = 'admin-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();
 const trial = { step: 'ball/1/trial-1', run: 1 };
-const page: RequestListener = (_request, response) => response.end('the page');
 
-/** The whole server behind a proxy, with a study in which P01 and P02 take part and P03's place is free. */
-async function wholeServer() {
-  const file = join(directoryWith(), 'studies.db');
-  const store = openStudyStore(file);
+/** Starts the server as behind a proxy, with a study in which P01 and P02 take part and P03's place is free. */
+async function startWithStudy() {
+  const server = await startServer({ THREEPOINT_TRUST_PROXY: '1', THREEPOINT_ADMIN_TOKEN: adminToken });
+  const store = openStudyStore(join(server.directory, 'studies/studies.db'));
+  const now = Date.now() / 1000;
   store.plans.add(plan, { simulated: false, at: now });
   const claims = { P01: store.places.claim('paper', 'P01', now), P02: store.places.claim('paper', 'P02', now) };
   const one = session(scheduleFor(plan, 'P01'));
@@ -47,37 +48,34 @@ async function wholeServer() {
   one.doUntil(({ kind }) => kind === 'end');
   const records = one.records.map((record) => checkedRecord(record, plan));
   store.records.store('paper', 'P01', records, now);
-  const environment = {
-    THREEPOINT_LOG_LEVEL: 'silent',
-    THREEPOINT_TRUST_PROXY: '1',
-    THREEPOINT_ADMIN_TOKEN: adminToken,
-  };
-  const configuration = relayConfigurationFrom(environment);
-  const connectionLimiter = new ConnectionLimiter({ perAddress: 100, behindProxy: true });
-  const studies = studiesInThisThread({ store, file });
-  const prepared = prepareServer(createRouter([studies], page, createSitePolicy(configuration)), { connectionLimiter });
-  const rooms = attachRooms(prepared.http, {
-    ...configuration,
-    secret: testSecret,
-    games: shippedRoomKinds(configuration),
-    monitoring: true,
-    connections: connectionLimiter,
-  });
-  const server = await prepared.listen({ host: '127.0.0.1', port: 0 });
-  onTestFinished(async () => {
-    await rooms.close();
-    await server.close();
-    store.close();
-  });
+  const placeOf = (name: string) => store.overview('paper', now).find(({ participant }) => participant === name);
   return {
     port: server.port,
-    routes: [...rooms.routes, ...studies.routes],
-    store,
-    claims,
     records,
+    claims,
+    invitation: placeOf('P03')?.invitation,
+    hasStudyAsBegun: () =>
+      store.places.holds('paper', 'P01', claims.P01.token) &&
+      store.places.holds('paper', 'P02', claims.P02.token) &&
+      placeOf('P03')?.claimed === false,
+    async stop() {
+      store.close();
+      await server.kill();
+    },
   };
 }
-type WholeServer = Awaited<ReturnType<typeof wholeServer>>;
+type WholeServer = Awaited<ReturnType<typeof startWithStudy>>;
+
+let current: WholeServer | null = null;
+afterAll(() => current?.stop());
+
+/** Returns the server of the last test, or a new one after a test that gave a place away or deleted it. */
+async function wholeServer(): Promise<WholeServer> {
+  if (current?.hasStudyAsBegun()) return current;
+  await current?.stop();
+  current = await startWithStudy();
+  return current;
+}
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },
@@ -126,11 +124,11 @@ function headersOf(role: HttpRole, { port, claims }: WholeServer): OutgoingHttpH
   const headers: Record<HttpRole, OutgoingHttpHeaders> = {
     stranger: { host },
     network: { host: `192.168.7.20:${port}`, origin: `http://192.168.7.20:${port}` },
-    otherSite: { host, origin: 'http://evil.example', ...bearer(experimenter) },
-    pointedHere: { host: `evil.example:${port}`, origin: `http://evil.example:${port}`, ...bearer(experimenter) },
+    otherSite: { host, origin: 'http://evil.example', ...bearer(experimenterToken) },
+    pointedHere: { host: `evil.example:${port}`, origin: `http://evil.example:${port}`, ...bearer(experimenterToken) },
     participant: { host, origin: `http://${host}`, ...bearer(claims.P01.token) },
     otherParticipant: { host, origin: `http://${host}`, ...bearer(claims.P02.token) },
-    experimenter: { host, origin: `http://${host}`, ...bearer(experimenter) },
+    experimenter: { host, origin: `http://${host}`, ...bearer(experimenterToken) },
   };
   return { ...from, ...headers[role] };
 }
@@ -144,7 +142,18 @@ const count = (asExpected: boolean): void => {
 afterAll(() => reportFigures('access', { cells, 'cells that differ from docs/security.md': differing }));
 
 test('every route of the server has a row, and every row a route', async () => {
-  const { routes } = await wholeServer();
+  // From its sources: the built server does not list its routes.
+  const { routes, close } = await startFromSource({
+    pageDirectory: directoryWith({ 'index.html': 'the page' }),
+    studyDirectory: directoryWith(),
+    experimenterToken,
+    relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
+    secret: testSecret,
+    host: '127.0.0.1',
+    port: 0,
+    log: (line) => expect(line).toBeNull(),
+  });
+  onTestFinished(close);
   const known = routes.map(({ method, path }) => `${method} ${path}`);
   expect(Object.keys(httpRows).toSorted()).toEqual([...known, 'GET /'].toSorted());
   reportFigures('access', { 'routes and messages': known.length + Object.keys(socketRows).length });
@@ -215,7 +224,7 @@ describe.each(Object.entries(httpRows))('%s', (name, row) => {
       return;
     }
     const secrets = {
-      invited: { headers: { host }, json: { invitation: server.store.overview('paper', now)[2]?.invitation } },
+      invited: { headers: { host }, json: { invitation: server.invitation } },
       withdrawing: { headers: { host }, json: { code: server.claims.P01.withdrawalCode } },
       admin: { headers: { host, authorization: `Bearer ${adminToken}` }, json: row.json },
       'this machine': { headers: { host }, json: undefined },
@@ -228,11 +237,7 @@ describe.each(Object.entries(httpRows))('%s', (name, row) => {
 });
 
 describe('a message to a room', () => {
-  let relay: Awaited<ReturnType<typeof startRelay>>;
-  beforeAll(async () => {
-    relay = await startRelay();
-  });
-  afterAll(() => relay.close());
+  const relay = sharedServer();
 
   /** What rooms refused so far, by reason. */
   async function refusals(): Promise<ReadonlyMap<string, number>> {

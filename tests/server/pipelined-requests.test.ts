@@ -5,10 +5,9 @@ import { expect, test } from 'vitest';
 import { isNightly } from '../nightly';
 import { reportFigures } from '../reliability/report-figures';
 import { paperPlan } from '../study/model/studies';
-import { directoryWith } from '../temporary-directory';
-import { runBuiltServer } from './built-process';
 import { answered, type Pipeline, type PipelinedRequest, pipelines } from './request-pipelines';
-import { experimenterToken } from './server-child';
+import { forkServer } from './server-child';
+import { experimenterToken } from './started-server';
 
 const atOnce = 60;
 const answersWanted = isNightly ? 1_000_000 : 4000;
@@ -97,8 +96,8 @@ test('every request of a pipeline gets its own answer in its turn, and the built
   tags: ['full'],
   timeout: 7_200_000,
 }, async () => {
-  const server = await runBuiltServer(directoryWith());
-  const added = await fetch(`${server.origin}/api/studies`, {
+  const server = await forkServer();
+  const added = await fetch(`${server.url}/api/studies`, {
     method: 'POST',
     headers: { 'content-type': 'application/json', authorization: `Bearer ${experimenterToken}` },
     body: JSON.stringify({ plan: paperPlan(), simulated: true }),

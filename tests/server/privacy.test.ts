@@ -7,9 +7,9 @@ import { openStudyStore } from '../../src/study/server/storage/study-store';
 import { reportFigures } from '../reliability/report-figures';
 import { fists, releaseOf } from '../rooms/client/people';
 import { createTestRoom } from '../rooms/room/test-room';
-import { arrive, startRelay, until } from '../rooms/server/running-relay';
+import { arrive, until } from '../rooms/server/running-relay';
 import { paperPlan, session } from '../study/model/studies';
-import { directoryWith } from '../temporary-directory';
+import { forkServer } from './server-child';
 
 /** Every file below a directory, of any name. */
 const filesIn = (directory: string): Buffer[] =>
@@ -23,15 +23,9 @@ const motionFields = /"(leftHand|rightHand|localRotations|hipsPosition|orientati
 test('a match over sockets and a study without consent to motion leave no motion on the disk', {
   tags: ['full'],
 }, async () => {
-  const directory = directoryWith();
-  const file = join(directory, 'studies.db');
-  const store = openStudyStore(file);
-  let open = true;
-  onTestFinished(() => {
-    if (open) store.close();
-  });
-  const relay = await startRelay();
-  const people = ['Ann', 'Ben'].map((name) => arrive(relay.url, 'ball-privacy', name));
+  const server = await forkServer();
+  const { directory } = server;
+  const people = ['Ann', 'Ben'].map((name) => arrive(server.url, 'ball-privacy', name));
   await until('both are seated', () => people.every(({ connection }) => connection.room?.mySeat != null));
   const before = filesIn(directory).map(({ length }) => length);
   const heard = people.map(({ poses }) => poses.length);
@@ -43,8 +37,13 @@ test('a match over sockets and a study without consent to motion leave no motion
     'playing writes nothing',
   ).toEqual(before);
   for (const person of people) person.stop();
-  await relay.close();
 
+  const file = join(directory, 'studies/studies.db');
+  const store = openStudyStore(file);
+  let open = true;
+  onTestFinished(() => {
+    if (open) store.close();
+  });
   const now = 1_800_000_000;
   store.plans.add(paperPlan(), { simulated: false, at: now });
   const schedule = scheduleFor(paperPlan(), 'P01');

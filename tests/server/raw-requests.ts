@@ -1,11 +1,9 @@
 import { METHODS } from 'node:http';
 import fc from 'fast-check';
-import { experimenterToken, type ServerHello } from './server-child';
+import { experimenterToken } from './started-server';
 
 // Requests as bytes, by a grammar of what is right and what is not: each part is right more often than not, so that
 // what is wrong is met behind every check, and not only at the first.
-
-type RouteLine = ServerHello['routes'][number];
 
 const usually = <T>(right: fc.Arbitrary<T>, wrong: fc.Arbitrary<T>): fc.Arbitrary<T> =>
   fc.oneof({ arbitrary: right, weight: 8 }, { arbitrary: wrong, weight: 1 });
@@ -161,13 +159,12 @@ function framed(body: string, framing: Framing): [string[], string] {
   return [['Transfer-Encoding: chunked'], bytes > 0 ? `${size}\r\n${body}\r\n0\r\n\r\n` : '0\r\n\r\n'];
 }
 
-/** A request as it goes over the wire: to a route of these, or past all of them. */
-export function rawRequests(routes: readonly RouteLine[]): fc.Arbitrary<Buffer> {
+/** A request as it goes over the wire: to one of these routes ("GET /:name"), or past all of them. */
+export function rawRequests(routes: readonly string[]): fc.Arbitrary<Buffer> {
   const right = fc
     .constantFrom(...routes)
-    .chain(({ method, path }) =>
-      fc.tuple(usually(fc.constant<string>(method), fc.constantFrom(...METHODS)), filled(path)),
-    );
+    .map((route) => route.split(' ') as [string, string])
+    .chain(([method, path]) => fc.tuple(usually(fc.constant(method), fc.constantFrom(...METHODS)), filled(path)));
   const wrong = fc.tuple(
     fc.oneof(fc.constantFrom(...METHODS), fc.constantFrom('get', 'PRI', '', 'G\u0000T'), fc.string({ maxLength: 10 })),
     fc.oneof(junk, fc.string({ maxLength: 60 })),

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { experimenterToken } from './server-child';
+import { experimenterToken } from './started-server';
 
 // Pipelines of requests over one connection, each with the answer that it must get: requests that Node hands over
 // (upgrades, tunnels), that the parser refuses, slow ones, and ordinary ones before and after them.

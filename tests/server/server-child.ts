@@ -1,66 +1,29 @@
-import { type ChildProcess, spawn } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import { onTestFinished } from 'vitest';
-import { directoryWith } from '../temporary-directory';
-import { isAlive, kill, messageFrom } from './child-process';
+import { afterAll, beforeAll, onTestFinished } from 'vitest';
+import { kill, messageFrom } from './child-process';
+import { type StartedServer, startServer } from './started-server';
 
-/** What the process says once it serves. */
-export interface ServerHello {
-  readonly port: number;
-  readonly routes: readonly { readonly method: string; readonly path: string }[];
+/** Starts the server in a process of its own, until the test is over. */
+export async function forkServer(...parameters: Parameters<typeof startServer>): Promise<StartedServer> {
+  const server = await startServer(...parameters);
+  onTestFinished(server.kill);
+  return server;
 }
 
-/** What the process reports of itself. */
-export interface ServerState {
-  readonly faults: readonly string[];
-  /** Every line of the log, faults included. */
-  readonly lines: readonly string[];
-  readonly rssBytes: number;
-  /** Delay of the event loop since the last report [ms]; the first report begins the measurement. */
-  readonly loop: { readonly p99Ms: number; readonly maxMs: number };
-}
-
-export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
-
-interface ForkOptions {
-  /** Holds the page and the studies; default: a new one that goes with the test. */
-  readonly directory?: string;
-  /** A program, with its arguments, that runs the server as its child. */
-  readonly through?: readonly string[];
-}
-
-/** The page, the studies and the relay in a process of their own, until the test is over. */
-export async function forkServer(
-  environment: Readonly<Record<string, string>> = {},
-  { directory = directoryWith(), through = [] }: ForkOptions = {},
-) {
-  const script = fileURLToPath(new URL('./server-process.ts', import.meta.url));
-  const [command, ...words] = [...through, process.execPath, '--import', 'tsx', script, directory];
-  const child: ChildProcess = spawn(command as string, words, {
-    stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
-    env: {
-      ...process.env,
-      EXPERIMENTER_TOKEN: experimenterToken,
-      THREEPOINT_LOG_LEVEL: 'silent',
-      ...environment,
-    },
+/** Starts a server for all tests of this file or `describe`. It must be read inside of tests. */
+export function sharedServer(...parameters: Parameters<typeof startServer>): Pick<StartedServer, 'port' | 'url'> {
+  let server: StartedServer;
+  beforeAll(async () => {
+    server = await startServer(...parameters);
   });
-  onTestFinished(() => kill(child));
-  const { port, routes } = await messageFrom<ServerHello>(child);
+  afterAll(() => server.kill());
   return {
-    port,
-    routes,
-    directory,
-    url: `http://127.0.0.1:${port}`,
-    isAlive: () => isAlive(child),
-    /** Moves the clock of the server, and of nothing else, to this far from the machine's [s]. */
-    async setClock(ahead: number) {
-      child.send({ ahead });
-      await messageFrom(child);
+    get port() {
+      return server.port;
     },
-    async inspect() {
-      child.send('inspect');
-      return messageFrom<ServerState>(child);
+    get url() {
+      return server.url;
     },
   };
 }

@@ -1,4 +1,4 @@
-import type { BuiltInBody, Calibration, Pointer, PageClock } from 'threepoint/core';
+import type { BuiltInBody, Calibration, PageClock, Pointer } from 'threepoint/core';
 import type { Pose, Ray, Side } from 'threepoint/math';
 import type { OwnAvatar } from 'threepoint-rooms';
 import type { StudyRun, TaskPlace } from 'threepoint-study/participant';

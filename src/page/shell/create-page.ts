@@ -1,7 +1,7 @@
 import type { Object3D } from 'three';
-import { sides } from 'threepoint/math';
 import { TrackingDegradation } from 'threepoint/core';
-import { pageElement, createMouseAim, pageFolder, ServerPresence } from 'threepoint-ui';
+import { sides } from 'threepoint/math';
+import { createMouseAim, pageElement, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createActor } from '../emulator/actor';
 import { OfflineCopy } from '../offline/offline-copy';
 import { uploadToGpu } from '../scene/gpu-upload';

@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core';
-import { button, element, chooser, pageFolder, ServerPresence } from 'threepoint-ui';
+import { button, chooser, element, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
 import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
 

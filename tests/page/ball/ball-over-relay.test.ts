@@ -11,22 +11,16 @@ import {
 } from 'threepoint/core';
 import { distance, type Vec3 } from 'threepoint/math';
 import { ballClientPolicy } from 'threepoint-games/ball';
-import { afterAll, expect, test } from 'vitest';
+import { expect, onTestFinished, test } from 'vitest';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { createRoomPass } from '../../../src/rooms/client/room-pass';
 import { SocketConnection } from '../../../src/rooms/client/socket-connection';
-import { type RunningRelay, startRelay } from '../../rooms/server/running-relay';
+import { forkServer } from '../../server/server-child';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 const released: Buttons = { left: allReleased, right: allReleased };
-const closing: (() => Promise<void>)[] = [];
-
-afterAll(async () => {
-  for (const close of closing.reverse()) await close();
-});
-
-const startServer = (seconds: number, port = 0): Promise<RunningRelay> =>
-  startRelay({ THREEPOINT_BALL_SECONDS: String(seconds), THREEPOINT_ORIGINS: 'http://ball.test' }, port);
+const serverOfRounds = (seconds: number, port = 0) =>
+  forkServer({ THREEPOINT_BALL_SECONDS: String(seconds), THREEPOINT_ORIGINS: 'http://ball.test' }, { port });
 
 interface Person {
   readonly play: BallPlay;
@@ -49,7 +43,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
   const estimator = createEstimator('ik', defaultCalibration);
   const elbows = new Map<number, number>();
   const before = new Map<number, Vec3>();
-  closing.push(async () => play.leave());
+  onTestFinished(() => play.leave());
   return {
     play,
     elbows,
@@ -88,8 +82,7 @@ async function until(
 }
 
 test('three people over the real relay play, see each other’s elbows move and agree; one watches, one comes late', async () => {
-  const server = await startServer(14);
-  closing.push(server.close);
+  const server = await serverOfRounds(14);
   const players = ['ann', 'ben', 'cal'].map((name) => comeIn(server.port, name));
   const watcher = comeIn(server.port, 'dora', { spectate: true });
   const all = [...players, watcher];
@@ -125,16 +118,13 @@ test('three people over the real relay play, see each other’s elbows move and 
 }, 120_000);
 
 test('the relay dies in the middle of a match and comes back: the same page is in the room again, the round is void', async () => {
-  const first = await startServer(40);
-  closing.push(first.close);
+  const first = await serverOfRounds(40);
   const { port } = first;
   const ann = comeIn(port, 'ann', { bots: true });
   await until([ann], () => (ann.play.probe()?.ballsLeft ?? 20) < 20, 40, 'a ball is thrown');
-  await first.close();
-  closing.length = 0;
+  await first.kill();
   await until([ann], () => ann.play.status.phase === 'reconnecting', 10, 'the page notices');
-  const second = await startServer(40, port);
-  closing.push(second.close);
+  await serverOfRounds(40, port);
   const back = performance.now();
   await until([ann], () => ann.play.status.phase === 'joined', 20, 'back in the room');
   console.log(`back in the room ${((performance.now() - back) / 1000).toFixed(1)} s after the restart`);

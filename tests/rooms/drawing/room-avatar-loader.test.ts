@@ -4,7 +4,7 @@ import { type AvatarHash, TransientError } from 'threepoint/core';
 import { expect, onTestFinished, test } from 'vitest';
 import type { AvatarExchange } from '../../../src/rooms/client/avatar-exchange';
 import { RoomAvatarLoader } from '../../../src/rooms/drawing/room-avatar-loader';
-import { collectGarbage } from '../../collect-garbage';
+import { collectGarbage } from '../../collect-garbage.mjs';
 import { answeringHost } from '../client/answering-host';
 
 const hash = createHash('sha256').update('an avatar').digest('base64url') as AvatarHash;

@@ -1,17 +1,17 @@
 import { setTimeout as after } from 'node:timers/promises';
 import fc from 'fast-check';
 import { ballKind } from 'threepoint-games/ball';
-import { expect, onTestFinished, test } from 'vitest';
+import { expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
-import { isAlive } from '../../server/child-process';
+import { forkServer } from '../../server/server-child';
+import { testSecret } from '../../server/started-server';
 import { noPackets } from '../protocol/no-packets';
 import { joinMessage } from '../room/test-room';
 import { conversations, type WireFrame } from './packets';
-import { forkRelay } from './relay-child';
-import { testSecret, until } from './running-relay';
+import { until } from './running-relay';
 import { guestOfTest } from './until-finished';
 
 const atOnce = 20;
@@ -55,12 +55,11 @@ async function converse(url: string, stage: (typeof stages)[number], frames: rea
 }
 
 test('what is no packet ends the connection that sends it, and nothing else', async () => {
-  const relay = await forkRelay();
-  onTestFinished(() => relay.kill());
+  const relay = await forkServer();
   const witness = await guestOfTest(relay.url, 'hostile');
   for (const packet of noPackets) {
     await Promise.all(stages.map((stage) => converse(relay.url, stage, [`4${packet}`])));
-    expect(isAlive(relay.child), packet).toBe(true);
+    expect(relay.isAlive(), packet).toBe(true);
   }
   witness.say({ type: 'ping', sent: 0 });
   await until('the answer to another', () => witness.heard.some(({ type }) => type === 'pong'));
@@ -72,8 +71,7 @@ test('the relay keeps running and answers the others, whatever a client sends ov
   timeout: 1_800_000,
 }, async () => {
   // Budgets would keep most of it from the rooms.
-  const relay = await forkRelay({ THREEPOINT_EVENTS_PER_SECOND: '200', THREEPOINT_POSES_PER_SECOND: '200' });
-  onTestFinished(() => relay.kill());
+  const relay = await forkServer({ THREEPOINT_EVENTS_PER_SECOND: '200', THREEPOINT_POSES_PER_SECOND: '200' });
   const witness = await guestOfTest(relay.url, 'hostile');
   const pongs = () => witness.heard.filter(({ type }) => type === 'pong').length;
   const waits: number[] = [];
@@ -84,7 +82,7 @@ test('the relay keeps running and answers the others, whatever a client sends ov
     await Promise.all(batch.map((frames, i) => converse(relay.url, stages[i % stages.length]!, frames)));
     sent += batch.reduce((sum, frames) => sum + frames.length, 0);
     talks += batch.length;
-    expect(isAlive(relay.child), `seed ${seed}`).toBe(true);
+    expect(relay.isAlive(), `seed ${seed}`).toBe(true);
     const before = pongs();
     const asked = performance.now();
     witness.say({ type: 'ping', sent: seed });
@@ -98,7 +96,7 @@ test('the relay keeps running and answers the others, whatever a client sends ov
   reportFigures('any-packet', {
     frames: sent,
     connections: talks,
-    'processes ended': isAlive(relay.child) ? 0 : 1,
+    'processes ended': relay.isAlive() ? 0 : 1,
     'longest wait of another for an answer [ms]': Math.max(...waits),
   });
 });

@@ -1,4 +1,5 @@
 // @module-tag full
+
 import { type ChildProcess, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import type { AddressInfo } from 'node:net';
@@ -8,8 +9,8 @@ import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { isNightly } from '../../nightly';
 import { printFigures } from '../../print-figures';
 import { installed } from '../../server/installed';
-import { forkRelay } from './relay-child';
-import { arrive, pause, testSecret, until } from './running-relay';
+import { type StartedServer, startServer } from '../../server/started-server';
+import { arrive, pause, until } from './running-relay';
 
 const programs = { haproxy: installed('haproxy'), redis: installed('redis-server') };
 const missing = Object.values(programs).includes(null);
@@ -70,13 +71,51 @@ async function metric(url: string, name: string): Promise<number> {
   return Number(new RegExp(`^${name} (\\S+)$`, 'm').exec(text)?.[1] ?? Number.NaN);
 }
 
+const head = (line: string, ...headers: readonly string[]): string =>
+  [`${line} HTTP/1.1`, 'Host: localhost', ...headers, '', ''].join('\r\n');
+const offer = (protocol: string): string[] => ['Connection: Upgrade', `Upgrade: ${protocol}`];
+const body = '{"kind":"ball"}';
+
+/** Requests that follow each other on one connection, each with the status of its answer. */
+const pipelined: readonly (readonly [request: string, status: string])[] = [
+  [head('GET /'), '200'],
+  [head('GET /%'), '400'],
+  [head('GET /api/rooms', ...offer('h2c'), 'HTTP2-Settings: AAMAAABkAAQAAP__'), '200'],
+  [head('POST /api/rooms/match', 'Content-Type: application/json', `Content-Length: ${body.length}`) + body, '200'],
+  [head('GET /api/studies/%/records'), '400'],
+  [head('GET /', ...offer('nothing/1')), '200'],
+  [head('GET /relay/'), '426'],
+  [head('HEAD /'), '200'],
+  [head('GET /absent'), '404'],
+];
+const webSocket = head(
+  'GET /relay/?EIO=4&transport=websocket&room=pipeline',
+  ...offer('websocket'),
+  'Sec-WebSocket-Version: 13',
+  'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==',
+);
+
+/** Sends these requests at once on one connection, and resolves to the statuses of the answers. */
+async function statusesOf(url: string, requests: readonly string[]): Promise<readonly string[]> {
+  const socket = connect(Number(new URL(url).port), '127.0.0.1');
+  let text = '';
+  const statuses = () => [...text.matchAll(/HTTP\/1\.1 (\d{3}) /g)].map(([, status]) => status as string);
+  socket.setEncoding('latin1').on('data', (chunk: string) => {
+    text += chunk;
+  });
+  socket.write(requests.join(''));
+  await until(`${requests.length} answers`, () => statuses().length >= requests.length || socket.closed, 120);
+  socket.destroy();
+  return statuses();
+}
+
 // Programs of the distribution, not ours to install: apt-get install haproxy redis-server
 describe.skipIf(missing)(
   `two relay processes, Redis and a proxy${missing ? ' (haproxy or redis-server is not installed)' : ''}`,
   () => {
     let redis: ChildProcess | null = null;
     let redisPort = 0;
-    let relays: Awaited<ReturnType<typeof forkRelay>>[] = [];
+    let relays: StartedServer[] = [];
     let proxies: { readonly url: string; readonly process: ChildProcess }[] = [];
     let people: ReturnType<typeof arrive>[] = [];
     const rooms = ['amber', 'birch', 'cedar', 'daisy', 'elder', 'fern'];
@@ -85,13 +124,12 @@ describe.skipIf(missing)(
       redisPort = await freePort();
       redis = await startRedis(redisPort);
       const environment = {
-        THREEPOINT_SECRET: testSecret,
         THREEPOINT_REDIS_URL: `redis://127.0.0.1:${redisPort}`,
         THREEPOINT_TRUST_PROXY: '1',
         THREEPOINT_JOINS_PER_MINUTE: '1000',
         THREEPOINT_ADMIN_TOKEN: adminToken,
       };
-      relays = [await forkRelay(environment), await forkRelay(environment)];
+      relays = await Promise.all([1, 2].map(() => startServer(environment)));
       proxies = await Promise.all(
         [0, 1].map(async () => {
           const port = await freePort();
@@ -170,6 +208,27 @@ describe.skipIf(missing)(
       for (const { room } of guests) expect((await end(room, adminToken)).status).toBe(200);
       await until('all out', () => guests.every(({ person }) => person.connection.status.reason === 'closed'));
       for (const { person } of guests) person.stop();
+    });
+
+    test('requests on one connection, offers of upgrades among them, are answered in their turn through the proxy', async () => {
+      const requests = [
+        ...Array.from({ length: isNightly ? 100 : 5 }, () => pipelined).flat(),
+        [webSocket, '101'] as const,
+      ];
+      const connections = isNightly ? 50 : 20;
+      const answers = await Promise.all(
+        Array.from({ length: connections }, (_, i) =>
+          statusesOf(
+            proxies[i % 2]!.url,
+            requests.map(([request]) => request),
+          ),
+        ),
+      );
+      for (const statuses of answers) expect(statuses).toEqual(requests.map(([, status]) => status));
+      expect(relays.map((relay) => relay.isAlive())).toEqual([true, true]);
+      expect(relays.map((relay) => relay.errors())).toEqual(['', '']);
+      expect(people.every(({ connection }) => connection.status.phase === 'joined')).toBe(true);
+      printFigures('pipelines through the proxy', { connections, answers: answers.flat().length });
     });
 
     test('without Redis every room goes on, and the lobby says that it is not complete', async () => {

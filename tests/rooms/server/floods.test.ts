@@ -1,12 +1,21 @@
 import { expect, onTestFinished, test } from 'vitest';
 import type { WebSocket } from 'ws';
 import { lobbyNamespace } from '../../../src/rooms/server/lobby/lobby-publisher';
+import { sharedServer } from '../../server/server-child';
 import { joinMessage } from '../room/test-room';
 import { type rawGuest, until } from './running-relay';
 import { guestOfTest, relayOfTest, socketOfTest } from './until-finished';
 
 /** More than any connection may send at once, by far. */
 const frames = 2000;
+
+const relay = sharedServer();
+
+/** Returns how many were thrown out for this reason. */
+async function kicks(url: string, reason: string): Promise<number> {
+  const metrics = await (await fetch(`${url}/metrics`)).text();
+  return Number(new RegExp(`^threepoint_kicks_total\\{reason="${reason}"\\} (\\d+)$`, 'm').exec(metrics)?.[1] ?? 0);
+}
 
 /** A connection of a page that shows no pass: it receives the list of rooms and has no place in any. */
 async function stranger(url: string): Promise<WebSocket> {
@@ -29,7 +38,7 @@ test.each<[what: string, send: (socket: WebSocket) => void]>([
 ])(
   'a stranger who floods the relay with %s is thrown out, and a guest beside them is still answered',
   async (_, send) => {
-    const relay = await relayOfTest();
+    const before = await kicks(relay.url, 'flood');
     const guest = await guestOfTest(relay.url, 'beside');
     const socket = await stranger(relay.url);
     let closed = false;
@@ -41,7 +50,7 @@ test.each<[what: string, send: (socket: WebSocket) => void]>([
     guest.say({ type: 'ping', sent: 0 });
     await until('the answer to another', () => guest.heard.some(({ type }) => type === 'pong'));
     expect(guest.closedAt).toBeNull();
-    expect(await (await fetch(`${relay.url}/metrics`)).text()).toContain('threepoint_kicks_total{reason="flood"} 1');
+    expect(await kicks(relay.url, 'flood')).toBe(before + 1);
   },
 );
 
@@ -50,7 +59,6 @@ const seatsOf = (heard: Awaited<ReturnType<typeof rawGuest>>['heard']) =>
   heard.flatMap((message) => (message.type === 'seat' && message.seat === 1 && message.info ? [message.info] : []));
 
 test('a guest whose packets are none that the rooms count is told that it misbehaves', async () => {
-  const relay = await relayOfTest();
   const guest = await guestOfTest(relay.url, 'acknowledging');
   const { engine } = guest.socket.io;
   for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
@@ -59,7 +67,6 @@ test('a guest whose packets are none that the rooms count is told that it misbeh
 });
 
 test('a guest who joins a thousand times a second under other names is thrown out, and the others know the first one', async () => {
-  const relay = await relayOfTest();
   const witness = await guestOfTest(relay.url, 'names');
   const guest = await guestOfTest(relay.url, 'names');
   const started = performance.now();
@@ -72,7 +79,6 @@ test('a guest who joins a thousand times a second under other names is thrown ou
 });
 
 test('a guest who has left the rooms and floods the relay is thrown out too', async () => {
-  const relay = await relayOfTest();
   const guest = await guestOfTest(relay.url, 'leaving');
   const { engine } = guest.socket.io;
   engine.write('1["/"]');
@@ -84,22 +90,22 @@ test('a guest who has left the rooms and floods the relay is thrown out too', as
 const longList = Array.from({ length: 600 }, (_, i) => ({ room: `a-room-of-the-fleet-${i}`, kind: 'ball', free: 3 }));
 
 test('a listener of the lobby who answers pings and reads nothing is thrown out', async () => {
-  const relay = await relayOfTest();
-  const guest = await guestOfTest(relay.url, 'beside');
-  const socket = await stranger(relay.url);
+  // In this process: only the lobby of a large fleet sends so much.
+  const inProcess = await relayOfTest();
+  const guest = await guestOfTest(inProcess.url, 'beside');
+  const socket = await stranger(inProcess.url);
   socket.pause();
   const answering = setInterval(() => socket.send('3'), 500);
   onTestFinished(() => clearInterval(answering));
-  const hall = relay.relay.io.of(lobbyNamespace);
+  const hall = inProcess.relay.io.of(lobbyNamespace);
   const changing = setInterval(() => hall.local.emit('node', { node: 'one', rooms: longList }), 5);
   onTestFinished(() => clearInterval(changing));
-  await until('the end of the one who reads nothing', () => relay.relay.census.sockets === 1, 15);
+  await until('the end of the one who reads nothing', () => inProcess.relay.census.sockets === 1, 15);
   expect(guest.closedAt).toBeNull();
-  expect(await (await fetch(`${relay.url}/metrics`)).text()).toContain('threepoint_kicks_total{reason="slow"} 1');
+  expect(await kicks(inProcess.url, 'slow')).toBe(1);
 });
 
 test('a connection is sent the list of rooms once: who asks for it again is thrown out', async () => {
-  const relay = await relayOfTest();
   const socket = await stranger(relay.url);
   const ended = new Promise((resolve) => socket.once('close', resolve));
   socket.send('41["/lobby"]');

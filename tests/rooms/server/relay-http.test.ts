@@ -1,16 +1,14 @@
 import { SignJWT } from 'jose';
 import { clientAddressOf } from 'threepoint-http';
+import { describe, expect, test } from 'vitest';
 import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
 import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { type RunningRelay, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { forkServer, sharedServer } from '../../server/server-child';
+import { testSecret } from '../../server/started-server';
+import { rawSocket, tokenFor, until } from './running-relay';
 import { guestOfTest } from './until-finished';
 
-let server: RunningRelay;
-beforeAll(async () => {
-  server = await startRelay({ THREEPOINT_TRUST_PROXY: '1' });
-});
-afterAll(() => server.close());
+const server = sharedServer({ THREEPOINT_TRUST_PROXY: '1' });
 
 const post = (path: string, body: unknown, headers: Record<string, string> = {}) =>
   fetch(`${server.url}${path}`, {
@@ -129,7 +127,6 @@ describe('the relay over HTTP', () => {
     const found = async () => (await post('/api/rooms/match', { kind: 'ball' })).json();
     expect(await found()).toMatchObject({ found: false });
     await guestOfTest(server.url, 'meadow');
-    await until('the lobby to know', () => server.relay.rooms.listings.length === 1);
     await expect.poll(found).toEqual({ room: 'meadow', found: true });
   });
 });
@@ -169,9 +166,9 @@ describe('connecting', () => {
 });
 
 test('a relay that stops says so', async () => {
-  const stopping = await startRelay();
+  const stopping = await forkServer();
   const guest = await guestOfTest(stopping.url, 'dusk');
-  await stopping.close();
+  stopping.stop();
   await until('the end', () => guest.closedAt !== null);
   expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'stopping' });
 });

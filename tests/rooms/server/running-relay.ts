@@ -12,6 +12,7 @@ import { maxSeats, type RoomTerms } from '../../../src/rooms/protocol/messages';
 import { messageEvent, pageParser } from '../../../src/rooms/protocol/socket-parsers';
 import { createRelay } from '../../../src/rooms/server/relay';
 import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
+import { testSecret } from '../../server/started-server';
 import { createPerson, visitor } from '../client/people';
 import { countingKind, countingPolicy } from '../room/counting-game';
 import { poseOf } from '../room/posed-head';
@@ -19,8 +20,6 @@ import { joinMessage } from '../room/test-room';
 
 /** Rooms whose names begin so are of the tests' own game, with as many seats as there may be. */
 const kindOf = (room: string): string => (room.startsWith(countingKind) ? countingKind : ballKind);
-
-export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 
 /** A relay of this process on a free port of loopback. */
 export async function startRelay(environment: Record<string, string> = {}, port = 0) {

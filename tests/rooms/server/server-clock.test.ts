@@ -1,7 +1,8 @@
 import { expect, onTestFinished, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { reportFigures } from '../../reliability/report-figures';
-import { experimenterToken, forkServer } from '../../server/server-child';
+import { forkServer } from '../../server/server-child';
+import { experimenterToken } from '../../server/started-server';
 import { paperPlan, session } from '../../study/model/studies';
 import { fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, tokenFor, until } from './running-relay';

@@ -1,10 +1,11 @@
 import { createHmac } from 'node:crypto';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import type { SignalBody } from '../../../src/rooms/protocol/voice-messages';
 import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
+import { forkServer, sharedServer } from '../../server/server-child';
 import { paperPlan } from '../../study/model/studies';
 import { studySeats } from '../../study/server/running-studies';
-import { type RunningRelay, startRelay, tokenFor, until } from './running-relay';
+import { tokenFor, until } from './running-relay';
 import { guestOfTest, personOfTest, relayOfTest } from './until-finished';
 
 const offer: SignalBody = { description: { type: 'offer', sdp: 'v=0\r\n' } };
@@ -28,11 +29,7 @@ async function refusals(url: string, reason: string): Promise<number> {
   return [...lines].reduce((sum, [, why, count]) => sum + (why === reason ? Number(count) : 0), 0);
 }
 
-let server: RunningRelay;
-beforeAll(async () => {
-  server = await startRelay({ THREEPOINT_EVENTS_PER_SECOND: '200' });
-});
-afterAll(() => server.close());
+const server = sharedServer({ THREEPOINT_EVENTS_PER_SECOND: '200' });
 
 /** Two people on their seats, both among the voices. */
 async function twoTalkers(room: string) {
@@ -151,7 +148,7 @@ describe('the voices of a room', () => {
 
 describe('a server without voices', () => {
   test('says so, and refuses to take part', async () => {
-    const silent = await startRelay({ THREEPOINT_VOICES: 'off' });
+    const silent = await forkServer({ THREEPOINT_VOICES: 'off' });
     const ann = talker(silent.url, 'silent', 'Ann');
     await until('ann in', () => ann.connection.room !== null);
     ann.connection.voices.setVoice({ session: 'annas-page', muted: false });
@@ -163,10 +160,10 @@ describe('a server without voices', () => {
   });
 
   test('a room with more seats than a page can have connections has none either', async () => {
-    const guest = await guestOfTest(server.url, 'counting');
-    const before = await refusals(server.url, 'no-voices');
+    const relay = await relayOfTest();
+    const guest = await guestOfTest(relay.url, 'counting');
     guest.say({ type: 'voice', voice: { session: 'raws-page', muted: true } });
-    await expect.poll(() => refusals(server.url, 'no-voices')).toBe(before + 1);
+    await expect.poll(() => refusals(relay.url, 'no-voices')).toBe(1);
   });
 
   test('the room of a study has none, also for a page that asks for them while joining', async () => {
@@ -180,7 +177,7 @@ describe('a server without voices', () => {
 
 describe('how pages find each other', () => {
   test('by the servers that the environment names; a pass to TURN is good for four hours and tells no name', async () => {
-    const relayed = await relayOfTest({
+    const relayed = await forkServer({
       THREEPOINT_STUN: 'stun:stun.example.org:3478',
       THREEPOINT_TURN: 'turn:turn.example.org:3478?transport=udp, turns:turn.example.org:5349',
       THREEPOINT_TURN_SECRET: turnSecret,

@@ -1,34 +1,21 @@
 import { defaultAvatar } from 'threepoint/core';
-import { relayConfigurationFrom } from 'threepoint-rooms/server';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { startServer } from '../../../server/start-server';
 import { assignedSeat } from '../../../src/page/ball/match/ball-connections';
 import { createExperimenterClient, createParticipantClient } from '../../../src/study/client/study-client';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { ParticipantState } from '../../../src/study/model/progress/study-api';
 import { visitor } from '../../rooms/client/people';
-import { testSecret, until } from '../../rooms/server/running-relay';
-import { directoryWith } from '../../temporary-directory';
+import { until } from '../../rooms/server/running-relay';
+import { forkServer } from '../../server/server-child';
+import { experimenterToken } from '../../server/started-server';
 import { paperPlan } from '../model/studies';
-import { experimenter as experimenterToken } from '../server/running-studies';
 
 const trial = { step: 'ball/1/trial-1', run: 1 };
 const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
 
-/** The server as it is started, and what brings each of the first group to the court. */
+/** The server, and what brings each of the first group to the court. */
 async function invited() {
-  const server = await startServer({
-    pageDirectory: directoryWith({ 'index.html': 'the page' }),
-    studyDirectory: directoryWith(),
-    experimenterToken,
-    relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
-    secret: testSecret,
-    host: '127.0.0.1',
-    port: 0,
-    log: (line) => expect(line).toBeNull(),
-  });
-  onTestFinished(() => server.close());
-  const origin = `http://127.0.0.1:${server.port}`;
+  const { url: origin } = await forkServer();
   vi.stubGlobal('location', { href: `${origin}/?play=ball` });
 
   const experimenter = createExperimenterClient(experimenterToken, origin);

@@ -1,5 +1,5 @@
 import { readFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 import { createRouter, type FailedAttempt, GroupCommit, noPage } from 'threepoint-http';
 import { RoomTokens } from 'threepoint-rooms/server';
 import { expect, onTestFinished } from 'vitest';
@@ -10,7 +10,9 @@ import { StudyDispatcher } from '../../../src/study/server/routes/dispatcher';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { createStudyService, openStudyService } from '../../../src/study/server/service';
 import { openStudyStore, type StudyStore } from '../../../src/study/server/storage/study-store';
-import { testSecret } from '../../rooms/server/running-relay';
+import { isNightly } from '../../nightly';
+import { forkServer } from '../../server/server-child';
+import { testSecret } from '../../server/started-server';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 
@@ -104,21 +106,18 @@ export interface ServedOptions {
   readonly idleTimeoutMs?: number;
 }
 
-/** Serves the studies on a port of loopback as if behind a proxy; returns the store and the failed attempts too. */
-export async function servedStudies({
-  file = join(directoryWith(), 'studies.db'),
-  maxBytes = 2 ** 30,
-  flush,
-  idleTimeoutMs = 30_000,
-}: ServedOptions = {}) {
+type OnFile = ServedOptions & { readonly file: string };
+
+/** Serves the studies in the thread of the test. */
+async function servedInThisThread({ file, maxBytes = 2 ** 30, flush, idleTimeoutMs = 30_000 }: OnFile) {
   const opened = openStudyStore(file, { maxBytes });
   const commits = flush && new GroupCommit(flush);
   const store = commits ? { ...opened, flushed: () => commits.flush() } : opened;
   const faults: string[] = [];
-  const failedAttempts: FailedAttempt[] = [];
+  const attempts: FailedAttempt[] = [];
   const service = studiesInThisThread({
     ...{ store, file },
-    onFailedAttempt: (guess) => failedAttempts.push(guess),
+    onFailedAttempt: (guess) => attempts.push(guess),
     log: (line) => faults.push(line),
   });
   const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, idleTimeoutMs });
@@ -127,7 +126,33 @@ export async function servedStudies({
     store.close();
     expect(faults).toEqual([]);
   });
-  const origin = `http://127.0.0.1:${server.port}`;
+  return { store, origin: `http://127.0.0.1:${server.port}`, failedAttempts: () => attempts };
+}
+
+/** Serves the studies by the built server, whose clock stands at `now`; the store is opened here a second time. */
+async function servedByBuiltServer({ file }: OnFile) {
+  const server = await forkServer({ THREEPOINT_TRUST_PROXY: '1', STUDIES: dirname(file) });
+  await server.stopClock(now);
+  const store = openStudyStore(file);
+  onTestFinished(() => {
+    store.close();
+    expect(server.faults()).toEqual([]);
+  });
+  const attempts = () =>
+    server
+      .errors()
+      .split('\n')
+      .filter((line) => line.startsWith('study: a wrong'));
+  return { store, origin: server.url, failedAttempts: attempts };
+}
+
+/**
+ * Serves the studies on a port of loopback as if behind a proxy; returns the store and the failed attempts too. At night
+ * the built server does so, unless something is injected.
+ */
+export async function servedStudies({ file = join(directoryWith(), 'studies.db'), ...injected }: ServedOptions = {}) {
+  const serveFile = isNightly && Object.keys(injected).length === 0 ? servedByBuiltServer : servedInThisThread;
+  const { store, origin, failedAttempts } = await serveFile({ file, ...injected });
   async function ask(method: string, path: string, { token, json, raw, from }: Asked = {}) {
     const response = await fetch(`${origin}${path}`, {
       method,

@@ -6,15 +6,8 @@ import { pageParser } from '../../../src/rooms/protocol/socket-parsers';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { reportFigures } from '../../reliability/report-figures';
-import {
-  type RunningRelay,
-  rawGuest,
-  rawSocket,
-  startRelay,
-  testSecret,
-  tokenFor,
-  until,
-} from '../../rooms/server/running-relay';
+import { rawGuest, rawSocket, tokenFor, until } from '../../rooms/server/running-relay';
+import { type StartedServer, startServer, testSecret } from '../../server/started-server';
 import { paperPlan } from '../model/studies';
 
 const plan = paperPlan();
@@ -25,11 +18,13 @@ const trial = { step, run: 1 };
 /** The group of P01, in the order of their seats. */
 const group = scheduleFor(plan, 'P01').groups.ball?.members as readonly string[];
 
-let server: RunningRelay;
+let server: StartedServer;
 beforeEach(async () => {
-  server = await startRelay();
+  server = await startServer();
 });
-afterEach(() => server.close());
+afterEach(() => server.kill());
+
+const census = async () => (await fetch(`${server.url}/healthz`)).json();
 
 const seatOf = (participant: string, watching = false) => seats.sign(plan, participant, trial, watching);
 
@@ -72,14 +67,13 @@ const post = (path: string, body: unknown) =>
 describe('the room of a trial', () => {
   test('is in no list: not of the lobby, not of its socket, and no one is matched into it', async () => {
     const lobby = toldByLobby();
-    const { room, guest } = await sitDown('P01');
+    const { guest } = await sitDown('P01');
     const stranger = await rawGuest(server.url, 'meadow');
     const told = await lobby;
-    await until('the lobby to know', () => server.relay.rooms.listings.length === 1);
     await expect.poll(async () => (await fetch(`${server.url}/api/rooms`)).text()).toContain('meadow');
     const listed = await (await fetch(`${server.url}/api/rooms`)).text();
     const matched = await (await post('/api/rooms/match', { kind: 'ball' })).text();
-    expect(server.relay.rooms.get(room)?.room.census.players).toBe(1);
+    expect(await census()).toMatchObject({ rooms: 2, players: 2 });
     for (const text of [told, listed, matched]) expect(text).not.toContain('study');
     reportFigures('study-rooms', { 'lists that show the room of a trial': '0 of 3' });
     guest.socket.disconnect();
@@ -126,7 +120,7 @@ describe('the room of a trial', () => {
     expect(answer).toBe('refused');
     const elsewhere = await rawGuest(server.url, room, await tokenFor(server.url, 'meadow'));
     expect(elsewhere.heard.find((message) => message.type === 'welcome')).toMatchObject({ room: 'meadow' });
-    expect(server.relay.rooms.get(room)?.room.census).toMatchObject({ players: 1, spectators: 0 });
+    expect(await census()).toMatchObject({ rooms: 2, players: 2, sockets: 2 });
     reportFigures('study-rooms', { 'seats that a stranger got': `0 of ${attempts.length + 2} attempts` });
     for (const { socket } of [guest, elsewhere]) socket.disconnect();
   });
@@ -137,7 +131,7 @@ describe('the room of a trial', () => {
     watching.guest.say({ type: 'sit', seat: 1 });
     watching.guest.say({ type: 'ping', sent: 1 });
     await until('the answer', () => watching.guest.heard.some(({ type }) => type === 'pong'));
-    expect(server.relay.rooms.get(watching.room)?.room.census).toMatchObject({ players: 0, spectators: 1 });
+    expect(await census()).toMatchObject({ rooms: 1, players: 0, sockets: 1 });
     watching.guest.socket.disconnect();
   });
 

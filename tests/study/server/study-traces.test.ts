@@ -7,7 +7,8 @@ import { expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { reportFigures } from '../../reliability/report-figures';
-import { experimenterToken, forkServer } from '../../server/server-child';
+import { forkServer } from '../../server/server-child';
+import { experimenterToken } from '../../server/started-server';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 import type { Anything } from './running-studies';
@@ -56,14 +57,13 @@ function recordingOf(participant: string): string {
   return writeRecording({ device: markOf(participant), rateHz: 72, calibration: null, frames });
 }
 
-/** Starts a server whose log, temporary files and data are below one directory. */
+/** Starts a server whose temporary files and data are below one directory. */
 async function serve() {
   const directory = directoryWith();
   mkdirSync(join(directory, 'temporary'));
-  const log = join(directory, 'log');
   const server = await forkServer(
     { THREEPOINT_LOG_LEVEL: 'trace', THREEPOINT_TRUST_PROXY: '1', TMPDIR: join(directory, 'temporary') },
-    { directory, through: ['sh', '-c', `exec "$@" > ${log} 2>&1`, 'sh'] },
+    { directory },
   );
   const ask = async (method: string, path: string, from: string, token: string | null, body?: unknown) => {
     const response = await fetch(`${server.url}/api/studies${path}`, {
@@ -123,13 +123,14 @@ const tracesOf = (participant: string, { token, code }: { readonly token: string
 test('a participant who is deleted leaves no byte in data, logs and temporary files, and nothing but the code in exports', async () => {
   const server = await serve();
   const { ask, asExperimenter, directory } = server;
+  const searched = () => [...filesIn(directory), { name: 'log', bytes: Buffer.from(server.printed()) }];
   await asExperimenter('POST', '', { plan, simulated: false });
   const taken: Record<string, Awaited<ReturnType<typeof takePart>>> = {};
   for (const participant of people) taken[participant] = await takePart(server, participant);
   await asExperimenter('GET', `/${plan.id}/export`);
 
   const found = (participant: string) =>
-    filesIn(directory).flatMap(({ name, bytes }) =>
+    searched().flatMap(({ name, bytes }) =>
       tracesOf(participant, taken[participant] as Anything)
         .filter((trace) => bytes.includes(trace))
         .map((trace) => `${name}: ${trace}`),
@@ -157,6 +158,6 @@ test('a participant who is deleted leaves no byte in data, logs and temporary fi
   reportFigures('study-traces', {
     'traces of two participants in data, logs and temporary files': left.length,
     'files of the export of a study that show them': 0,
-    'files searched': filesIn(directory).length + Object.keys(zip).length,
+    'files searched': searched().length + Object.keys(zip).length,
   });
 });

@@ -3,7 +3,7 @@ import { expect, onTestFinished, test, vi } from 'vitest';
 import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from '../../../src/threepoint/avatar/file/fbx/glb-of-scene';
 import { createRandom } from '../../../src/threepoint/core/math/random';
-import { releaseMemory } from '../../collect-garbage';
+import { releaseMemory } from '../../collect-garbage.mjs';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';
 import { builtFbx } from './built-fbx';

@@ -1,4 +1,13 @@
-import { button, element, ballRulesText, rulesList, createRoomLink, isTouchFirst, type ServerState, toggle } from 'threepoint-ui';
+import {
+  ballRulesText,
+  button,
+  createRoomLink,
+  element,
+  isTouchFirst,
+  rulesList,
+  type ServerState,
+  toggle,
+} from 'threepoint-ui';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';

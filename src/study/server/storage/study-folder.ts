@@ -3,7 +3,7 @@ import { chmodSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync
 import { join } from 'node:path';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core';
-import { ConfigurationError, secretWeakness, type Software } from 'threepoint-http';
+import { ConfigurationError, type Software, secretWeakness } from 'threepoint-http';
 import { DatabaseProblem } from './schema';
 import { StoreRefusal, sqliteBusy, sqliteCodeOf } from './store-refusal';
 import { createPrivateFile } from './study-database';

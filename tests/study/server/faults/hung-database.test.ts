@@ -9,7 +9,8 @@ import { reportFigures } from '../../../reliability/report-figures';
 import { arrive, pause, until } from '../../../rooms/server/running-relay';
 import { kill, messageFrom } from '../../../server/child-process';
 import { installed } from '../../../server/installed';
-import { experimenterToken, forkServer } from '../../../server/server-child';
+import { forkServer } from '../../../server/server-child';
+import { experimenterToken, type StartedServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';
 import { consentAt, paperPlan } from '../../model/studies';
 
@@ -84,10 +85,12 @@ function studyTraffic(url: string, token: string) {
   };
 }
 
-type Server = Awaited<ReturnType<typeof forkServer>>;
-
 /** Asserts the answers of a room and the study while `hang` lasts, and that nothing acknowledged was lost. */
-async function observed(server: Server, { file, token }: ReturnType<typeof begunStudy>, hang: () => Promise<void>) {
+async function observed(
+  server: StartedServer,
+  { file, token }: ReturnType<typeof begunStudy>,
+  hang: () => Promise<void>,
+) {
   const people = await playing(server.url);
   await server.inspect();
   await pause(3);
@@ -111,7 +114,7 @@ async function observed(server: Server, { file, token }: ReturnType<typeof begun
   expect(refused.filter(({ status }) => status !== 503)).toEqual([]);
   expect(refused.filter(({ retryAfter }) => !/^\d+$/.test(retryAfter ?? ''))).toEqual([]);
   expect(lost).toEqual([]);
-  expect((await server.inspect()).faults).toEqual([]);
+  expect(server.faults()).toEqual([]);
   // The defect would take seconds, more than a busy machine adds.
   expect(meanwhile.maxMs).toBeLessThan(1000);
   // 20 ms, or three times what the delay was before on a machine that is busy.

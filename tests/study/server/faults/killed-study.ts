@@ -1,21 +1,15 @@
-import { type ChildProcess, fork } from 'node:child_process';
 import { join } from 'node:path';
-import { fileURLToPath } from 'node:url';
 import { isDeepStrictEqual } from 'node:util';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { rolldown } from 'rolldown';
 import { participantsOf, type StudyPlan } from '../../../../src/study/model/plan/plan';
 import { type Schedule, scheduleFor } from '../../../../src/study/model/plan/schedule';
 import type { ParticipantState } from '../../../../src/study/model/progress/study-api';
 import type { StudyRecord } from '../../../../src/study/model/records/study-record';
 import { openStudyStore } from '../../../../src/study/server/storage/study-store';
 import { type RandomSource, randomSource } from '../../../../src/study/simulation/random-source';
-import { isAlive, kill, messageFrom } from '../../../server/child-process';
+import { experimenterToken, startServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
-import { experimenter } from '../running-studies';
-
-const root = fileURLToPath(new URL('../../../..', import.meta.url));
 
 /** The result of the kills; empty lists: nothing was lost. */
 export interface KillReport {
@@ -31,22 +25,6 @@ export interface KillReport {
   readonly undeleted: string[];
   /** Databases that are not sound. */
   readonly unsound: string[];
-}
-
-/** Bundles the server and its thread, which then start in a third of the time. */
-async function bundledServer(): Promise<string> {
-  const folder = join(root, '.cache/study-process');
-  const bundle = await rolldown({
-    input: {
-      'study-process': join(root, 'tests/study/server/faults/study-process.ts'),
-      'study-thread-worker': join(root, 'server/study-thread-work.ts'),
-    },
-    platform: 'node',
-    external: (id) => /^[^./]/.test(id) && !id.startsWith('threepoint'),
-    logLevel: 'silent',
-  });
-  await bundle.write({ dir: folder, format: 'esm', entryFileNames: '[name].mjs' });
-  return join(folder, 'study-process.mjs');
 }
 
 /** A device of a participant, which repeats each request until it is acknowledged, as the page does. */
@@ -103,14 +81,14 @@ async function act(device: Device, ask: Ask, random: RandomSource): Promise<void
     return;
   }
   if (device.token === null) {
-    const states = (await (await ask('GET', `/${device.study}/participants`, experimenter)).json()) as {
+    const states = (await (await ask('GET', `/${device.study}/participants`, experimenterToken)).json()) as {
       participants: ParticipantState[];
     };
     const { invitation, claimed } = states.participants.find(
       (one) => one.participant === participant,
     ) as ParticipantState;
     // The answer with the token was lost, so the experimenter releases the place.
-    if (claimed) await ask('POST', `${path}/release`, experimenter);
+    if (claimed) await ask('POST', `${path}/release`, experimenterToken);
     // Two tabs at once.
     const claims = await Promise.all([1, 2].map(() => ask('POST', `${path}/claim`, null, { invitation })));
     const given = claims.filter(({ status }) => status === 201);
@@ -156,24 +134,14 @@ function check(device: Device, store: ReturnType<typeof openStudyStore>, report:
   }
 }
 
-interface Server {
-  readonly child: ChildProcess;
-  readonly ask: Ask;
-}
-
-async function started(file: string, directory: string): Promise<Server> {
-  const child = fork(file, [directory, './study-thread-worker.mjs'], {
-    env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
-  });
-  const { port } = await messageFrom<{ port: number }>(child);
-  const ask: Ask = (method, path, token, body) =>
-    fetch(`http://127.0.0.1:${port}/api/studies${path}`, {
+const askOf =
+  (url: string): Ask =>
+  (method, path, token, body) =>
+    fetch(`${url}/api/studies${path}`, {
       method,
       headers: { 'content-type': 'application/json', ...(token && { authorization: `Bearer ${token}` }) },
       ...(body !== undefined && { body: JSON.stringify(body) }),
     });
-  return { child, ask };
-}
 
 /** Participants at once; studies follow each other as they finish. */
 const devicesAtOnce = 6;
@@ -188,8 +156,8 @@ export async function killedStudy(
   seed: number,
   tell: (line: string) => void = () => undefined,
 ): Promise<KillReport> {
-  const file = await bundledServer();
   const directory = directoryWith();
+  const file = join(directory, 'studies/studies.db');
   const random = randomSource(seed, 'kills');
   const report: KillReport = {
     ...{ kills: 0, amidRequests: 0, acknowledged: 0 },
@@ -198,13 +166,14 @@ export async function killedStudy(
   const everyone: Device[] = [];
   let devices: Device[] = [];
   for (let number = 0; report.kills < kills; ) {
-    const server = await started(file, directory);
+    const server = await startServer({}, { directory });
+    const ask = askOf(server.url);
     let underWay = 0;
     let answers = 0;
     const counted: Ask = async (...asked) => {
       underWay += 1;
       try {
-        return await server.ask(...asked);
+        return await ask(...asked);
       } finally {
         underWay -= 1;
         answers += 1;
@@ -214,9 +183,7 @@ export async function killedStudy(
       number += 1;
       const plan = paperPlan({ id: `killed-${number}` });
       // Two experimenters at once, with the same plan: both have it.
-      const begun = await Promise.all(
-        [1, 2].map(() => server.ask('POST', '', experimenter, { plan, simulated: false })),
-      );
+      const begun = await Promise.all([1, 2].map(() => ask('POST', '', experimenterToken, { plan, simulated: false })));
       for (const { status } of begun) if (status !== 201) throw new Error(`the study was not begun: ${status}`);
       devices = participantsOf(plan)
         .slice(0, devicesAtOnce)
@@ -235,7 +202,7 @@ export async function killedStudy(
           // fetch says "TypeError" of a server that is gone, and of one that has just closed the connection because
           // nothing came by it for some seconds: then it is sent again, as the page does.
           const unanswered = error instanceof TypeError;
-          if (unanswered && !dying && isAlive(server.child)) continue;
+          if (unanswered && !dying && server.isAlive()) continue;
           if (!unanswered || !dying) faults.push(error);
           return;
         }
@@ -247,16 +214,16 @@ export async function killedStudy(
     await new Promise((resolve) => setTimeout(resolve, delayMs));
     dying = true;
     if (underWay > 0) report.amidRequests += 1;
-    await kill(server.child);
+    await server.kill();
     await Promise.all(loops);
     if (faults.length > 0) throw faults[0];
     report.kills += 1;
-    const store = openStudyStore(join(directory, 'studies.db'));
+    const store = openStudyStore(file);
     // Old studies now and then, those at hand every time.
     for (const device of report.kills % 50 === 0 || report.kills === kills ? everyone : devices)
       check(device, store, report);
     store.close();
-    const database = new DatabaseSync(join(directory, 'studies.db'));
+    const database = new DatabaseSync(file);
     const { integrity_check: sound } = database.prepare('PRAGMA integrity_check').get() as { integrity_check: string };
     database.close();
     if (sound !== 'ok') report.unsound.push(`kill ${report.kills}: ${sound}`);

@@ -6,7 +6,8 @@ import { expect, onTestFinished, test } from 'vitest';
 import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
 import { openStudyStore } from '../../../../src/study/server/storage/study-store';
 import { reportFigures } from '../../../reliability/report-figures';
-import { experimenterToken, forkServer } from '../../../server/server-child';
+import { forkServer } from '../../../server/server-child';
+import { experimenterToken, type StartedServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';
 import { consentAt, paperPlan } from '../../model/studies';
 
@@ -31,12 +32,10 @@ function studyWith(remarks: number) {
   return { directory, file };
 }
 
-type Server = Awaited<ReturnType<typeof forkServer>>;
-
 /** A permanent connection, because no other one can be opened later. */
 const agent = new Agent({ keepAlive: true, maxSockets: 1 });
 
-async function ask({ port }: Server, method: string, path: string, body?: unknown) {
+async function ask({ port }: StartedServer, method: string, path: string, body?: unknown) {
   const headers = { authorization: `Bearer ${experimenterToken}`, 'content-type': 'application/json' };
   const request = httpRequest({ port, agent, method, headers, path: `/api/studies/paper${path}` });
   request.end(body === undefined ? undefined : JSON.stringify(body));
@@ -47,7 +46,7 @@ async function ask({ port }: Server, method: string, path: string, body?: unknow
   return { status, bytes, error };
 }
 
-const remark = (server: Server) => ask(server, 'POST', '/participants/P01/remarks', { text: 'still here' });
+const remark = (server: StartedServer) => ask(server, 'POST', '/participants/P01/remarks', { text: 'still here' });
 
 test('a heap of 64 MB refuses what does not fit with a sentence, and the server goes on', {
   tags: ['full'],
@@ -61,8 +60,7 @@ test('a heap of 64 MB refuses what does not fit with a sentence, and the server 
   expect(JSON.parse(records.bytes.toString()).records).toHaveLength(30_007);
   expect((await remark(server)).status).toBe(201);
   expect((await ask(server, 'GET', '/participants/P07/export')).status).toBe(200);
-  const { faults } = await server.inspect();
-  expect(faults).toEqual([]);
+  expect(server.faults()).toEqual([]);
   reportFigures('study-shortage', {
     'heap of 64 MB': `an export of 60 MB of records ${exported.status}, the same records as JSON ${records.status}`,
   });
@@ -87,7 +85,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   expect(exported.status).toBe(507);
   expect(exported.error).toMatch(/^The server has too many files open\. Raise the limit: ulimit -n 1024\./);
   await expect.poll(async () => (await ask(server, 'GET', '/export')).status).toBe(200);
-  expect((await server.inspect()).faults).toEqual([]);
+  expect(server.faults()).toEqual([]);
   reportFigures('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
 });
 
@@ -104,7 +102,7 @@ test('a disk that fills is no matter to an export: it needs none', async () => {
   expect(exported.status).toBe(200);
   const records = JSON.parse((await ask(server, 'GET', '/records')).bytes.toString()).records as StudyRecord[];
   expect(records).toHaveLength(stored);
-  expect((await server.inspect()).faults).toEqual([]);
+  expect(server.faults()).toEqual([]);
   const store = openStudyStore(file);
   onTestFinished(() => store.close());
   expect(store.records.all('paper')).toHaveLength(stored);
