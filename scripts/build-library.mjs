@@ -116,8 +116,6 @@ async function workerCode(module) {
 /** The folders of the packages in the library and in its worker. */
 const packages = new Set();
 
-const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
-
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
 async function bundle(input, plugins) {
   return rolldown({

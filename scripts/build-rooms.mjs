@@ -29,8 +29,8 @@ const external = (id) =>
   id === 'threepoint/three' ||
   imported.some((name) => id === name || id.startsWith(`${name}/`));
 
-/** Bundles the entries in these folders, and adds the packages that are bundled with them to `packages`. */
-async function writeCode(platform, folders, packages) {
+/** Bundles these modules, and adds the packages that are bundled with them to `packages`. */
+async function writeCode(platform, modules, packages) {
   const build = await rolldown({
     input: Object.fromEntries(
       Object.entries(modules).map(([name, module]) => [name, join(root, `src/rooms/${module}.ts`)]),
