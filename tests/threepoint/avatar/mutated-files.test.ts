@@ -5,7 +5,7 @@ import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
-import { mutatedFiles, ReadingCosts } from '../mutated-files';
+import { mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
 import { builtRig } from './built-rig';
 import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
 import { vroid } from './rig-namings';
@@ -105,7 +105,7 @@ test('files of avatars, spoiled, are refused in a sentence or read as a body of 
   // The reader warns of what it passes over.
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
-  const spoil = spoilers(createRandom(20261126));
+  const spoil = spoilers(createRandom(mutationSeed));
   const counts = { refused: 0, 'refused by the reader': 0, read: 0 };
   const [checking, building] = [new ReadingCosts(), new ReadingCosts()];
   for (let i = 0; i < files; i++) {
