@@ -4,18 +4,17 @@ import { type MotionFormat, type MotionWriter, motionFormats } from 'threepoint/
 import type { WorkOptions } from 'threepoint/api/run-work';
 import { writeMotionFile } from 'threepoint/api/write-motion-file';
 import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
+import { isGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
 import { reasonOf } from 'threepoint/core/errors/reasons';
 import type { NetworkName } from 'threepoint/core/estimation/estimators';
 import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
 import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
 import { parseRecording, type Replayable } from 'threepoint/core/tracking/recording';
 import { startRegressor } from 'threepoint/onnx/load-regressor';
 import { parseContract } from 'threepoint/onnx/model-contract';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
+import { FileReaderProcess } from './reader-process';
 
 /** The options of the command line, with absolute paths. */
 export interface MotionRequest {
@@ -58,7 +57,7 @@ async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | M
   }
   const path = avatar ?? join(root, 'public/avatars/mannequin.vrm');
   const file = readGiven(path, '--avatar');
-  return createAvatarMotionWriter(new Uint8Array(file).buffer, basename(path));
+  return createAvatarMotionWriter(await readApart('avatar', path, file), basename(path));
 }
 
 function checked<Name extends string>(option: string, value: string, names: readonly Name[]): Name {
@@ -74,13 +73,15 @@ function rateOf(rate: string | undefined): { rateHz?: number } {
   return { rateHz };
 }
 
+/** Reads a file in a process of limited memory, which ends afterwards. */
+async function readApart<Call extends 'clips' | 'avatar'>(call: Call, path: string, bytes: Uint8Array) {
+  using reader = new FileReaderProcess();
+  return await reader.read(call, { name: basename(path), bytes: new Uint8Array(bytes).buffer });
+}
+
 /** Reads motion capture as the page does: what a headset and two hands would have recorded of its longest piece. */
 async function simulatedRecording(path: string, bytes: Uint8Array): Promise<Replayable> {
-  const name = basename(path);
-  const source: MocapSource = isGltfMotion(name)
-    ? { name, ...(await readGltfMotion(new Uint8Array(bytes).buffer, name)) }
-    : { name, format: 'bvh', text: new TextDecoder().decode(bytes) };
-  const { clips } = finishWork(prepareMocap(source));
+  const clips = await readApart('clips', path, bytes);
   return recordingOf(clips.reduce((longest, clip) => (clip.frameCount > longest.frameCount ? clip : longest)));
 }
 
