@@ -1,7 +1,8 @@
-import { hasWebWorkers } from '../avatar/file/node-worker';
-
-/** Starts a worker that validates files of avatars; null: there are no workers here. */
+/**
+ * Starts a worker that validates files of avatars; null: there are no workers of the web, as in Node, where
+ * onnxruntime-web sets this global to those of worker_threads.
+ */
 export const startValidator = async (): Promise<Worker | null> =>
-  hasWebWorkers()
+  globalThis.Worker?.prototype instanceof EventTarget
     ? new Worker(new URL('../avatar/file/avatar-check-worker.ts', import.meta.url), { type: 'module' })
     : null;
