@@ -49,7 +49,7 @@ export async function parseAvatar(
 }
 
 /** Parses a file that has passed `checkAvatar`. */
-export async function parseChecked(checked: ReadableAvatar, name: string, options: ParseOptions = {}) {
+export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, name: string, options: ParseOptions = {}) {
   try {
     const { gltf, own } = await readScene(checked, name, options);
     // Files without a humanoid of their own need the matcher, which others do not load.
@@ -63,12 +63,9 @@ export async function parseChecked(checked: ReadableAvatar, name: string, option
   }
 }
 
-/** A file that has passed `checkAvatar`. */
-export type ReadableAvatar = Pick<CheckedAvatar, 'bytes' | 'usedCompressions' | 'file'>;
-
 /** Reads the scene of a file in bind pose, and its VRM; undefined: it is no VRM. */
 export async function readScene(
-  { bytes, usedCompressions, file }: ReadableAvatar,
+  { bytes, usedCompressions, file }: Omit<CheckedAvatar, 'hash'>,
   name: string,
   { bones, decoders = {} }: ParseOptions,
 ): Promise<{ readonly gltf: GLTF; readonly own: VRM | undefined }> {
