@@ -118,9 +118,10 @@ function checkedSetting({ values }: FbxNode): readonly FbxNode[] {
   const count = settings.get(name!);
   if (count === undefined) return [];
   const numbers = rest.slice(0, count);
+  // A setting of fewer numbers is another one of this name.
+  if (numbers.length < count) return [];
   const isWrongOrder = name === 'RotationOrder' && !rotationOrders.includes(numbers[0] as number);
-  if (numbers.length < count || !numbers.every(isFiniteNumber) || isWrongOrder)
-    throw new Error(`the setting “${name}” is damaged`);
+  if (!numbers.every(isFiniteNumber) || isWrongOrder) throw new Error(`the setting “${name}” is damaged`);
   const kind = /^Color(RGB)?$/.test(String(type)) ? 'Color' : count === 3 ? 'Vector3D' : 'double';
   return [nodeOf('P', [name!, kind, '', 'A', ...numbers])];
 }
