@@ -180,3 +180,14 @@ test('an offset, an angle and a place without end are named with their line or j
     /^wave\.bvh: the joint Hips \(hips\) is 9000 m from the origin in frame 1/,
   );
 });
+
+test('a clip that lasts hours with few keys is refused before its frames are read', async () => {
+  const turns = { leftUpperArm: angles };
+  const slow = fbxBinary(builtFbx({ nameOf: mixamo('mixamorig:'), turns, rateHz: frames / 8000 }));
+  const source = await gltf('slow.fbx', slow);
+  const started = process.cpuUsage();
+  expect(() => finishWork(prepareMocap(source))).toThrow(
+    'slow.fbx: it lasts 7800 s with 40 keys; motion has one in 10 s at least',
+  );
+  expect(process.cpuUsage(started).user / 1000).toBeLessThan(500);
+});
