@@ -294,10 +294,7 @@ export const attackRows = {
     sees: 'A sentence that names the file, or trackers within a kilometre',
     target: '0 other exceptions, 0 NaN, no file over 1 s or three times its memory',
     shows: ['longest work on one bvh [ms of the processor]'],
-    tests: [
-      'tests/threepoint/core/mocap/mutated-motion.test.ts',
-      'tests/threepoint/core/mocap/motion-limits.test.ts',
-    ],
+    tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts', 'tests/threepoint/core/mocap/motion-limits.test.ts'],
   },
   crowd: {
     inject: '200 rooms of three play for ten minutes and leave, three times (20 for 5 s, twice, by day)',
