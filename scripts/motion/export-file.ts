@@ -1,18 +1,15 @@
 import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
-import { type MotionFormat, type MotionWriter, motionFormats } from 'threepoint/api/motion-file';
-import type { WorkOptions } from 'threepoint/api/run-work';
-import { writeMotionFile } from 'threepoint/api/write-motion-file';
-import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
-import { isGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { NetworkName } from 'threepoint/core/estimation/estimators';
-import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { parseRecording, type Replayable } from 'threepoint/core/tracking/recording';
-import { startRegressor } from 'threepoint/onnx/load-regressor';
-import { parseContract } from 'threepoint/onnx/model-contract';
+import { type MotionFormat, type MotionWriter, motionFormats, type WorkOptions } from 'threepoint/motion';
+import { writeMotionFile } from '../../src/threepoint/api/write-motion-file';
+import { createAvatarMotionWriter } from '../../src/threepoint/avatar/avatar-motion-writer';
+import { isGltfMotion } from 'threepoint/three';
+import { reasonOf, type EstimatorName, estimatorNames, parseRecording, type Replayable } from 'threepoint/core';
+import type { NetworkName } from '../../src/threepoint/core/estimation/estimators';
+import { createPlainRegressor } from '../../src/threepoint/core/estimation/networks/learned-network';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { startRegressor } from '../../src/threepoint/onnx/load-regressor';
+import { parseContract } from '../../src/threepoint/onnx/model-contract';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
 import { FileReaderProcess } from './reader-process';
 

@@ -3,9 +3,9 @@
 // request.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { MocapSource } from 'threepoint/core/mocap/prepare-mocap';
-import { readSkeletonMap } from 'threepoint/core/mocap/read-skeleton-map';
+import { reasonOf } from 'threepoint/core';
+import type { MocapSource } from 'threepoint/motion';
+import { readSkeletonMap } from '../../src/threepoint/core/mocap/read-skeleton-map';
 import { type FileBytes, FileReaderProcess } from './reader-process';
 
 /** A file of motion; `asf`: the skeleton of an AMC file; `rateHz`: its frame rate if a table beside it states one. */

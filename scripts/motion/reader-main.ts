@@ -1,8 +1,9 @@
-import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type MocapSource, prepareMocap, readTruthMotion } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
+import { checkAvatar } from '../../src/threepoint/avatar/file/check-avatar';
+import { isGltfMotion, readGltfMotion } from 'threepoint/three';
+import { reasonOf } from 'threepoint/core';
+import { readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
+import { type MocapSource, prepareMocap } from 'threepoint/motion';
+import { finishWork } from '../../src/threepoint/core/motion/work';
 import type { FileBytes, ReaderApi, ReaderResponse } from './reader-process';
 
 async function sourceOf({ name, bytes, skeleton, ...more }: FileBytes): Promise<MocapSource> {

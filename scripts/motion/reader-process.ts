@@ -1,6 +1,7 @@
 import { type ChildProcess, fork } from 'node:child_process';
 import { join } from 'node:path';
-import type { MocapClip, MocapSource, ReadMocap } from 'threepoint/core/mocap/prepare-mocap';
+import type { ReadMocap } from '../../src/threepoint/core/mocap/prepare-mocap';
+import type { MocapClip, MocapSource } from 'threepoint/motion';
 
 /** A file of motion or of an avatar, with what its format needs. */
 export interface FileBytes extends Pick<MocapSource, 'name' | 'map' | 'rest' | 'rateHz'> {

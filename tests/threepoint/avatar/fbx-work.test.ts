@@ -1,6 +1,6 @@
 import { deflateSync } from 'node:zlib';
-import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
-import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
+import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
+import type { SceneParts } from '../../../src/threepoint/avatar/file/fbx/glb-of-scene';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { builtFbx } from './built-fbx';
 import { type FbxNode, fbxBinary, fbxNode, fbxText, long } from './fbx-file';

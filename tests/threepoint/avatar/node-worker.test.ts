@@ -1,5 +1,5 @@
-import { createWorkerCheck } from 'threepoint/avatar/file/avatar-check-client';
-import { startNodeWorker } from 'threepoint/avatar/file/node-worker';
+import { createWorkerCheck } from '../../../src/threepoint/avatar/file/avatar-check-client';
+import { startNodeWorker } from '../../../src/threepoint/avatar/file/node-worker';
 import { expect, test } from 'vitest';
 
 const question = { name: 'person.vrm', supportedCompressions: [] };

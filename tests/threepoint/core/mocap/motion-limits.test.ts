@@ -1,11 +1,11 @@
 import fc from 'fast-check';
-import { readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
-import { writeVrma } from 'threepoint/core/motion/write-vrma';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { parseRecording, writeRecording } from 'threepoint/core/tracking/recording';
+import { readGltfMotion } from '../../../../src/threepoint/avatar/file/read-gltf-motion';
+import { defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
+import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
+import { writeVrma } from '../../../../src/threepoint/core/motion/write-vrma';
+import { actorFrame } from '../../../../src/threepoint/core/tracking/actor-motion';
+import { parseRecording, writeRecording } from '../../../../src/threepoint/core/tracking/recording';
 import { expect, test } from 'vitest';
 import { isNightly } from '../../../nightly';
 import { builtFbx } from '../../avatar/built-fbx';
@@ -85,7 +85,7 @@ const short = {
 };
 const vrma = bytesOf(writeVrma(short));
 const glb = new Uint8Array(
-  await (await import('threepoint/avatar/file/convert-to-glb')).convertToGlb(fbxBinary(nodes), 'a.fbx', 'motion'),
+  await (await import('../../../../src/threepoint/avatar/file/convert-to-glb')).convertToGlb(fbxBinary(nodes), 'a.fbx', 'motion'),
 );
 const acclaim = sourceOf(goldenMocap.find((golden) => golden.motion.endsWith('.amc'))!);
 const bvh = madeBvh({ frames });
