@@ -77,9 +77,13 @@ const readers = [
   {
     module: 'bundled-validator',
     worker: 'src/threepoint/avatar/file/avatar-check-worker.ts',
-    code: (bytes) => `let address;
+    code: (bytes) => `import { startNodeWorker } from '../avatar/file/node-worker';
+    let address;
     export async function startValidator() {
-      address ??= URL.createObjectURL(new Blob([await ${bytes}], { type: 'text/javascript' }));
+      const code = await ${bytes};
+      const thread = startNodeWorker(code);
+      if (thread) return thread;
+      address ??= URL.createObjectURL(new Blob([code], { type: 'text/javascript' }));
       return new Worker(address, { type: 'module' });
     }`,
   },
@@ -104,9 +108,9 @@ const filesInModules = {
   },
 };
 
-/** Returns the code of a worker as one module. */
+/** Returns the code of a worker as one module without imports, which a worker without an address cannot resolve. */
 async function workerCode(module) {
-  const build = await bundle({ worker: join(root, module) }, []);
+  const build = await bundle({ worker: join(root, module) }, [], []);
   const { output } = await build.generate({ format: 'esm', minify: true, codeSplitting: false });
   await build.close();
   if (output.length !== 1) throw new SetupError(`The worker ${module} is ${output.length} files; it must be one.`);
@@ -117,12 +121,12 @@ async function workerCode(module) {
 const packages = new Set();
 
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
-async function bundle(input, plugins) {
+async function bundle(input, plugins, outside = external) {
   return rolldown({
     input,
     cwd: root,
     platform: 'browser',
-    external,
+    external: outside,
     plugins: [...plugins, packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
     // In Node, gltf-validator would call `require`, which a module has not; it runs there as in a browser.

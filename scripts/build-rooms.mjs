@@ -70,7 +70,7 @@ export const buildRooms = () =>
     rmSync(out, { recursive: true, force: true });
     mkdirSync(out);
     const packages = new Set();
-    for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders, packages);
+    for (const [platform, modules] of Object.entries(entries)) await writeCode(platform, modules, packages);
     writeLicences(out, packages);
     await writeTypes();
     copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));

@@ -1,24 +1,17 @@
 import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { type EstimatorName, estimatorNames, parseRecording, type Replayable, reasonOf } from 'threepoint/core';
-import {
-  type MocapSource,
-  type MotionFormat,
-  type MotionWriter,
-  motionFormats,
-  prepareMocap,
-  type WorkOptions,
-} from 'threepoint/motion';
-import { isGltfMotion, readGltfMotion } from 'threepoint/three';
+import { type MotionFormat, type MotionWriter, motionFormats, type WorkOptions } from 'threepoint/motion';
+import { isGltfMotion } from 'threepoint/three';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
 import { writeMotionFile } from '../../src/threepoint/api/write-motion-file';
 import { createAvatarMotionWriter } from '../../src/threepoint/avatar/avatar-motion-writer';
 import type { NetworkName } from '../../src/threepoint/core/estimation/estimators';
 import { createPlainRegressor } from '../../src/threepoint/core/estimation/networks/learned-network';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
-import { finishWork } from '../../src/threepoint/core/motion/work';
 import { startRegressor } from '../../src/threepoint/onnx/load-regressor';
 import { parseContract } from '../../src/threepoint/onnx/model-contract';
+import { FileReaderProcess } from './reader-process';
 
 /** The options of the command line, with absolute paths. */
 export interface MotionRequest {
@@ -61,7 +54,7 @@ async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | M
   }
   const path = avatar ?? join(root, 'public/avatars/mannequin.vrm');
   const file = readGiven(path, '--avatar');
-  return createAvatarMotionWriter(new Uint8Array(file).buffer, basename(path));
+  return createAvatarMotionWriter(await readApart('avatar', path, file), basename(path));
 }
 
 function checked<Name extends string>(option: string, value: string, names: readonly Name[]): Name {
@@ -77,13 +70,15 @@ function rateOf(rate: string | undefined): { rateHz?: number } {
   return { rateHz };
 }
 
+/** Reads a file in a process of limited memory, which ends afterwards. */
+async function readApart<Call extends 'clips' | 'avatar'>(call: Call, path: string, bytes: Uint8Array) {
+  using reader = new FileReaderProcess();
+  return await reader.read(call, { name: basename(path), bytes: new Uint8Array(bytes).buffer });
+}
+
 /** Reads motion capture as the page does: what a headset and two hands would have recorded of its longest piece. */
 async function simulatedRecording(path: string, bytes: Uint8Array): Promise<Replayable> {
-  const name = basename(path);
-  const source: MocapSource = isGltfMotion(name)
-    ? { name, ...(await readGltfMotion(new Uint8Array(bytes).buffer, name)) }
-    : { name, format: 'bvh', text: new TextDecoder().decode(bytes) };
-  const { clips } = finishWork(prepareMocap(source));
+  const clips = await readApart('clips', path, bytes);
   return recordingOf(clips.reduce((longest, clip) => (clip.frameCount > longest.frameCount ? clip : longest)));
 }
 

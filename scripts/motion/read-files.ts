@@ -5,10 +5,8 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 import { reasonOf } from 'threepoint/core';
 import type { MocapSource } from 'threepoint/motion';
-import { isGltfMotion, readGltfMotion } from 'threepoint/three';
-import { readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
 import { readSkeletonMap } from '../../src/threepoint/core/mocap/read-skeleton-map';
-import { finishWork } from '../../src/threepoint/core/motion/work';
+import { type FileBytes, FileReaderProcess } from './reader-process';
 
 /** A file of motion; `asf`: the skeleton of an AMC file; `rateHz`: its frame rate if a table beside it states one. */
 interface MotionPath {
@@ -37,20 +35,17 @@ function mapOf(path: string): Pick<MocapSource, 'map' | 'rest'> {
   }
 }
 
-async function sourceOf({ path, asf }: MotionPath): Promise<MocapSource> {
+function fileOf({ path, asf, rateHz }: MotionPath, mapped: Pick<MocapSource, 'map' | 'rest'>): FileBytes {
   const name = basename(path);
-  if (isGltfMotion(name)) return { name, ...(await readGltfMotion(new Uint8Array(readFileSync(path)).buffer, name)) };
-  if (!/\.amc$/i.test(name)) return { format: 'bvh', ...textOf(path) };
-  if (asf === null) throw new Error('no .asf skeleton beside it');
-  return { format: 'amc', ...textOf(path), skeleton: textOf(asf) };
+  if (/\.amc$/i.test(name) && asf === null) throw new Error('no .asf skeleton beside it');
+  const more = { ...mapped, ...(rateHz !== null && { rateHz }), ...(asf !== null && { skeleton: textOf(asf) }) };
+  return { name, bytes: new Uint8Array(readFileSync(path)).buffer, ...more };
 }
 
 /** What is read of one file; a fault becomes its sentence, and the other files are read. */
 async function read(file: MotionPath, i: number, out: string, mapped: Pick<MocapSource, 'map' | 'rest'>) {
   try {
-    const rate = file.rateHz === null ? {} : { rateHz: file.rateHz };
-    const source = { ...(await sourceOf(file)), ...mapped, ...rate };
-    const { motion, notes, doubts } = finishWork(readTruthMotion(source));
+    const { motion, notes, doubts } = await reader.read('truth', fileOf(file, mapped));
     writeFileSync(join(out, `${i}.positions`), motion.positions);
     writeFileSync(join(out, `${i}.rotations`), motion.rotations);
     const rest = Object.fromEntries([...motion.rest].map(([joint, { x, y, z }]) => [joint, [x, y, z]]));
@@ -61,6 +56,7 @@ async function read(file: MotionPath, i: number, out: string, mapped: Pick<Mocap
   }
 }
 
+using reader = new FileReaderProcess();
 const request = JSON.parse(readFileSync(0, 'utf8')) as Request;
 try {
   const mapped = request.map === null ? {} : mapOf(request.map);

@@ -294,19 +294,20 @@ export const attackRows = {
     inject: '100,000 mutated avatar files and as many FBX files (1,000 and 250 by day)',
     sees: 'A sentence that names the file, or a finite body',
     target: '0 other exceptions, 0 NaN, no file over 1 s; GLB in three times its memory, FBX holds 20 times',
-    shows: ['longest work on one check [ms of the processor]'],
+    shows: ['longest work on one check [ms of the processor]', 'longest work on one FBX [ms of the processor]'],
     tests: [
       'tests/threepoint/avatar/mutated-files.test.ts',
       'tests/threepoint/avatar/mutated-fbx.test.ts',
+      'tests/threepoint/avatar/fbx-work.test.ts',
       'tests/threepoint/avatar/inspect-avatar.test.ts',
     ],
   },
   'mutated-motion': {
     inject: '100,000 BVH files and as many VRM Animations with changes (2,000 and 500 by day)',
-    sees: 'A sentence that names the file, or finite trackers',
+    sees: 'A sentence that names the file, or trackers within a kilometre',
     target: '0 other exceptions, 0 NaN, no file over 1 s or three times its memory',
     shows: ['longest work on one bvh [ms of the processor]'],
-    tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts'],
+    tests: ['tests/threepoint/core/mocap/mutated-motion.test.ts', 'tests/threepoint/core/mocap/motion-limits.test.ts'],
   },
   crowd: {
     inject: '200 rooms of three play for ten minutes and leave, three times (20 for 5 s, twice, by day)',

@@ -4,6 +4,7 @@ import { join } from 'node:path';
 import { actorFrame, defaultCalibration, writeRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { exportFile, writeWhole } from '../../scripts/motion/export-file';
+import { FileReaderProcess } from '../../scripts/motion/reader-process';
 import { readBvh } from '../../src/threepoint/core/motion/read-bvh';
 import { finishWork } from '../../src/threepoint/core/motion/work';
 import { directoryWith } from '../temporary-directory';
@@ -11,6 +12,7 @@ import { builtFbx } from '../threepoint/avatar/built-fbx';
 import { fbxBinary, fbxText } from '../threepoint/avatar/fbx-file';
 import { partsOf } from '../threepoint/avatar/glb';
 import { mixamo } from '../threepoint/avatar/rig-namings';
+import { madeBvh } from '../threepoint/core/mocap/made-bvh';
 
 const recorded = (seconds: number): string =>
   writeRecording({
@@ -118,4 +120,14 @@ describe('npm run motion', () => {
     expect(readdirSync(folder).sort()).toEqual(['mine.csv', 'mine.json']);
     expect(readFileSync(out, 'utf8')).toBe('of yesterday');
   });
+});
+
+test('a file that needs more memory than its process has is refused, and the next one is read', async () => {
+  using reader = new FileReaderProcess(100);
+  const bytes = (text: string) => new TextEncoder().encode(text).buffer as ArrayBuffer;
+  const large = { name: 'large.gltf', bytes: bytes(`[${'{"a":[]},'.repeat(3e6)}0]`) };
+  await expect(reader.read('clips', large)).rejects.toThrow(
+    'large.gltf: needs more than 100 MB of memory; open a smaller file',
+  );
+  expect(await reader.read('clips', { name: 'wave.bvh', bytes: bytes(madeBvh({ frames: 40 })) })).toHaveLength(1);
 });

@@ -4,6 +4,9 @@ import { isNightly } from '../nightly';
 export const mutatedFiles = (byDay: number): number =>
   Number(process.env.MUTATED_FILES ?? (isNightly ? 100_000 : byDay));
 
+/** The seed of the mutations; MUTATED_SEED states another. */
+export const mutationSeed = Number(process.env.MUTATED_SEED ?? 20261127);
+
 /** A smaller file counts as this many bytes: what a reader allocates for any file is no multiple of it. */
 const minBytes = 65_536;
 

@@ -26,12 +26,6 @@ export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: numbe
 /** A checked file without its bytes, which can be read from it again. */
 export type AvatarFile = Omit<CheckedAvatar, 'bytes'>;
 
-/** The file of an avatar, and the map of its bones that the user gave; undefined: none. */
-export interface MappedFile {
-  readonly checked: AvatarFile;
-  readonly bones: BoneMap | undefined;
-}
-
 /** Builds a built-in avatar from its file. */
 export const buildBuiltIn = async (
   body: BuiltInBody,
@@ -42,8 +36,8 @@ export const buildBuiltIn = async (
 export interface LoadedUserAvatar {
   readonly avatar: Avatar;
   readonly worn: OwnAvatar;
-  /** null: a built-in avatar. */
-  readonly source: MappedFile | null;
+  /** Its file, and the map of its bones that the user gave (undefined: none); null: a built-in avatar. */
+  readonly source: { readonly checked: AvatarFile; readonly bones: BoneMap | undefined } | null;
 }
 
 export interface AvatarLoaderOptions {

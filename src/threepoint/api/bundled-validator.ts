@@ -1,3 +1,8 @@
-/** Starts a worker that validates files of avatars. */
-export const startValidator = async (): Promise<Worker> =>
-  new Worker(new URL('../avatar/file/avatar-check-worker.ts', import.meta.url), { type: 'module' });
+/**
+ * Starts a worker that validates files of avatars; null: there are no workers of the web, as in Node, where
+ * onnxruntime-web sets this global to those of worker_threads.
+ */
+export const startValidator = async (): Promise<Worker | null> =>
+  globalThis.Worker?.prototype instanceof EventTarget
+    ? new Worker(new URL('../avatar/file/avatar-check-worker.ts', import.meta.url), { type: 'module' })
+    : null;

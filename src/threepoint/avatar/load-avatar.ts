@@ -11,6 +11,7 @@ import { removeInvalidExpressionBinds } from './file/expression-binds';
 import { readGlbChunks } from './file/glb-chunks';
 import { inspectAvatar } from './file/inspect-avatar';
 import { makeGeometryPlain } from './file/plain-geometry';
+import { removeInvalidSprings } from './file/valid-springs';
 import { restoreBindPose } from './humanoid/bind-pose';
 import { assertNeededBones, boneNode } from './humanoid/needed-bones';
 import { settleRest } from './humanoid/rest-pose';
@@ -48,20 +49,23 @@ export async function parseAvatar(
 }
 
 /** Parses a file that has passed `checkAvatar`. */
-export async function parseChecked(checked: ReadableAvatar, name: string, options: ParseOptions = {}) {
-  const { gltf, own } = await readScene(checked, name, options);
-  // Files without a humanoid of their own need the matcher, which others do not load.
-  const vrm = own ?? (await import('./humanoid/create-humanoid')).createHumanoid(gltf.scene, name, options.bones);
-  settleRest(vrm, name);
-  return { name, vrm, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
+export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, name: string, options: ParseOptions = {}) {
+  try {
+    const { gltf, own } = await readScene(checked, name, options);
+    // Files without a humanoid of their own need the matcher, which others do not load.
+    const vrm = own ?? (await import('./humanoid/create-humanoid')).createHumanoid(gltf.scene, name, options.bones);
+    settleRest(vrm, name);
+    return { name, vrm, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
+  } catch (error) {
+    // three-vrm reads its extensions without a check.
+    if (!(error instanceof TypeError || error instanceof RangeError)) throw error;
+    throw new Error(`${name}: cannot be read as an avatar (its parts do not fit together)`, { cause: error });
+  }
 }
-
-/** A file that has passed `checkAvatar`. */
-export type ReadableAvatar = Pick<CheckedAvatar, 'bytes' | 'usedCompressions' | 'file'>;
 
 /** Reads the scene of a file in bind pose, and its VRM; undefined: it is no VRM. */
 export async function readScene(
-  { bytes, usedCompressions, file }: ReadableAvatar,
+  { bytes, usedCompressions, file }: Omit<CheckedAvatar, 'hash'>,
   name: string,
   { bones, decoders = {} }: ParseOptions,
 ): Promise<{ readonly gltf: GLTF; readonly own: VRM | undefined }> {
@@ -69,6 +73,7 @@ export async function readScene(
   for (const extension of usedCompressions) await decoders[extension]?.(loader);
   loader.register(withoutAnimations);
   loader.register(removeInvalidExpressionBinds);
+  loader.register(removeInvalidSprings);
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const chunks = readGlbChunks(new Uint8Array(bytes))!;
   loader.register(blobBufferViews(chunks.binary, file));

@@ -94,6 +94,13 @@ test('an FBX avatar takes motion as GLB', async () => {
   expect(writer.extension).toBe('glb');
 });
 
+test.each(forms)('names that every object has are left out of FBX as %s', async (_, write) => {
+  const odd = ['__proto__', 'constructor', 'toString'].map((called) => fbxNode(called, [1], [fbxNode('a', ['b'])]));
+  const inside = (nodes: readonly FbxNode[]): readonly FbxNode[] =>
+    nodes.map((node) => ({ ...node, children: node.children.length > 0 ? [...odd, ...inside(node.children)] : [] }));
+  expectBody(wear(await parseChecked(await check(write(inside(builtFbx({ nameOf })))), name)));
+});
+
 describe('is refused with a sentence', () => {
   const refused = (bytes: ArrayBuffer) => expect(check(bytes)).rejects;
   const geometry = (...children: readonly FbxNode[]) =>
@@ -131,7 +138,7 @@ describe('is refused with a sentence', () => {
     const file = new Uint8Array(fbxBinary(geometry(fbxNode('Vertices', [[0, 0, 0]]))));
     const at = Buffer.from(file.buffer).lastIndexOf('Vertices') + 'Vertices'.length + 1;
     new DataView(file.buffer).setUint32(at, 2 ** 31, true);
-    await refused(file.buffer).toThrow('holds more than 40 million numbers');
+    await refused(file.buffer).toThrow('holds more than 20 million numbers');
   });
 
   test('more packed arrays than are unpacked in a few seconds, before the first one is', async () => {
@@ -139,28 +146,6 @@ describe('is refused with a sentence', () => {
     const arrays = Array.from({ length: 100_001 }, () => array);
     const many = fbxBinary([fbxNode('Objects', arrays)], () => bytes);
     await refused(many).toThrow('holds more than 100000 packed arrays');
-  });
-
-  test('a polygon without end', async () => {
-    const corners = Int32Array.from({ length: 2000 }, (_, i) => i);
-    for (const [, write] of forms) {
-      await refused(write(geometry(fbxNode('PolygonVertexIndex', [corners])))).toThrow(
-        'polygon of more than 1000 corners',
-      );
-    }
-  });
-
-  test('a curve that turns without end', async () => {
-    for (const [, write] of forms) {
-      const turns = { hips: [[0, 0, 0], [1e30, 0, 0], [0, 0, 0]] as const }; // biome-ignore format: three angles
-      await refused(write(builtFbx({ nameOf, turns }))).toThrow('an animation that turns without end');
-    }
-  });
-
-  test('names that every object has', async () => {
-    for (const [, write] of forms) {
-      await refused(write(geometry(fbxNode('__proto__', [1])))).toThrow('a node is called “__proto__”');
-    }
   });
 
   test('a file of more than 60 MB, before it is read', async () => {

@@ -1,14 +1,20 @@
 import { deflateSync } from 'node:zlib';
 import { expect, onTestFinished, test, vi } from 'vitest';
+import { untrustedAvatarLimits } from '../../../src/threepoint/avatar/file/avatar-limits';
+import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
 import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from '../../../src/threepoint/avatar/file/fbx/glb-of-scene';
+import { readGltfMotion } from '../../../src/threepoint/avatar/file/read-gltf-motion';
+import { parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { createRandom } from '../../../src/threepoint/core/math/random';
+import { prepareMocap } from '../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../src/threepoint/core/motion/work';
 import { releaseMemory } from '../../collect-garbage.mjs';
 import { reportFigures } from '../../reliability/report-figures';
-import { mutatedFiles, ReadingCosts } from '../mutated-files';
+import { mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
 import { builtFbx } from './built-fbx';
 import { type FbxNode, fbxBinary, fbxText } from './fbx-file';
-import { partsOf } from './glb';
+import { type GltfJson, partsOf } from './glb';
 import { mixamo } from './rig-namings';
 
 const name = 'person.fbx';
@@ -23,10 +29,17 @@ const nodes = builtFbx({
   turns: { leftUpperArm: Array.from({ length: 8 }, (_, frame) => [0, 0, -9 * frame] as const) },
 });
 
+const allNodes = (all: readonly FbxNode[]): FbxNode[] => all.flatMap((node) => [node, ...allNodes(node.children)]);
+const spoilable = allNodes(nodes);
+
 type Write = (nodes: readonly FbxNode[]) => ArrayBuffer;
 const forms: readonly Write[] = [fbxText, (all) => fbxBinary(all), (all) => fbxBinary(all, deflateSync)];
 const whole = forms.map((write) => write(nodes));
 const oddNumbers = [0, -1, 0.5, 1e9, -1e9, 2 ** 31 - 1, 1e300, -1e-300];
+const namesIn = (all: readonly FbxNode[]): string[] =>
+  all.flatMap(({ name, children }) => [name, ...namesIn(children)]);
+/** Every name of the file, so that one node is taken for another. */
+const fileNames = [...new Set(namesIn(nodes))];
 const oddNames = ['', '__proto__', 'constructor', 'Objects', 'a', 'Model::', 'Cluster', 'Skin', 'Mesh', 'BlendShape'];
 
 /** Ways to spoil a file: its bytes, or what its nodes say. */
@@ -49,13 +62,17 @@ function spoilers(chance: () => number) {
     return list;
   };
   const spoiledNode = (node: FbxNode): FbxNode => {
-    const way = below(5);
+    const way = below(8);
     if (way === 0) return { ...node, children: node.children.filter(() => chance() < 0.7) };
     if (way === 1)
       return { ...node, properties: node.properties.map((each) => (chance() < 0.5 ? spoiledProperty(each) : each)) };
     if (way === 2) return { ...node, properties: node.properties.slice(1) };
     if (way === 3) return { ...node, children: [...node.children, ...node.children] };
-    return { ...node, name: oneOf(oddNames) };
+    if (way === 4) return { ...node, name: oneOf(oddNames) };
+    if (way === 5) return { ...node, name: oneOf(fileNames) };
+    // A node in the place of another, or inside it.
+    const other = oneOf(spoilable);
+    return way === 6 ? { ...other, name: node.name } : { ...node, children: [...node.children, other] };
   };
   const spoiled = (node: FbxNode, share: number): FbxNode => {
     const children = node.children.map((child) => spoiled(child, share));
@@ -97,6 +114,33 @@ test('what is held of a file of several MB with packed arrays is a few times its
 
 const files = mutatedFiles(250);
 
+/** Returns how many numbers of a GLB file are not finite. JSON has no such numbers: they are written as null. */
+function unfiniteNumbers({ accessors = [], bufferViews, nodes }: GltfJson, binary: Uint8Array): number {
+  const floats = accessors.flatMap(({ componentType, bufferView }) => {
+    const { byteOffset = 0, byteLength } = bufferViews[bufferView!]!;
+    return componentType === 5126
+      ? [...new Float32Array(binary.slice(byteOffset, byteOffset + byteLength).buffer)]
+      : [];
+  });
+  const nulls = JSON.stringify([accessors, nodes]).match(/null/g) ?? [];
+  return nulls.length + floats.filter((value) => !Number.isFinite(value)).length;
+}
+
+/** Reads a converted file as the page does: the body that is worn, or the motion of a person. */
+async function wornOrMoved(bytes: ArrayBuffer, parts: SceneParts): Promise<void> {
+  if (parts === 'motion') {
+    const { clips } = finishWork(prepareMocap({ name, ...(await readGltfMotion(bytes, name)) }));
+    for (const { tracked } of clips) expect(tracked.every(Number.isFinite)).toBe(true);
+    return;
+  }
+  const options = { name, supportedCompressions: [], limits: untrustedAvatarLimits };
+  const { vrm } = await parseChecked(await checkAvatar(bytes, options), name);
+  vrm.scene.traverse((node) => {
+    node.updateMatrix();
+    expect(node.matrix.elements.every(Number.isFinite), node.name).toBe(true);
+  });
+}
+
 test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each in a moment`, {
   timeout: 3_600_000,
 }, async () => {
@@ -104,8 +148,8 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   vi.spyOn(console, 'error').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
-  const spoil = spoilers(createRandom(20261127));
-  const counts = { 'FBX refused': 0, 'FBX read': 0 };
+  const spoil = spoilers(createRandom(mutationSeed));
+  const counts = { 'FBX refused': 0, 'FBX read': 0, 'FBX worn or moved': 0 };
   // What the reader holds once it has been loaded is no multiple of a file.
   await convertToGlb(whole[0]!, name, 'body');
   const costs = new ReadingCosts(releaseMemory);
@@ -116,10 +160,18 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
     if (read instanceof Error) {
       expect(read.message, `file ${i}`).toMatch(/^person\.fbx: cannot be read as FBX \(.+\)$/s);
       counts['FBX refused'] += 1;
-    } else {
-      expect(partsOf(new Uint8Array(read)).json.nodes.length, `file ${i}`).toBeGreaterThan(0);
-      counts['FBX read'] += 1;
+      continue;
     }
+    counts['FBX read'] += 1;
+    const { json, binary } = partsOf(new Uint8Array(read));
+    expect(json.nodes.length, `file ${i}`).toBeGreaterThan(0);
+    expect(unfiniteNumbers(json, binary), `file ${i}`).toBe(0);
+    const worn = await costs.measure(file.byteLength, () => wornOrMoved(read, parts));
+    if (!(worn instanceof Error)) counts['FBX worn or moved'] += 1;
+    else
+      expect(worn.message, `file ${i}: ${worn.stack}`).toMatch(
+        /^person\.fbx: (?!.*(undefined|Cannot read|is not a function))/s,
+      );
   }
   reportFigures('mutated-avatars', { 'FBX files': files, ...counts, ...costs.figures('FBX') });
   expect(costs.longestMs).toBeLessThan(1000);

@@ -5,7 +5,7 @@ import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
 import { parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { createRandom } from '../../../src/threepoint/core/math/random';
 import { reportFigures } from '../../reliability/report-figures';
-import { mutatedFiles, ReadingCosts } from '../mutated-files';
+import { mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
 import { builtRig } from './built-rig';
 import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
 import { vroid } from './rig-namings';
@@ -98,6 +98,41 @@ test.each([
   expect(vrm.humanoid.getRawBoneNode('head')).not.toBeNull();
 });
 
+interface SpringExtensions {
+  readonly VRMC_springBone?: {
+    readonly colliders: readonly { readonly shape: { readonly sphere: { offset: unknown } } }[];
+  };
+  readonly VRM?: {
+    readonly secondaryAnimation: {
+      readonly colliderGroups: readonly { readonly colliders: readonly { offset: unknown }[] }[];
+    };
+  };
+}
+
+/** The springs of a file with a value in place of the offset of its collider. */
+const withOffset = (file: ArrayBuffer, offset: unknown) =>
+  changed(
+    ({ extensions }) => {
+      const { VRMC_springBone: springs, VRM: old } = extensions as SpringExtensions;
+      const collider = springs?.colliders[0]?.shape.sphere ?? old?.secondaryAnimation.colliderGroups[0]?.colliders[0];
+      if (offset !== undefined) collider!.offset = offset;
+    },
+    new Uint8Array(),
+    new Uint8Array(file),
+  );
+
+test.each([
+  ['VRM 1.0', smallVrm, [{ toString: null }, 0, 0]],
+  ['VRM 1.0', smallVrm, ['a', 0, 0]],
+  ['VRM 0.x', smallOldVrm, { x: { toString: null }, y: 0, z: 0 }],
+  ['VRM 0.x', smallOldVrm, { x: 'a', y: 0, z: 0 }],
+])('the springs of a %s whose numbers are none are left out', async (_, file, offset) => {
+  const read = async (bytes: ArrayBuffer) =>
+    (await parseChecked(await checkAvatar(bytes, { name, supportedCompressions: [] }), name)).vrm.springBoneManager;
+  expect((await read(withOffset(file, undefined)))!.joints.size).toBeGreaterThan(0);
+  expect((await read(withOffset(file, offset)))?.joints.size ?? 0).toBe(0);
+});
+
 test('files of avatars, spoiled, are refused in a sentence or read as a body of finite numbers, each in a moment', {
   tags: ['full'],
   timeout: 3_600_000,
@@ -105,7 +140,7 @@ test('files of avatars, spoiled, are refused in a sentence or read as a body of 
   // The reader warns of what it passes over.
   vi.spyOn(console, 'warn').mockReturnValue(undefined);
   onTestFinished(() => void vi.restoreAllMocks());
-  const spoil = spoilers(createRandom(20261126));
+  const spoil = spoilers(createRandom(mutationSeed));
   const counts = { refused: 0, 'refused by the reader': 0, read: 0 };
   const [checking, building] = [new ReadingCosts(), new ReadingCosts()];
   for (let i = 0; i < files; i++) {

@@ -5,10 +5,11 @@ import { MotionOnlyError } from './motion-only-error';
 /** The longest time [ms] that the start of a worker, and its check, may take. */
 const patienceMs = 20_000;
 
+/** Starts a worker of avatar-check-worker.ts; null: there are no workers here. */
+type StartWorker = () => Worker | null | Promise<Worker | null>;
+
 /** Resolves when a worker of avatar-check-worker.ts has reported that it runs, or to null where it does not start. */
-async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Worker | null> {
-  // Node has no web workers, but onnxruntime-web sets this global to the workers of node:worker_threads.
-  if (!(globalThis.Worker?.prototype instanceof EventTarget)) return null;
+async function startedWorker(start: StartWorker): Promise<Worker | null> {
   // reason: a page without workers, or whose policy forbids them, throws or emits an error; both mean that none starts.
   const worker = await Promise.resolve()
     .then(start)
@@ -33,7 +34,7 @@ async function startedWorker(start: () => Worker | Promise<Worker>): Promise<Wor
  * the given buffer is empty afterwards. `instead`: the check if no worker starts.
  */
 export const createWorkerCheck =
-  (start: () => Worker | Promise<Worker>, instead: AvatarCheck): AvatarCheck =>
+  (start: StartWorker, instead: AvatarCheck): AvatarCheck =>
   async (bytes, question) => {
     const worker = await startedWorker(start);
     return worker ? checkedBy(worker, bytes, question) : instead(bytes, question);

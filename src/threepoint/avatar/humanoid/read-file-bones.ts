@@ -2,7 +2,8 @@ import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
 import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { type FileBones, fileBones } from '../../core/humanoid/unknown-bones-error';
-import { type Decoders, type ReadableAvatar, readScene } from '../load-avatar';
+import type { CheckedAvatar } from '../file/check-avatar';
+import { type Decoders, readScene } from '../load-avatar';
 import { skeletonOf } from './create-humanoid';
 
 /** The bones of a file, and whether it can be used without a bone map. */
@@ -14,7 +15,7 @@ export interface ReadBones extends FileBones {
  * Reads the bones of a checked file and matches them: by a VRM's humanoid, else by the matcher. Rejects with an Error
  * that names the file.
  */
-export async function readFileBones(checked: ReadableAvatar, name: string, decoders: Decoders): Promise<ReadBones> {
+export async function readFileBones(checked: CheckedAvatar, name: string, decoders: Decoders): Promise<ReadBones> {
   const { gltf, own } = await readScene(checked, name, { decoders });
   const { scene } = gltf;
   try {

@@ -78,7 +78,7 @@ export interface PreparedMocap {
 }
 
 /** A file's motion before it is cut into clips. */
-type ReadMocap = { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>;
+export type ReadMocap = { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>;
 
 /** Returns the fault as a sentence that begins with the name of its file. */
 function faultIn(name: string, error: unknown): Error {

@@ -76,6 +76,16 @@ export const rotationAt = (
 ): MutableQuat => readQuat(rotations, frame * rotationsWidth + 4 * joint, target);
 
 const framesPerStep = 64;
+/** The largest distance of a joint from the origin, along each axis [m]. */
+const farthest = 1000;
+
+/** Throws a sentence where a joint is too far from the origin. `when`: a frame, or the rest pose. */
+function checkPlace({ joints: names }: MappedSkeleton, joint: TruthJoint, { x, y, z }: Vec3, when: string): void {
+  const away = Math.max(Math.abs(x), Math.abs(y), Math.abs(z));
+  if (away <= farthest) return;
+  const where = away < 1e9 ? `is ${Math.round(away)} m from the origin` : 'is beyond all bounds';
+  throw new Error(`the joint ${names[joint] ?? 'assumed'} (${joint}) ${where} in ${when}; ${farthest} m is the limit`);
+}
 
 const unitNames: Readonly<Record<string, string>> = {
   ...{ 0.001: 'millimetres', 0.1: 'decimetres', 0.0254: 'inches', 0.3048: 'feet' },
@@ -180,6 +190,7 @@ export function* toTruthMotion(
   const { columns, between, floor, motionFloor } = skeleton;
   const restFromFloor = conjugate(floor);
   const rest = restInMetres(file, skeleton, unit);
+  for (const [joint, place] of rest) checkPlace(skeleton, joint, place, 'the rest pose');
   checkRest(rest, skeleton);
   const wrists: Partial<Record<TrackedJoint, Quat>> = {
     leftHand: wristFromRest('left', rest),
@@ -218,6 +229,7 @@ export function* toTruthMotion(
     }
     for (const [i, joint] of truthJoints.entries()) {
       if (columns[joint] === undefined && !between[joint as keyof typeof between]) continue;
+      checkPlace(skeleton, joint, places.get(joint)!, `frame ${frame + 1}`);
       writeVec3(places.get(joint)!, positions, frame * positionsWidth + 3 * i);
     }
     for (const [i, joint] of trackedJoints.entries()) {

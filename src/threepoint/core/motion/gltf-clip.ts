@@ -35,6 +35,9 @@ const rateHz = 60;
 /** Two and a half hours. */
 const maxFrames = 540_000;
 const maxNodes = 5000;
+/** The longest time between two keys, on average, of clips above ten minutes [s]: few keys are not read for long. */
+const maxKeySeconds = 10;
+const shortClipSeconds = 600;
 
 /** By how much a time in single precision may be too small, as a share of it. */
 const precision = 2 ** -23;
@@ -255,6 +258,13 @@ export class GltfClip {
     if (this.order.length < this.nodes.length) throw new Error('the nodes go in a circle: a bone is its own ancestor');
     this.#scene = new Scene(this.nodes, this.order);
     const duration = readTracks(description, binary, this.nodes, animation);
+    const keys = this.nodes
+      .flatMap(({ tracks }) => tracks)
+      .reduce((most, { times }) => Math.max(most, times.length), 0);
+    if (duration > Math.max(shortClipSeconds, maxKeySeconds * keys))
+      throw new Error(
+        `it lasts ${Math.round(duration)} s with ${keys} keys; motion has one in ${maxKeySeconds} s at least`,
+      );
     this.frameCount = Math.floor(duration * (1 + precision) * rateHz + 1e-6) + 1;
     if (!(this.frameCount <= maxFrames))
       throw new Error(`it lasts ${Math.round(duration)} s; a person's motion here may last 9000`);

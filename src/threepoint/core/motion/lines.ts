@@ -1,6 +1,8 @@
 const maxShown = 40;
 /** The longest line of a motion file [characters]. */
 const longestLine = 2 ** 20;
+/** The largest number of a motion file: a thousand kilometres in millimetres. */
+const largestNumber = 1e9;
 
 /** Returns a text of a file in quotes, shortened, for messages. */
 export const shown = (text: string): string => `“${text.length > maxShown ? `${text.slice(0, maxShown)}…` : text}”`;
@@ -64,10 +66,12 @@ export class Lines {
     return decimal;
   }
 
-  /** Returns the number that a word stands for; throws where it is no finite number. */
+  /** Returns the number that a word stands for; throws where it is no finite number, or too large for any motion. */
   numberOf({ word, column }: Word): number {
     const value = this.parse(word);
     if (Number.isNaN(value)) this.fail(column, `${shown(word)} is no finite number`);
+    if (Math.abs(value) > largestNumber)
+      this.fail(column, `${shown(word)} is too large; ${largestNumber} is the limit`);
     return value;
   }
 
@@ -84,7 +88,7 @@ export class Lines {
       while (end < line.length && line.charCodeAt(end) > 32) end++;
       const word = line.slice(i, end);
       let value = Number(word);
-      if (!Number.isFinite(value)) value = this.numberOf({ word, column: i + 1 });
+      if (!(Math.abs(value) <= largestNumber)) value = this.numberOf({ word, column: i + 1 });
       if (count < width) target[at + count] = value;
       count += 1;
       i = end;

@@ -10,14 +10,17 @@ interface Bound {
   readonly rotation: Quat;
 }
 
-/** Returns where skins were bound to their joints, by node. */
+/** Returns where skins were bound to their joints, by node. Throws a sentence where a joint is no node. */
 function bindPoses(description: Json, binary: Uint8Array): ReadonlyMap<number, Bound> {
   const bound = new Map<number, Bound>();
-  for (const { joints, inverseBindMatrices } of objects(description.skins)) {
+  const nodeCount = objects(description.nodes).length;
+  for (const [skin, { joints, inverseBindMatrices }] of objects(description.skins).entries()) {
     if (!Array.isArray(joints) || inverseBindMatrices === undefined) continue;
     const inverses = accessorOf(description, binary, inverseBindMatrices);
     for (const [i, joint] of joints.entries()) {
-      if (!isIndex(joint) || bound.has(joint) || inverses.length < 16 * (i + 1)) continue;
+      if (!isIndex(joint) || joint >= nodeCount)
+        throw new Error(`skins[${skin}].joints[${i}] is a node that is not there`);
+      if (bound.has(joint) || inverses.length < 16 * (i + 1)) continue;
       const { translation, rotation, scale: size } = decompose([...inverses.subarray(16 * i, 16 * i + 16)]);
       const back = conjugate(rotation);
       bound.set(joint, { position: scale(rotate(back, translation), -1 / size.x), rotation: back });

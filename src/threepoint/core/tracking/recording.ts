@@ -38,6 +38,8 @@ const fingersSince = 2;
 const bodySince = 3;
 
 const poseColumns = 7;
+/** The largest distance of what is tracked from the origin, along each axis [m]. */
+const farthest = 1000;
 /** The number of columns of a hand: five fingers of four joints, and a pinch. */
 const bendColumns = 21;
 const columns =
@@ -215,6 +217,8 @@ function parsePose(value: unknown, what: string): TrackedPose {
     throw new Error(`${what} is neither “tracked” nor “emulated”.`);
   }
   const [px, py, pz, x, y, z, w] = value as number[];
+  if (Math.max(Math.abs(px!), Math.abs(py!), Math.abs(pz!)) > farthest)
+    throw new Error(`${what} is more than ${farthest} m from the origin.`);
   const orientation = { x: x!, y: y!, z: z!, w: w! };
   if (Math.abs(Math.hypot(x!, y!, z!, w!) - 1) > 1e-3)
     throw new Error(`${what} has an orientation that is not a unit quaternion.`);
@@ -238,6 +242,8 @@ function parseBody(value: unknown, what: string): DeviceBody {
   if (!Array.isArray(value) || value.length !== deviceBodySize || !value.every(isFiniteNumber)) {
     throw new Error(`${what} is not ${deviceBodySize} finite numbers.`);
   }
+  if (value.some((number) => Math.abs(number) > farthest))
+    throw new Error(`${what} is more than ${farthest} m from the origin.`);
   return Float32Array.from(value);
 }
 

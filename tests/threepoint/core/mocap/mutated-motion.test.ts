@@ -5,7 +5,7 @@ import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/
 import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { writeVrma } from '../../../../src/threepoint/core/motion/write-vrma';
 import { reportFigures } from '../../../reliability/report-figures';
-import { mutatedFiles, ReadingCosts } from '../../mutated-files';
+import { mutatedFiles, mutationSeed, ReadingCosts } from '../../mutated-files';
 import { actingPerson, bytesOf } from '../motion/moved-person';
 import { madeBvh } from './made-bvh';
 
@@ -16,7 +16,7 @@ const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
 /** Reads spoiled files; each is refused in a sentence or becomes finite trackers, with a second of work at most. */
 async function readAll(format: string, count: number, spoil: () => MocapSource & { readonly bytes: number }) {
   // Every format has its own numbers, so that one can be run without the other.
-  chance = createRandom(20261127);
+  chance = createRandom(mutationSeed);
   const counts = { refused: 0, read: 0 };
   const costs = new ReadingCosts();
   for (let i = 0; i < count; i++) {

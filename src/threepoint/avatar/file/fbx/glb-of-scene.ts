@@ -79,6 +79,7 @@ class GlbWriter {
   }
 
   #accessor(values: Float32Array | Uint16Array | Uint32Array, type: string, size: number, bounds: object = {}): number {
+    if (!values.every(Number.isFinite)) throw new Error('has numbers that are not finite');
     const componentType =
       values instanceof Float32Array ? floatType : values instanceof Uint16Array ? shortType : wideType;
     const bytes = new Uint8Array(values.slice().buffer as ArrayBuffer);
@@ -98,6 +99,8 @@ class GlbWriter {
       rotation: object.quaternion.normalize().toArray(),
       scale: object.scale.toArray(),
     };
+    if (![...object.position, ...object.quaternion, ...object.scale].every(Number.isFinite))
+      throw new Error(`has a node without a finite place: “${nameOf(object).slice(0, 60)}”`);
     const index = this.#json.nodes.push(node) - 1;
     this.#nodes.set(object, index);
     const children: number[] = [];

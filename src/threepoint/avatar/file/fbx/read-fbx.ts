@@ -1,8 +1,8 @@
 import { type AnimationClip, type Group, Loader, LoadingManager, Texture } from 'three';
 import { FBXLoader } from 'three/addons/loaders/FBXLoader.js';
 import { reasonOf } from '../../../core/errors/reasons';
+import { checkedFbx } from './check-fbx';
 import { glbOfScene, type SceneParts } from './glb-of-scene';
-import { plainFbx } from './inspect-fbx';
 
 /** Stores the URL of each picture instead of decoding it; the reader of the converted file decodes. */
 class PictureAddresses extends Loader<Texture> {
@@ -22,10 +22,10 @@ async function embeddedPicture({ userData: { url } }: Texture): Promise<Uint8Arr
 }
 
 /** Reads FBX, binary or text, without a document: in a worker or in Node. */
-function sceneOf(bytes: Uint8Array): Group & { readonly animations: readonly AnimationClip[] } {
+function sceneOf(bytes: Uint8Array, parts: SceneParts): Group & { readonly animations: readonly AnimationClip[] } {
   const manager = new LoadingManager();
   manager.addHandler(/./, new PictureAddresses(manager));
-  return new FBXLoader(manager).parse(plainFbx(bytes), '');
+  return new FBXLoader(manager).parse(checkedFbx(bytes, parts), '');
 }
 
 /**
@@ -34,10 +34,11 @@ function sceneOf(bytes: Uint8Array): Group & { readonly animations: readonly Ani
  */
 export async function glbOfFbx(bytes: Uint8Array, name: string, parts: SceneParts): Promise<ArrayBuffer> {
   try {
-    return await glbOfScene(sceneOf(bytes), parts, embeddedPicture);
+    return await glbOfScene(sceneOf(bytes, parts), parts, embeddedPicture);
   } catch (error) {
     // The loader reads references between nodes without a check.
-    const reason = error instanceof TypeError ? 'its parts do not fit together' : reasonOf(error);
+    const reason =
+      error instanceof TypeError || error instanceof RangeError ? 'its parts do not fit together' : reasonOf(error);
     throw new Error(`${name}: cannot be read as FBX (${reason})`);
   }
 }
