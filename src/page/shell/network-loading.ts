@@ -1,5 +1,4 @@
 import type { BodySolverOptions } from 'threepoint';
-import { createInferenceWorker } from 'threepoint/onnx';
 import { type Notices, pageFolder } from 'threepoint-ui';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
@@ -18,7 +17,7 @@ export interface NetworkLoadingOptions {
 /** Loads networks by name. The download of the runtime starts at once. */
 export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverOptions['networks'] {
   const { provider, notices, loading } = options;
-  const networksArrive = import('threepoint/onnx').then(({ onnxNetworks }) =>
+  const networksArrive = import('threepoint/onnx').then(({ createInferenceWorker, onnxNetworks }) =>
     onnxNetworks({
       modelUrl: contractAt,
       provider,

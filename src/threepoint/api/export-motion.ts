@@ -1,6 +1,5 @@
 import type { Replayable } from '../core/tracking/recording';
 import { assertOptions, optionNames } from './assert-options';
-import { loadWithoutRuntime } from './load-learned';
 import type { MotionFile, MotionFileOptions } from './motion-file';
 
 export type ExportMotionOptions = Omit<MotionFileOptions, 'networks'> & Partial<Pick<MotionFileOptions, 'networks'>>;
@@ -27,7 +26,8 @@ const exportOptions = optionNames<ExportMotionOptions>({
  */
 export async function exportMotion(recording: Replayable, options: ExportMotionOptions): Promise<MotionFile> {
   assertOptions('exportMotion', options, exportOptions);
-  // Loaded on demand: pages that export nothing do not load the writers.
+  // Loaded on demand: pages that export nothing load neither the writers nor a network.
   const { writeMotionFile } = await import('./write-motion-file');
-  return writeMotionFile(recording, { ...options, networks: options.networks ?? loadWithoutRuntime });
+  const networks = options.networks ?? (await import('./load-learned')).loadWithoutRuntime;
+  return writeMotionFile(recording, { ...options, networks });
 }
