@@ -1,4 +1,4 @@
-import contract from '../../../public/models/learned.json';
+import contract from '../../../public/models/learned.json' with { type: 'json' };
 import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';

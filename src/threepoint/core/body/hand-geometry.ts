@@ -18,7 +18,7 @@ import {
   vec3,
 } from '../math/vec3';
 import { recordOf } from '../records';
-import proportions from './hand-geometry.json';
+import proportions from './hand-geometry.json' with { type: 'json' };
 import { type FingerBend, type FingerName, fingerNames, type MutableFingerBend } from './hand-shape';
 
 /**

@@ -2,11 +2,13 @@ import { clamp } from '../math/damper';
 import { fromAxisAngle, type Quat } from '../math/quat';
 import type { Side } from '../math/side';
 import { add, length, up, type Vec3, vec3 } from '../math/vec3';
-import proportions from './body-proportions.json';
+import proportions from './body-proportions.json' with { type: 'json' };
 import type { Calibration } from './calibration';
 import type { JointName } from './joints';
-import { forearmShare, forearmWeight, shortestArm } from './limb-limits.json';
+import limbLimits from './limb-limits.json' with { type: 'json' };
 import type { LimbBones } from './two-bone-ik';
+
+const { forearmShare, forearmWeight, shortestArm } = limbLimits;
 
 /**
  * The calibrated body in T-pose, facing −Z: each joint's offset [m] from its parent (`hips`: from the floor below),

@@ -1,6 +1,6 @@
 import { clamp } from '../math/damper';
 import { addScaled, length, type MutableVec3, normalise, reject, subtract, type Vec3, vec3 } from '../math/vec3';
-import limits from './limb-limits.json';
+import limits from './limb-limits.json' with { type: 'json' };
 
 /** The lengths [m] of a limb's two bones. */
 export interface LimbBones {

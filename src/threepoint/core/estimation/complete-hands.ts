@@ -46,7 +46,7 @@ import { type Heading, readHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import { alongArc, type DirectionArc, directionArc, makeDirectionArc, viaDirection } from './arms/direction-arc';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
-import lostHand from './lost-hand.json';
+import lostHand from './lost-hand.json' with { type: 'json' };
 
 /**
  * The durations of a lost hand [s]: most losses are shorter than it is held, and most other hands come back near their

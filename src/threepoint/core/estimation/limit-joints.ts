@@ -3,7 +3,9 @@ import { rotate } from '../math/quat';
 import { add, copyVec3, distance, lerp, subtract, vec3 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import { type JointPositions, type MutableJointPositions, makeJoints, mapJoints } from './joint-positions';
-import { catchUpSpeed, doubtfulSpeed } from './smoothing.json';
+import smoothing from './smoothing.json' with { type: 'json' };
+
+const { catchUpSpeed, doubtfulSpeed } = smoothing;
 
 export interface LimitJointsState {
   /** False before the first frame, which passes unchanged. */

@@ -1,5 +1,5 @@
 import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
-import limbLimits from '../body/limb-limits.json';
+import limbLimits from '../body/limb-limits.json' with { type: 'json' };
 import {
   elbowCircle,
   elbowOnCircle,
@@ -44,7 +44,7 @@ import {
   vec3,
 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
-import limits from './kinematic-limits.json';
+import limits from './kinematic-limits.json' with { type: 'json' };
 import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from './pin';
 import type { TrackedJoints } from './tracked-joints';
 import { makeTrunkRotations, placeShoulder, type TorsoBones, type TorsoPose, trunkBones } from './trunk/fit-torso';

@@ -2,7 +2,9 @@ import { type FilteredPose, filterPose, makeFilteredPose } from '../math/one-eur
 import { type Side, sides } from '../math/side';
 import { copyVec3, distance, type MutableVec3, subtract, vec3 } from '../math/vec3';
 import type { CompletedFrame } from './complete-hands';
-import { trackers as tuning } from './smoothing.json';
+import smoothing from './smoothing.json' with { type: 'json' };
+
+const { trackers: tuning } = smoothing;
 
 type Tracker = 'head' | 'leftHand' | 'rightHand';
 const trackers: readonly Tracker[] = ['head', 'leftHand', 'rightHand'];

@@ -1,6 +1,8 @@
 import { add, length, scale, type Vec3, vec3 } from '../math/vec3';
 import type { BvhJoint } from '../motion/read-bvh';
-import { cmuconvert } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
+
+const { cmuconvert } = mocapRules;
 
 /** The children of the lost thorax bone, and the joints that identify a file of cmuconvert. */
 const thoraxChildren = ['Neck', 'LeftShoulder', 'RightShoulder'];

@@ -4,10 +4,12 @@ import { sides } from '../math/side';
 import { median, quantile } from '../math/statistics';
 import { forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
-import { eyesFromHeadJoint } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
 import { armSpanAtRest, eyeHeightAtRest } from './rest-joints';
 import type { TruthJoint } from './skeleton-map';
 import { positionAt, rotationAt, type TruthMotion } from './truth-motion';
+
+const { eyesFromHeadJoint } = mocapRules;
 
 /** Frames of a motion, from one to before another. */
 export interface Piece {

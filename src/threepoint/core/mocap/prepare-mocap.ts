@@ -14,13 +14,15 @@ import { restoreLostBones } from './cmuconvert';
 import { doubtsOf } from './doubts';
 import { floorFromFile, fromMappedRest } from './mapped-motion';
 import { jointsToDraw, type MatchedMotion, matchSkeleton } from './match-skeleton';
-import { cmu, rateHz } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
 import { floorHeight, measuresOf, neutralHead } from './person';
 import { readSkeletonMap } from './read-skeleton-map';
 import { resampleClip, splitAtJumps } from './resampled-clip';
 import { simulateTrackers } from './simulate-trackers';
 import { acclaimMap, mappedSkeleton, type SkeletonMap } from './skeleton-map';
 import { type TruthMotion, toTruthMotion, unitOf } from './truth-motion';
+
+const { cmu, rateHz } = mocapRules;
 
 /** The text of a further file that a motion file needs, with its name. */
 interface NamedText {

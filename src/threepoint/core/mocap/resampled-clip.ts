@@ -1,8 +1,10 @@
 import { conjugate, multiply, type Quat, quat, slerp, writeQuat } from '../math/quat';
-import { rateHz, shortestPieceSeconds, teleportSpeed } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
 import type { Piece } from './person';
 import { bodyJoints, trackedJoints } from './skeleton-map';
 import { positionsWidth, rotationAt, rotationsWidth, type TruthMotion } from './truth-motion';
+
+const { rateHz, shortestPieceSeconds, teleportSpeed } = mocapRules;
 
 /** Returns the frames at which a motion jumps, and the pieces between them that are long enough to be motion. */
 export function splitAtJumps({ positions, rateHz: rate, frameCount }: TruthMotion): {

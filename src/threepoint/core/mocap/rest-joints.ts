@@ -2,8 +2,10 @@ import { sideSign } from '../body/skeleton';
 import { type Side, sides } from '../math/side';
 import { mean } from '../math/statistics';
 import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
-import { eyesFromHeadJoint, shortestBone } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
 import type { MappedSkeleton, TruthJoint } from './skeleton-map';
+
+const { eyesFromHeadJoint, shortestBone } = mocapRules;
 
 /** The joints at rest [m], +Y up, facing −Z, without those that a file lacks. */
 export type RestJoints = ReadonlyMap<TruthJoint, Vec3>;

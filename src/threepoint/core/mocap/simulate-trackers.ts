@@ -1,10 +1,12 @@
 import { fromAxisAngle, multiply, type Quat, rotate, writeQuat } from '../math/quat';
 import { createNormalRandom } from '../math/random';
 import { add, length, normalise, type Vec3, vec3, writeVec3 } from '../math/vec3';
-import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
 import type { ResampledClip } from './resampled-clip';
 import { trackedJoints } from './skeleton-map';
 import { positionAt, rotationAt } from './truth-motion';
+
+const { eyesFromHeadJoint, seed, trackers } = mocapRules;
 
 /** The number of values of a frame: position [m] and rotation (xyzw) of headset, left wrist and right wrist. */
 export const trackedWidth = 7 * trackedJoints.length;

@@ -1,5 +1,7 @@
 import type { Quat } from '../math/quat';
-import { acclaim } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
+
+const { acclaim } = mocapRules;
 
 /** The joints of the truth that every body has, by their VRM names; floor frame. */
 export const bodyJoints = [

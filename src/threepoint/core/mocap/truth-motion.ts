@@ -28,7 +28,7 @@ import {
   zero,
 } from '../math/vec3';
 import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
-import { armLength, cmu, eyesFromHeadJoint, units } from './mocap-rules.json';
+import mocapRules from './mocap-rules.json' with { type: 'json' };
 import { armAtRest, armSpanAtRest, checkRest, eyeHeightAtRest, headHeightAtRest, type RestJoints } from './rest-joints';
 import {
   type BetweenJoints,
@@ -38,6 +38,8 @@ import {
   trackedJoints,
   truthJoints,
 } from './skeleton-map';
+
+const { armLength, cmu, eyesFromHeadJoint, units } = mocapRules;
 
 /** A motion in the joints of the truth, floor frame [m], at its file's rate. */
 export interface TruthMotion {

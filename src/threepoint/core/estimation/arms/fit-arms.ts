@@ -38,7 +38,7 @@ import {
 import type { Mutable } from '../../records';
 import type { CompletedFrame, CompletedHand } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
-import { restSeconds } from '../lost-hand.json';
+import lostHand from '../lost-hand.json' with { type: 'json' };
 import type { TorsoPose } from '../trunk/fit-torso';
 import {
   type ArmDirections,
@@ -52,6 +52,8 @@ import {
 } from './arm-transition';
 import { viaDirection } from './direction-arc';
 import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, type SwivelState } from './swivel-limiter';
+
+const { restSeconds } = lostHand;
 
 /** The largest bend of a wrist relative to the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;

@@ -22,7 +22,7 @@ import {
   type Vec3,
   vec3,
 } from '../../math/vec3';
-import limits from '../kinematic-limits.json';
+import limits from '../kinematic-limits.json' with { type: 'json' };
 import type { TorsoPose } from '../trunk/fit-torso';
 
 const { trunkCapsule: capsule } = limits;

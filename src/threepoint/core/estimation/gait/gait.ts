@@ -4,7 +4,7 @@ import type { Mutable } from '../../records';
 import type { Tensor } from '../networks/model-weights';
 import { Perceptron } from '../networks/perceptron';
 import { GaitFeatures, type GaitPoints, gaitFeatureCount, yawOfHips } from './gait-features';
-import shipped from './gait-network.json';
+import shipped from './gait-network.json' with { type: 'json' };
 
 /**
  * The contents of a file of gait weights: its training data, and each tensor's shape and numbers

@@ -26,8 +26,8 @@ import {
   writeVec3,
 } from '../../math/vec3';
 import { type MutableJointPositions, makeJoints } from '../joint-positions';
-import limits from '../kinematic-limits.json';
-import parameters from './ik-parameters.json';
+import limits from '../kinematic-limits.json' with { type: 'json' };
+import parameters from './ik-parameters.json' with { type: 'json' };
 
 /** Head and wrists in the heading frame. */
 export interface ThreePoints {

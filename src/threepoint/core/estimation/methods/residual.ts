@@ -12,7 +12,9 @@ import { FeatureWindow } from '../networks/feature-window';
 import { featureCount, frameFeatures } from '../networks/frame-features';
 import { LatestResult } from '../networks/latest-result';
 import type { PoseRegressor } from '../networks/pose-regressor';
-import { correctionCutoff } from '../smoothing.json';
+import smoothing from '../smoothing.json' with { type: 'json' };
+
+const { correctionCutoff } = smoothing;
 
 /** Half-life [s] of the low-pass on the correction. */
 const correctionHalfLife = halfLifeOfCutoff(correctionCutoff);

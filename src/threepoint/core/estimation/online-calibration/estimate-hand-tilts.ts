@@ -15,7 +15,9 @@ import {
 } from '../../math/vec3';
 import type { CompletedFrame } from '../complete-hands';
 import type { IkSolution } from '../ik/solve-ik';
-import { calibratedMetres, doubtAngle, memoryMetres, usualMetres } from './hand-tilts.json';
+import handTilts from './hand-tilts.json' with { type: 'json' };
+
+const { calibratedMetres, doubtAngle, memoryMetres, usualMetres } = handTilts;
 
 /** The estimated tilt of one hand to its forearm; directions from elbow to wrist in the frame of the tracked hand. */
 interface HandTiltState {

@@ -3,7 +3,9 @@ import { type Side, sides } from '../../math/side';
 import { length, subtract, vec3 } from '../../math/vec3';
 import type { CompletedFrame } from '../complete-hands';
 import type { SolvedFrame } from '../joint-source';
-import { furthest, hanging, share, speed, unremarkable, usualReach } from './headset-rise.json';
+import headsetRise from './headset-rise.json' with { type: 'json' };
+
+const { furthest, hanging, share, speed, unremarkable, usualReach } = headsetRise;
 
 /** The estimate of the headset's rise above its nominal position on the head. */
 export interface HeadsetRiseState {

@@ -1,5 +1,5 @@
 import { clavicleRest, clavicleRoot } from '../../body/arm-rotations';
-import limbLimits from '../../body/limb-limits.json';
+import limbLimits from '../../body/limb-limits.json' with { type: 'json' };
 import { armBonesOf, type Skeleton } from '../../body/skeleton';
 import { clamp, smoothingFactor, smoothstep } from '../../math/damper';
 import {
@@ -39,7 +39,7 @@ import {
 import { recordOf } from '../../records';
 import type { CompletedFrame } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
-import limits from '../kinematic-limits.json';
+import limits from '../kinematic-limits.json' with { type: 'json' };
 import { followLean, increaseLean, type Lean, makeLean, startLeanFrame } from './lean-after-hand';
 
 const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;

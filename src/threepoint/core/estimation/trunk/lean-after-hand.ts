@@ -14,7 +14,7 @@ import {
   vec3,
 } from '../../math/vec3';
 import type { CompletedHand } from '../complete-hands';
-import limits from '../kinematic-limits.json';
+import limits from '../kinematic-limits.json' with { type: 'json' };
 
 const { anatomicalPasses, extremeReach } = limits.reach;
 
