@@ -1,4 +1,4 @@
-// Every entry of the package in TypeScript: compiled against the packed package by `npm run test:full`, run by no page.
+// Every entry of the package in TypeScript: compiled by `npm run types`, against the packed package by `npm run test:full`.
 import { createElement, type RefObject } from 'react';
 import type { Scene, WebGLRenderer } from 'three';
 import {
