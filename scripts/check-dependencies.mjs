@@ -1,9 +1,8 @@
 // node scripts/check-dependencies.mjs: checks the versions in every package.json, the lock file's hashes, the licences
 // of what ships, and that docs/architecture.md gives a reason for each dependency.
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { readManifests } from './manifests.mjs';
-import { mainOf, root, SetupError } from './run-command.mjs';
+import { main, root, SetupError } from './run-command.mjs';
 
 /** The licences that what ships may have. */
 const permissive = ['0BSD', 'Apache-2.0', 'BSD-2-Clause', 'BSD-3-Clause', 'BSL-1.0', 'ISC', 'MIT', 'Unlicense'];
@@ -95,23 +94,24 @@ function tableFaults(manifests, document) {
  * Returns the faults of the dependencies, one sentence each. `manifests`: every package.json by its folder.
  * @param {{ lock: object, manifests: Record<string, object>, document: string }} project
  */
-export const dependencyFaults = ({ lock, manifests, document }) => [
+const dependencyFaults = ({ lock, manifests, document }) => [
   ...versionFaults(manifests),
   ...lockFaults(lock),
   ...tableFaults(manifests, document),
 ];
 
 /** Reads what `dependencyFaults` checks from the repository. */
-export function readProject() {
+function readProject() {
   const text = (path) => readFileSync(join(root, path), 'utf8');
+  const folders = ['.', 'server', ...readdirSync(join(root, 'src')).map((name) => `src/${name}`)];
   return {
     lock: JSON.parse(text('package-lock.json')),
-    manifests: readManifests(),
+    manifests: Object.fromEntries(folders.map((folder) => [folder, JSON.parse(text(`${folder}/package.json`))])),
     document: text('docs/architecture.md'),
   };
 }
 
-await mainOf(import.meta.url, () => {
+await main(() => {
   const faults = dependencyFaults(readProject());
   if (faults.length > 0) throw new SetupError(`${faults.join('.\n')}.`);
 });

@@ -33,7 +33,7 @@ function publicNames(): string {
 
 test('the exported names of the public packages are those of public-api.txt', async () => {
   const advice =
-    'A public name changed. If that is meant, run npx vitest run tests/public-api.test.ts -u, and add a file to .changes: ' +
+    'A public name changed. If that is meant, run npx vitest run tests/public-api.test.ts -u, and add a file by npx changeset: ' +
     'major for a name that was removed or renamed, minor for a new one';
   await expect(publicNames(), advice).toMatchFileSnapshot('./public-api.txt');
 });
