@@ -1,5 +1,5 @@
-// npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one study
-// at once on one server process, each as the page behaves.
+// npm run tool -- bench:study [--participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one
+// study at once on one server process, each as the page behaves.
 
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,4 +1,4 @@
-// Every entry of the package in TypeScript: compiled against the packed package by `npm run test:full`, run by no page.
+// Every entry of the package, compiled against its source by `npm run types` and as packed by `npm run test:full`.
 import { createElement, type RefObject } from 'react';
 import type { Scene, WebGLRenderer } from 'three';
 import {

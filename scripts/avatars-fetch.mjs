@@ -1,12 +1,12 @@
-// npm run avatars:fetch -- DIR: downloads the public avatars and motions of tools/avatars/try/public-files.json from
-// GitHub, each at a fixed commit, for `npm run avatars:try -- DIR`. Files that are there already are kept. The files
-// belong to their authors: they are not part of this repository.
+// npm run tool -- avatars:fetch DIR: downloads the public avatars and motions of tools/avatars/try/public-files.json
+// from GitHub, each at a fixed commit, for `npm run tool -- avatars:try DIR`. Files that are there already are kept.
+// The files belong to their authors: they are not part of this repository.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { readOptions } from './command-line.mjs';
 import { main, root } from './run-command.mjs';
 
-const usage = 'npm run avatars:fetch -- DIR';
+const usage = 'npm run tool -- avatars:fetch DIR';
 const limitMs = 120_000;
 
 /** Returns the address of a file at a commit. Large files are kept in another store, of which GitHub has a pointer. */

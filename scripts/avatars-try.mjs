@@ -1,6 +1,6 @@
-// npm run avatars:try -- DIR [--out OUT]: opens each avatar of a folder as the page does and writes OUT/NAME.png with
-// fifteen postures (tools/avatars/try/postures.ts) from three sides and the first-person view. OUT/all.png shows all
-// avatars waving. Prints the reason for each rejected file. OUT defaults to DIR/sheets.
+// npm run tool -- avatars:try DIR [--out OUT]: opens each avatar of a folder as the page does and writes OUT/NAME.png
+// with fifteen postures (tools/avatars/try/postures.ts) from three sides and the first-person view. OUT/all.png shows
+// all avatars waving. Prints the reason for each rejected file. OUT defaults to DIR/sheets.
 import { mkdirSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import { ensureChromium } from './chromium.mjs';
@@ -8,7 +8,7 @@ import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, SetupError } from './run-command.mjs';
 
-const usage = 'npm run avatars:try -- DIR [--out OUT]';
+const usage = 'npm run tool -- avatars:try DIR [--out OUT]';
 
 function options() {
   const { rest, out } = readOptions('avatars:try', usage, { paths: ['out'], rest: 'paths' }, ({ rest }) => {

@@ -1,4 +1,4 @@
-// Draws the icons of the installed page from public/favicon.svg: `npm run build:icons`.
+// Draws the icons of the installed page from public/favicon.svg: `node scripts/build-icons.mjs`.
 import { mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from '@playwright/test';

@@ -55,79 +55,48 @@ function published() {
   };
 }
 
-/**
- * The modules of the sources that read a file of the package or start a worker, the function of each, and the file or
- * the worker's module. Some bundlers drop files that code references by URL; a page would then stay with its fallback.
- */
-const readers = [
-  {
-    module: 'bundled-weights',
-    file: 'public/models/learned.bin',
-    code: (bytes) => `export async function readBundledWeights(_stated, onProgress) {
-      const read = await ${bytes};
-      onProgress?.(1);
-      return read;
-    }`,
-  },
-  {
-    module: 'bundled-mannequin',
-    file: 'public/avatars/mannequin.vrm',
-    code: (bytes) => `export const readBundledMannequin = async () => (await ${bytes}).buffer;`,
-  },
-  {
-    module: 'bundled-validator',
-    worker: 'src/threepoint/avatar/file/avatar-check-worker.ts',
-    code: (bytes) => `import { startNodeWorker } from '../avatar/file/node-worker';
-    let address;
-    export async function startValidator() {
-      const code = await ${bytes};
-      const thread = startNodeWorker(code);
-      if (thread) return thread;
-      address ??= URL.createObjectURL(new Blob([code], { type: 'text/javascript' }));
-      return new Worker(address, { type: 'module' });
-    }`,
-  },
-];
-const embedded = (module) => `\0embedded-${module}`;
-
-/** Embeds these files in JavaScript modules that load on demand. */
-const filesInModules = {
-  name: 'files-in-modules',
-  resolveId: { filter: { id: /^\0embedded-/ }, handler: (id) => id },
+/** Reads `MODULE?bundled` as the text of that module in one file, with all that it imports. */
+const workersAsText = {
+  name: 'workers-as-text',
   load: {
-    filter: { id: /^\0embedded-|\/api\/bundled-\w+\.ts$/ },
-    async handler(id) {
-      const { module, file, worker, code } = readers.find((reader) => id.includes(reader.module));
-      if (id === embedded(module)) {
-        const bytes = worker ? await workerCode(worker) : readFileSync(join(root, file));
-        return `export default ${JSON.stringify(bytes.toString('base64'))};`;
-      }
-      const bytes = `import(${JSON.stringify(embedded(module))}).then(({ default: text }) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0)))`;
-      return { moduleType: 'js', code: code(bytes) };
-    },
+    filter: { id: /\?bundled$/ },
+    handler: async (id) => ({ code: await workerCode(id.replace('?bundled', '')), moduleType: 'text' }),
   },
 };
 
 /** Returns the code of a worker as one module without imports, which a worker without an address cannot resolve. */
 async function workerCode(module) {
-  const build = await bundle({ worker: join(root, module) }, [], []);
+  const build = await bundle({ worker: module }, [], []);
   const { output } = await build.generate({ format: 'esm', minify: true, codeSplitting: false });
   await build.close();
   if (output.length !== 1) throw new SetupError(`The worker ${module} is ${output.length} files; it must be one.`);
-  return Buffer.from(output[0].code);
+  return output[0].code;
 }
 
 /** The folders of the packages in the library and in its worker. */
 const packages = new Set();
 
+/**
+ * The modules that read a file or start a worker by its address, and those that the package has instead: some bundlers
+ * drop files that code references by URL, and a page would then stay with its fallback.
+ */
+const alias = Object.fromEntries(
+  ['weights', 'mannequin', 'validator'].map((name) => [
+    `./bundled-${name}`,
+    join(root, `scripts/library/embedded-${name}.ts`),
+  ]),
+);
+
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
-async function bundle(input, plugins, outside = external) {
+async function bundle(input, plugins = [], outside = external) {
   return rolldown({
     input,
     cwd: root,
     platform: 'browser',
     external: outside,
-    plugins: [...plugins, packageCollector(packages)],
+    resolve: { alias },
+    moduleTypes: { '.bin': 'binary', '.vrm': 'binary' },
+    plugins: [workersAsText, ...plugins, packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
     // In Node, gltf-validator would call `require`, which a module has not; it runs there as in a browser.
     transform: { define: { 'process.versions': 'undefined' } },
@@ -136,9 +105,9 @@ async function bundle(input, plugins, outside = external) {
 
 /** Modules from outside the library's folder, by their names in the build: npm packs no folder node_modules. */
 const movedModules = {
-  '_virtual/_embedded-bundled-weights': 'learned-weights',
-  '_virtual/_embedded-bundled-mannequin': 'mannequin',
-  '_virtual/_embedded-bundled-validator': 'validator',
+  'public/models/learned.bin': 'learned-weights',
+  'public/avatars/mannequin.vrm': 'mannequin',
+  'avatar/file/avatar-check-worker.ts_bundled': 'validator',
   'public/models/learned.json': 'api/learned-contract',
   'node_modules/valibot/dist/index': 'bundled/valibot',
   'node_modules/gltf-validator/module': 'bundled/gltf-validator',
@@ -151,8 +120,8 @@ const movedModules = {
  * each module is a request. Files that load on demand stay those of the modules.
  */
 async function writeBundles() {
-  const embedded = {
-    name: 'embedded-files',
+  const onDemand = {
+    name: 'on-demand',
     resolveId: {
       filter: { id: /\/(learned-weights|mannequin)\.js$/ },
       handler: (id) => ({ id: `../${basename(id)}`, external: 'absolute' }),
@@ -163,7 +132,7 @@ async function writeBundles() {
       input: join(out, `${name}.js`),
       platform: 'browser',
       external,
-      plugins: [embedded],
+      plugins: [onDemand],
     });
     await build.write({ format: 'esm', file: join(out, 'min', `${name}.js`), minify: true, codeSplitting: false });
     await build.close();
@@ -178,13 +147,13 @@ const sourcesFolder = 'src/threepoint';
  * larger file.
  */
 async function writeCode() {
-  const build = await bundle(entries, [filesInModules]);
+  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])));
   await build.write({
     format: 'esm',
     dir: out,
     preserveModules: true,
     preserveModulesRoot: join(root, sourcesFolder),
-    entryFileNames: ({ name }) => `${movedModules[name] ?? name}.js`,
+    entryFileNames: ({ name }) => `${movedModules[name] ?? name.replace('scripts/library/', 'api/')}.js`,
     sourcemap: true,
     sourcemapPathTransform: (source, map) => sourceInPackage(join(dirname(map), source), map),
   });
@@ -288,7 +257,7 @@ const trackerAlone = {
 /**
  * Returns the bytes of minified code with its static imports, plain and by brotli; without dynamic imports and peers.
  */
-async function weigh(input, plugins = [filesInModules]) {
+async function weigh(input, plugins) {
   const build = await bundle({ entry: input }, plugins);
   const { output: files } = await build.generate({ format: 'esm', minify: true });
   await build.close();

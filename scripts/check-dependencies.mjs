@@ -1,10 +1,9 @@
 // node scripts/check-dependencies.mjs: checks the versions in every package.json, the lock file's hashes, the licences
 // of what ships, and that docs/architecture.md gives a reason for each dependency.
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { isPermissive, permissive } from './licences.mjs';
-import { readManifests } from './manifests.mjs';
-import { mainOf, root, SetupError } from './run-command.mjs';
+import { main, root, SetupError } from './run-command.mjs';
 
 /** Returns the installed packages of a lock file, each with its name; links to this repository's packages are none. */
 const lockedPackages = ({ packages }) =>
@@ -87,23 +86,24 @@ function tableFaults(manifests, document) {
  * Returns the faults of the dependencies, one sentence each. `manifests`: every package.json by its folder.
  * @param {{ lock: object, manifests: Record<string, object>, document: string }} project
  */
-export const dependencyFaults = ({ lock, manifests, document }) => [
+const dependencyFaults = ({ lock, manifests, document }) => [
   ...versionFaults(manifests),
   ...lockFaults(lock),
   ...tableFaults(manifests, document),
 ];
 
 /** Reads what `dependencyFaults` checks from the repository. */
-export function readProject() {
+function readProject() {
   const text = (path) => readFileSync(join(root, path), 'utf8');
+  const folders = ['.', 'server', ...readdirSync(join(root, 'src')).map((name) => `src/${name}`)];
   return {
     lock: JSON.parse(text('package-lock.json')),
-    manifests: readManifests(),
+    manifests: Object.fromEntries(folders.map((folder) => [folder, JSON.parse(text(`${folder}/package.json`))])),
     document: text('docs/architecture.md'),
   };
 }
 
-await mainOf(import.meta.url, () => {
+await main(() => {
   const faults = dependencyFaults(readProject());
   if (faults.length > 0) throw new SetupError(`${faults.join('.\n')}.`);
 });

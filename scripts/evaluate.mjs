@@ -1,8 +1,8 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness]
-// [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]: evaluates the
-// shipping code path on recorded motion. Python prepares the recordings with their ground truth; TypeScript runs the
-// estimators on them. npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: evaluates
-// on recordings of the page, with the body that the device reported as ground truth.
+// npm run tool -- evaluate --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR]
+// [--robustness] [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]:
+// evaluates the shipping code path on recorded motion. Python prepares the recordings with their ground truth;
+// TypeScript runs the estimators on them. npm run tool -- evaluate --recording FILE [--recording FILE] [--json FILE]
+// [--models DIR]: evaluates on recordings of the page, with the body that the device reported as ground truth.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -12,9 +12,9 @@ import { prepareRecordings } from './python-environment.mjs';
 import { main, root, runProgram } from './run-command.mjs';
 
 const usage =
-  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
-  'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--gaits DIR]\n' +
-  'npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
+  'npm run tool -- evaluate --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--robustness] [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run tool -- evaluate --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR] [--gaits DIR]\n' +
+  'npm run tool -- evaluate --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/accuracy.md says the rest.';
 
 const flags = ['robustness', 'speed', 'hands-measured', 'forearm-typed'];

@@ -1,5 +1,5 @@
-// npm run goldens -- --mocap DIR [--write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]: compares the
-// estimates of recorded motion with tests/golden/estimates.json; --write replaces that file.
+// npm run tool -- goldens --mocap DIR [--write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]: compares
+// the estimates of recorded motion with tests/golden/estimates.json; --write replaces that file.
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,7 +9,7 @@ import { prepareRecordings } from './python-environment.mjs';
 import { main, root, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
+  'npm run tool -- goldens --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
   'DIR holds the recordings that the goldens were frozen with; docs/accuracy.md says the rest.';
 
 function options() {

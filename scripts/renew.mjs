@@ -1,12 +1,13 @@
-// npm run renew -- --mocap DIR [--from STEP] [--only STEP] [--list]: renews the networks, and every table and figure of
-// docs/accuracy.md, step by step.
+// npm run tool -- renew --mocap DIR [--from STEP] [--only STEP] [--list]: renews the networks, and every table and
+// figure of docs/accuracy.md, step by step.
 import { join } from 'node:path';
 import { readOptions } from './command-line.mjs';
 import { mainOf, root, run, SetupError, typedPath } from './run-command.mjs';
+import { scriptOf } from './tool.mjs';
 
 const usage =
-  'npm run renew -- --mocap DIR [--from STEP] [--only STEP]\n' +
-  'npm run renew -- --list [--from STEP] [--only STEP]\n' +
+  'npm run tool -- renew --mocap DIR [--from STEP] [--only STEP]\n' +
+  'npm run tool -- renew --list [--from STEP] [--only STEP]\n' +
   'DIR holds the .asf and .amc or .bvh files of everyone; STEP is one of those that --list names.';
 
 // The first fold's networks with 32-bit weights, which cross-validation writes for the comparison in the report.
@@ -14,7 +15,7 @@ const fp32 = join(root, '.cache/fp32');
 
 /**
  * The steps that renew the networks and the tables and figures of docs/accuracy.md, in the order of their dependencies:
- * a name, the npm script and its options beside --mocap, what is renewed, and about how long it takes on twenty-nine
+ * a name, the tool and its options beside --mocap, what is renewed, and about how long it takes on twenty-nine
  * people and one core.
  */
 export const steps = [
@@ -83,16 +84,13 @@ export function chosenSteps({ from, only } = {}) {
 }
 
 /** Returns the arguments with which Node runs a step. */
-export const commandOf = ({ script, options }, mocap) => [
-  join(root, 'scripts', `${script.replace(':', '-')}.mjs`),
-  '--mocap',
-  mocap,
-  ...options,
-];
+export const commandOf = ({ script, options }, mocap) => [scriptOf(script), '--mocap', mocap, ...options];
 
-/** Returns the command line of an npm script, with its options quoted for a shell. */
+/** Returns the command line of a tool, with its options quoted for a shell. */
 const commandLine = (script, ...options) =>
-  ['npm', 'run', script, '--', ...options].map((word) => (/[^\w./:-]/.test(word) ? `"${word}"` : word)).join(' ');
+  ['npm', 'run', 'tool', '--', script, ...options]
+    .map((word) => (/[^\w./:-]/.test(word) ? `"${word}"` : word))
+    .join(' ');
 
 /** Returns the command line of a step. */
 export const commandLineOf = ({ script, options }, mocap) => commandLine(script, '--mocap', mocap, ...options);

@@ -1,8 +1,8 @@
-// npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the
-// shipping code path with the cross-validation networks of npm run train, each on people it was not trained on, and
-// renews the tables and figures of docs/accuracy.md. npm run report -- --redraw: renews them from the last measurement.
-// npm run report -- --legs --mocap DIR: renews the table of legs alone, with the page's network for the body and the
-// cross-validation networks of npm run train:gait.
+// npm run tool -- report --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the
+// shipping code path with the cross-validation networks of npm run tool -- train, each on people it was not trained on,
+// and renews the tables and figures of docs/accuracy.md. npm run tool -- report --redraw: renews them from the last
+// measurement. npm run tool -- report --legs --mocap DIR: renews the table of legs alone, with the page's network for
+// the body and the cross-validation networks of npm run tool -- train:gait.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
@@ -10,14 +10,14 @@ import { runTraining } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run report -- --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
-  'npm run report -- --redraw [--models DIR]\n' +
-  'npm run report -- --legs --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR]\n' +
+  'npm run tool -- report --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
+  'npm run tool -- report --redraw [--models DIR]\n' +
+  'npm run tool -- report --legs --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files. --people names the people of the tables (default: the varied ones outside ' +
   'the lockbox if DIR has them all, else everyone outside the lockbox, as with --legs); to name people of the ' +
   'lockbox is logged. Those that the networks were not trained on, and another laboratory (901, 902, 903) if DIR has ' +
   'it, are measured with and without calibrated hands. --models names the folder of the networks (default: ' +
-  '.cache/cross-validation, which npm run train writes), --fp32 what npm run train -- --fp32 wrote. The command ' +
+  '.cache/cross-validation, which npm run tool -- train writes), --fp32 what npm run tool -- train --fp32 wrote. The command ' +
   'renews docs/accuracy.md.';
 // Poses are motion data: they stay in the cache, and only figures of them go into docs.
 const measured = join(root, '.cache/report');
@@ -31,7 +31,7 @@ function options() {
   });
 }
 
-/** Runs npm run evaluate on the given motion with these additional options; resolves to its exit code. */
+/** Runs npm run tool -- evaluate on the given motion with these additional options; resolves to its exit code. */
 async function evaluate(given, ...beside) {
   const command = [join(root, 'scripts/evaluate.mjs'), ...passedOn(given, ['mocap', 'skeleton']), ...beside];
   return (await run(process.execPath, command)).code;
@@ -44,7 +44,7 @@ async function reportLegs(given) {
   // Each person is measured with networks that were not trained on them.
   const gaits = join(root, '.cache/gait');
   if (!existsSync(gaits))
-    throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
+    throw new SetupError(`report: there are no networks in ${gaits}; npm run tool -- train:gait makes them\n${usage}`);
   const beside = ['--legs', '--json', json, '--gaits', gaits, ...passedOn(given, ['people', 'models'])];
   const code = await evaluate(given, ...beside);
   return code || (await runTraining('threepoint_training.legs_page', ['--legs', json])).code;
@@ -101,7 +101,7 @@ await main(async () => {
   const [evaluation, figures] = ['evaluation.json', 'figures.json'].map((name) => join(measured, name));
   const { models = join(root, '.cache/cross-validation') } = given;
   if (!existsSync(join(models, 'learned.json')))
-    throw new SetupError(`report: there are no networks in ${models}; npm run train makes them\n${usage}`);
+    throw new SetupError(`report: there are no networks in ${models}; npm run tool -- train makes them\n${usage}`);
   if (given.mocap) {
     const code = await measure(given, models, { evaluation, figures });
     if (code !== 0) return code;

@@ -31,7 +31,7 @@ export const isStamped = (stamp, hash) => existsSync(stamp) && readFileSync(stam
 const packageSources = [
   ...['LICENSE', 'package.json', 'package-lock.json', 'docs/accuracy.md', 'public/models', 'public/avatars', 'src'],
   ...['tsconfig.json', 'tsconfig.library.json', 'tsconfig.rooms.json'],
-  ...['scripts/build-library.mjs', 'scripts/build-rooms.mjs', 'scripts/licences.mjs'],
+  ...['scripts/build-library.mjs', 'scripts/build-rooms.mjs', 'scripts/library', 'scripts/licences.mjs'],
 ];
 
 const packageStamp = (folder) => join(root, 'artifacts', `${folder}.source-hash`);

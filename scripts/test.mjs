@@ -1,6 +1,6 @@
 // node scripts/test.mjs [--nightly] GROUP …: installs what is missing, runs npm scripts whether or not one before
-// failed, and ends with one line that counts the tests. Groups run in turn; the scripts of a group, separated by commas,
-// run side by side, one per core. --nightly: with more cases and longer runs.
+// failed, and ends with one line that counts the tests. Groups run in turn; the scripts of a group, separated by
+// commas, run side by side, one per core. --nightly: with more cases and longer runs.
 import { mkdirSync, rmSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { ensureInstalled } from './installation.mjs';

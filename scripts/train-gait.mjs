@@ -1,6 +1,6 @@
-// npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: trains the network
-// that predicts footsteps. Python prepares the motion, the page's own code computes the inputs, Python trains. It
-// trains without each of four groups of people (.cache/gait, for npm run report -- --legs), then on all people
+// npm run tool -- train:gait --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: trains the
+// network that predicts footsteps. Python prepares the motion, the page's own code computes the inputs, Python trains.
+// It trains without each of four groups of people (.cache/gait, for npm run tool -- report --legs), then on all people
 // (src/threepoint/core/estimation/gait/gait-network.json).
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,7 +10,7 @@ import { ensureInstalled } from './installation.mjs';
 import { prepareRecordings, runTraining } from './python-environment.mjs';
 import { main, root, runProgram } from './run-command.mjs';
 
-const usage = 'npm run train:gait -- --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]';
+const usage = 'npm run tool -- train:gait --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]';
 const python = { extras: ['train'] };
 
 await main(async () => {

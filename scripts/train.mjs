@@ -1,5 +1,5 @@
-// npm run train -- --mocap DIR: trains the networks of public/models on motion capture, in a Python environment with
-// PyTorch.
+// npm run tool -- train --mocap DIR: trains the networks of public/models on motion capture, in a Python environment
+// with PyTorch.
 import { runTraining } from './python-environment.mjs';
 import { main, typedPath } from './run-command.mjs';
 

@@ -1,5 +1,5 @@
-// npm run bench:bodies [-- --json FILE] [--seconds N]: what it costs to show other people's bodies, by the format in
-// which they are sent. One motion at 30 packets a second goes over the same simulated network in all formats.
+// npm run tool -- bench:bodies [--json FILE] [--seconds N]: what it costs to show other people's bodies, by the format
+// in which they are sent. One motion at 30 packets a second goes over the same simulated network in all formats.
 
 import { writeFileSync } from 'node:fs';
 import { BodySolver } from 'threepoint';

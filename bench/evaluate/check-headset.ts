@@ -1,4 +1,4 @@
-// npm run check:headset -- FILE …: validates the files of headset checks and prints their figures.
+// npm run tool -- check:headset FILE …: validates the files of headset checks and prints their figures.
 import { ValidationError } from 'threepoint/core';
 import { reportSections } from '../../src/page/check/report-sections';
 import { readCheckFile } from './checked-headset';

@@ -1,4 +1,4 @@
-// npm run evaluate -- --recording FILE: every method against the body that the recording's device reported.
+// npm run tool -- evaluate --recording FILE: every method against the body that the recording's device reported.
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { deviceJoint, parseRecording, type Recording, reasonOf, recordOf } from 'threepoint/core';

@@ -21,7 +21,7 @@ async function openOnTrackingHeadset(page: Page): Promise<void> {
   await page.evaluate(`${await bundlePolyfill()}; bodyPolyfill.installBodyTracking(${options}); null`);
 }
 
-/** What `npm run evaluate -- --recording` says of the only recording. */
+/** What `npm run tool -- evaluate --recording` says of the only recording. */
 function evaluated(recording: string, json: string) {
   const root = fileURLToPath(new URL('../..', import.meta.url));
   const request = JSON.stringify({ recording: [recording], models: 'public/models', json });

@@ -6,7 +6,7 @@ import { expect, freshTest, joint, keepPicture, open, probe, test } from '../pag
 import { downloaded, recordTheActor } from '../recorded-actor';
 
 // The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as
-// JPEG when it was looked at. That of our bodies is all.png of `npm run avatars:try -- public/avatars`.
+// JPEG when it was looked at. That of our bodies is all.png of `npm run tool -- avatars:try public/avatars`.
 test.use({ viewport: { width: 1280, height: 720 } });
 freshTest.use({ viewport: { width: 1280, height: 720 } });
 

@@ -25,7 +25,7 @@ function script(directory: string, plugins: string, ...args: readonly string[]):
 
 /** Runs an npm script of a study with the plug-in. */
 const program = (directory: string, ...args: readonly string[]) =>
-  script(directory, 'agreement.mjs', 'scripts/program.mjs', ...args);
+  script(directory, 'agreement.mjs', 'scripts/tool.mjs', ...args);
 
 /** The example of docs/study.md in a folder of its own, beside a page and a server that are built with it. */
 const test = base.extend<{ directory: string; origin: string }>({

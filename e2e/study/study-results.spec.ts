@@ -12,8 +12,8 @@ import { experimenter } from '../study-server';
 const shipped = (file: string) => JSON.parse(readFileSync(`public/studies/${file}`, 'utf8')) as Record<string, unknown>;
 
 /**
- * A whole simulated study on the server, as `npm run study:simulate` makes it, with these effects on answers [points of
- * 1 to 5].
+ * A whole simulated study on the server, as `npm run tool -- study:simulate` makes it, with these effects on answers
+ * [points of 1 to 5].
  */
 async function simulateOn(origin: string, file: unknown, effects: Readonly<Record<string, number>>) {
   const plan = simulatedPlan(checkedPlan(file));

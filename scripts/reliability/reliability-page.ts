@@ -43,7 +43,7 @@ export function reliabilityPage(figures: Figures): string {
   return `# Reliability
 
 Each row is a fault, a promise or an attack. [rows.ts](../tests/reliability/rows.ts) names the tests that measure it.
-\`npm run reliability\` writes this page from them: \`-- --unit\` without a browser, \`-- --long\` with 20 minutes of play.
+\`npm run tool -- reliability\` writes this page from them: \`--unit\` without a browser, \`--long\` with 20 minutes of play.
 [reliability.json](reliability.json) has every figure. Durations are those of two cores with software rendering.
 
 ## Tracking and device

@@ -10,8 +10,8 @@ function callingTest(): string {
 }
 
 /**
- * Prints a test's figures for a row of docs/reliability.md, and appends them to the file of `npm run reliability` if
- * set.
+ * Prints a test's figures for a row of docs/reliability.md, and appends them to the file of `npm run tool --
+ * reliability` if set.
  */
 export function reportFigures(row: RowName, figures: Readonly<Record<string, string | number>>): void {
   printFigures(`reliability, ${row}`, figures);

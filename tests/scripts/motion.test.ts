@@ -28,12 +28,12 @@ function folderWith(seconds: number) {
   return { folder, file: join(folder, 'mine.json') };
 }
 
-describe('npm run motion', () => {
+describe('npm run tool -- motion', () => {
   test.each(['--help', '-h'])('%s prints how it is used, and is no error', (flag) => {
-    const { status, stdout } = spawnSync(process.execPath, ['scripts/program.mjs', 'motion', flag], {
+    const { status, stdout } = spawnSync(process.execPath, ['scripts/tool.mjs', 'motion', flag], {
       encoding: 'utf8',
     });
-    expect(stdout).toMatch(/^npm run motion -- FILE --to bvh\|csv\|vrma\|glb /);
+    expect(stdout).toMatch(/^npm run tool -- motion FILE --to bvh\|csv\|vrma\|glb /);
     expect(status).toBe(0);
   });
 

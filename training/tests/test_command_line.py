@@ -1,4 +1,4 @@
-"""Facts about what a command line of `npm run train` asks for."""
+"""Facts about what a command line of `npm run tool -- train` asks for."""
 
 import pytest
 from threepoint_training.__main__ import config_of

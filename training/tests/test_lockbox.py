@@ -88,6 +88,6 @@ def test_the_command_evaluates_the_networks_in_out(models, tmp_path):
     )
     assert pipeline.main(config, Console(quiet=True)) == {}
     opened, row = json.loads(log.read_text())
-    assert (opened["people"], opened["purpose"]) == (["009"], "npm run train -- --lockbox")
+    assert (opened["people"], opened["purpose"]) == (["009"], "npm run tool -- train --lockbox")
     assert list(row["cm"]) == ["009"]
     assert np.isfinite(list(row["ratios"]["all"].values())).all()

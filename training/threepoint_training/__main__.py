@@ -1,4 +1,4 @@
-"""The command line of `npm run train`."""
+"""The command line of `npm run tool -- train`."""
 
 import argparse
 import sys
@@ -27,7 +27,7 @@ _TASKS: dict[str, tuple[Task, str]] = {
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="npm run train --", description="Trains the networks of the page from motion capture."
+        prog="npm run tool -- train --", description="Trains the networks of the page from motion capture."
     )
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--mocap", type=Path, help="folder with .asf/.amc or .bvh files")

@@ -1,4 +1,4 @@
-"""Renews the tables of docs/accuracy.md between its marks, and its figures. `npm run report` calls this."""
+"""Renews the tables of docs/accuracy.md between its marks, and its figures. `npm run tool -- report` calls this."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""The figures of docs/accuracy.md: drawn from what `npm run evaluate` measured, the same bytes for the same
+"""The figures of docs/accuracy.md: drawn from what `npm run tool -- evaluate` measured, the same bytes for the same
 measurements.
 """
 

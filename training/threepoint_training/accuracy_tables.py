@@ -1,4 +1,4 @@
-"""Formats the results of `npm run evaluate` as the Markdown tables of docs/accuracy.md, each between two marks."""
+"""Formats the results of `npm run tool -- evaluate` as the Markdown tables of docs/accuracy.md, each between two marks."""
 
 import re
 from collections.abc import Callable, Iterable

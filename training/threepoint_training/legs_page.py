@@ -1,4 +1,4 @@
-"""Renews the table of legs in docs/accuracy.md. `npm run report -- --legs` measures and calls this."""
+"""Renews the table of legs in docs/accuracy.md. `npm run tool -- report --legs` measures and calls this."""
 
 import argparse
 import json

@@ -1,6 +1,6 @@
 """Evaluates the page's learned network for a release, on the lockbox people, who were not used in any choice.
 
-`npm run train -- --mocap DIR --lockbox` calls this. Each evaluation is logged, so that nobody can choose by repeating
+`npm run tool -- train --mocap DIR --lockbox` calls this. Each evaluation is logged, so that nobody can choose by repeating
 it.
 """
 

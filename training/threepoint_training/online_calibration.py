@@ -1,7 +1,7 @@
 """Errors under a misplaced headset or a wrong calibration, as worn and after correcting the headset's rise that the
 page estimates over minutes.
 
-`npm run train -- --mocap DIR --online-calibration` calls this and renews the table of docs/accuracy.md. Each group of
+`npm run tool -- train --mocap DIR --online-calibration` calls this and renews the table of docs/accuracy.md. Each group of
 people is held out in turn, with usual reach, IK and network from everyone else.
 """
 

@@ -165,6 +165,6 @@ def _prepared(config: TrainConfig, mocap: Path, report: TrainingReport) -> Prepa
     with report.task("prepare", None) as advance:
         prepared = prepare.PrepareConfig(mocap, config.skeleton_map, cache=config.cache)
         if config.task == "lockbox":
-            access = LockboxAccess("npm run train -- --lockbox", config.lockbox_log)
+            access = LockboxAccess("npm run tool -- train --lockbox", config.lockbox_log)
             prepared = replace(prepared, people=LOCKBOX, lockbox=access)
         return prepare.main(prepared, lambda name: advance(next(numbers), f"prepare {name}"))

@@ -110,7 +110,7 @@ def _arguments() -> RecordingsConfig:
     people = tuple(given.people.split(",")) if given.people else None
     return RecordingsConfig(
         prepare=prepare.PrepareConfig(
-            given.mocap, given.skeleton, people, given.cache, LockboxAccess("npm run evaluate")
+            given.mocap, given.skeleton, people, given.cache, LockboxAccess("npm run tool -- evaluate")
         ),
         out=given.out,
         seed=given.seed,

@@ -1,4 +1,4 @@
-"""Which people of a folder `npm run report` evaluates; it runs this and passes the names on."""
+"""Which people of a folder `npm run tool -- report` evaluates; it runs this and passes the names on."""
 
 import argparse
 import json
@@ -24,7 +24,7 @@ def main(mocap: Path) -> dict[str, list[str]]:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description="Which people npm run report evaluates, as JSON.")
+    parser = argparse.ArgumentParser(description="Which people npm run tool -- report evaluates, as JSON.")
     parser.add_argument("--mocap", type=Path, required=True)
     try:
         print(json.dumps(main(parser.parse_args().mocap)))

@@ -1,7 +1,7 @@
 """The figures by which recipes of the learned network are chosen: errors of people held out in turn, in active frames,
 hands not measured.
 
-`npm run train -- --mocap DIR --select` calls this for the recipe of the code as it is, and compares it with those of
+`npm run tool -- train --mocap DIR --select` calls this for the recipe of the code as it is, and compares it with those of
 earlier calls.
 """
 

@@ -1,5 +1,5 @@
 """
-The gait network: where feet are expected, and which stand, from a second of hips, head and hands. `npm run train:gait`
+The gait network: where feet are expected, and which stand, from a second of hips, head and hands. `npm run tool -- train:gait`
 calls this.
 
 The page makes the inputs (bench/evaluate/legs/gait-frames.ts): a row has those of a frame, those of the mirrored

@@ -1,4 +1,4 @@
-"""The configuration of one run of `npm run train`."""
+"""The configuration of one run of `npm run tool -- train`."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,8 +22,8 @@ class TrainConfig:
 
     mocap: Path | None
     out: Path = REPOSITORY / "public/models"
-    # The networks of the first fold and the errors of all go there: what `npm run evaluate -- --models` measures on
-    # people held out.
+    # The networks of the first fold and the errors of all go there: what `npm run tool -- evaluate --models` measures
+    # on people held out.
     cross_validation: Path = REPOSITORY / ".cache/cross-validation"
     stages: tuple[str, ...] = ("cross-validation", "all-subjects")
     # The networks of the first fold with 32-bit weights go there, for the evaluation to compare with; None: they are

@@ -12,7 +12,7 @@ import { compareFrames, type FrameTable, readFrames, writeFrames } from './golde
 import { type Extent, planGoldens } from './golden-plan';
 import type { RowResult, WorkerMessage, WorkerTask } from './golden-worker';
 
-/** What `npm run goldens` asks for; folders and the file of the goldens with full paths. */
+/** What `npm run tool -- goldens` asks for; folders and the file of the goldens with full paths. */
 interface GoldensRequest {
   readonly recordings: string;
   readonly models: string;

@@ -1,5 +1,5 @@
-// npm run build:study-schema writes public/studies/plan.schema.json from the schema that the program uses to read
-// plans, and public/studies/phrases.json, the phrases of the page, to be translated in a plan.
+// npx tsx src/study/cli/build-study-schema.ts writes public/studies/plan.schema.json from the schema that the program
+// uses to read plans, and public/studies/phrases.json, the phrases of the page, to be translated in a plan.
 import { writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { shippedPhrases } from '../model/phrases/phrases';

@@ -1,10 +1,10 @@
+import { defaultCalibration } from 'threepoint/core';
 import type { BallState } from 'threepoint-games/ball';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import type { ConnectionStatus } from '../../../src/rooms/client/connection';
 import { bannerText } from '../../../src/rooms/client/connection-text';
 import { protocolVersion } from '../../../src/rooms/protocol/messages';
 import { messageEvent } from '../../../src/rooms/protocol/socket-parsers';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 import { personOfTest } from './until-finished';

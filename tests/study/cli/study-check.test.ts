@@ -15,7 +15,7 @@ const root = fileURLToPath(new URL('../../..', import.meta.url));
 const read = (path: string) => readFileSync(join(root, path), 'utf8');
 
 describe('the schema for editors', () => {
-  test('is made from the schema by which the program reads plans (npm run build:study-schema)', () => {
+  test('is made from the schema by which the program reads plans (npx tsx src/study/cli/build-study-schema.ts)', () => {
     expect(JSON.parse(read('public/studies/plan.schema.json'))).toEqual(JSON.parse(JSON.stringify(planJsonSchema())));
   });
 
@@ -87,9 +87,9 @@ describe('what a plan comes to', () => {
   });
 });
 
-describe('npm run study:check', () => {
+describe('npm run tool -- study:check', () => {
   const check = (...args: readonly string[]) =>
-    spawnSync(process.execPath, ['scripts/program.mjs', 'study:check', ...args], { cwd: root, encoding: 'utf8' });
+    spawnSync(process.execPath, ['scripts/tool.mjs', 'study:check', ...args], { cwd: root, encoding: 'utf8' });
 
   test('says what a participant sees and how long it takes, and that orders are not balanced', () => {
     const { status, stdout } = check('public/studies/paper.json', '--participant', 'P02');

@@ -4,9 +4,9 @@ import { expect, test } from 'vitest';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const power = (...args: readonly string[]) =>
-  spawnSync(process.execPath, ['scripts/program.mjs', 'study:power', ...args], { cwd: root, encoding: 'utf8' });
+  spawnSync(process.execPath, ['scripts/tool.mjs', 'study:power', ...args], { cwd: root, encoding: 'utf8' });
 
-test('npm run study:power says how many participants a study needs, or what is wrong with the question', {
+test('npm run tool -- study:power says how many participants a study needs, or what is wrong with the question', {
   tags: ['full'],
 }, () => {
   const { stdout, status } = power('--effect', '1', '--studies', '2000');

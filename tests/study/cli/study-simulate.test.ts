@@ -95,9 +95,9 @@ test('the source of chance is standard normal', () => {
   expect(Math.abs(variance - 1)).toBeLessThan(0.05);
 });
 
-describe('npm run study:simulate', () => {
+describe('npm run tool -- study:simulate', () => {
   const simulateInto = (out: string, ...args: string[]) =>
-    spawnSync(process.execPath, ['scripts/program.mjs', 'study:simulate', '--out', out, ...args], {
+    spawnSync(process.execPath, ['scripts/tool.mjs', 'study:simulate', '--out', out, ...args], {
       cwd: root,
       encoding: 'utf8',
     });

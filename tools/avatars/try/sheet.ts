@@ -1,4 +1,4 @@
-// The page of `npm run avatars:try`: one file in, a sheet of pictures out.
+// The page of `npm run tool -- avatars:try`: one file in, a sheet of pictures out.
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { defaultCalibration, reasonOf, type TrackingFrame } from 'threepoint/core';
 import { type Avatar, checkInWorker, decoders, parseChecked, thirdPersonOnlyLayer } from 'threepoint/three';

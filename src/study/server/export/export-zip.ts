@@ -74,7 +74,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'bids/         the same as a BIDS data set (motion)',
     ...leftOut.map((reason) => `  left out: ${reason}`),
     `${checksumsFile}  a hash of every file: "sha256sum --check ${checksumsFile}"`,
-    'The program recomputes everything and reports differences: npm run study:verify -- FILE.zip',
+    'The program recomputes everything and reports differences: npm run tool -- study:verify FILE.zip',
     '',
   ].join('\r\n');
 }

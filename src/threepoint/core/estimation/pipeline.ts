@@ -90,8 +90,8 @@ export interface PipelineOptions {
 }
 
 /**
- * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, pin trunk,
- * fit arms. A method is its source; every other stage is the same for all.
+ * An estimator with a body: complete hands → steady trackers → solve IK → correct (the source) → limit joints → fit
+ * torso, pin trunk, fit arms. A method is its source; every other stage is the same for all.
  */
 export class Pipeline implements PoseEstimator {
   readonly name: EstimatorName;

@@ -119,7 +119,7 @@ function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator
   }
   if (map.restFile !== undefined && !source.rest)
     throw new Error(
-      '“restFrame” of another file is for npm run evaluate; here it is the number of a frame of the file',
+      '“restFrame” of another file is for npm run tool -- evaluate; here it is the number of a frame of the file',
     );
   const rest =
     source.rest &&

@@ -1,10 +1,10 @@
-// node scripts/program.mjs NAME [OPTION …]: is an npm script that runs one TypeScript program. Checks its options, and
-// starts the program once all packages are there. The program gets the options as JSON, unless `argumentsOf` says
-// otherwise.
+// npm run tool -- NAME [OPTION …]: runs a tool that is needed rarely; without a name it lists them. Most are TypeScript
+// programs: their options are checked here, and they start once all packages are there. A program gets the options as
+// JSON, unless `argumentsOf` says otherwise.
 import { basename, join } from 'node:path';
 import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { main, root, runProgram, SetupError, typedPath } from './run-command.mjs';
+import { mainOf, root, run, runProgram, SetupError, typedPath } from './run-command.mjs';
 
 /** Returns a check that exactly one argument without a name is given. */
 const oneArgument =
@@ -16,32 +16,32 @@ const oneArgument =
 const planOf = ({ rest, plan }) => [...rest, ...(plan ? [plan] : [])];
 
 /**
- * The programs by the names of their npm scripts: how each is used, its options as `readOptions` takes them, and the
+ * The programs by the names of their tools: how each is used, its options as `readOptions` takes them, and the
  * check of them.
  */
 const programs = {
   /** Measures what other people's bodies cost, by the format in which they are sent. */
   'bench:bodies': {
     program: 'bench/bodies/main.ts',
-    usage: 'npm run bench:bodies [-- --json FILE] [--seconds N]',
+    usage: 'npm run tool -- bench:bodies [--json FILE] [--seconds N]',
     options: { texts: ['seconds'], paths: ['json'] },
   },
   /** Measures how many clients a relay process carries, next to a plain socket.io relay. */
   'bench:relay': {
     program: 'bench/relay/main.ts',
-    usage: 'npm run bench:relay [-- --json FILE] [--quick] [--rooms N] [--hz N] [--seconds N] [--count N]',
+    usage: 'npm run tool -- bench:relay [--json FILE] [--quick] [--rooms N] [--hz N] [--seconds N] [--count N]',
     options: { texts: ['rooms', 'hz', 'seconds', 'count'], paths: ['json'], flags: ['quick'] },
   },
   /** Measures concurrent participants of a study on one server. --flush-ms delays each flush of the disk, by strace. */
   'bench:study': {
     program: 'bench/study-load.ts',
-    usage: 'npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]',
+    usage: 'npm run tool -- bench:study [--participants 200 --seconds 60 --flush-ms 25 --json FILE]',
     options: { texts: ['participants', 'seconds', 'flush-ms'], paths: ['json'] },
   },
   /** Validates the files that the page /check writes, and prints their figures. */
   'check:headset': {
     program: 'bench/evaluate/check-headset.ts',
-    usage: 'npm run check:headset -- FILE …',
+    usage: 'npm run tool -- check:headset FILE …',
     options: { rest: 'paths' },
     check({ rest }) {
       if (rest.length === 0) throw new Error('expected files of headset checks');
@@ -52,7 +52,7 @@ const programs = {
   motion: {
     program: 'scripts/motion/main.ts',
     usage:
-      'npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper|device] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
+      'npm run tool -- motion FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper|device] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
       'FILE is a recording that the page made, or motion capture (.bvh, .vrma, .fbx, .glb); docs/motion.md says the rest.',
     options: { texts: ['to', 'estimator', 'unit', 'rate'], paths: ['out', 'avatar'], rest: 'paths' },
     check(given) {
@@ -64,7 +64,7 @@ const programs = {
   /** Prints the errors of a plan, or its duration and what its participants see. */
   'study:check': {
     program: 'src/study/cli/check/main.ts',
-    usage: 'npm run study:check -- PLAN.json [--participant P01]',
+    usage: 'npm run tool -- study:check PLAN.json [--participant P01]',
     options: { texts: ['participant'], rest: 'paths' },
     check: oneArgument('plan'),
     argumentsOf: ({ rest, participant }) => [...rest, ...(participant ? [participant] : [])],
@@ -73,7 +73,7 @@ const programs = {
   'study:power': {
     program: 'src/study/cli/power/main.ts',
     usage:
-      'npm run study:power -- --effect 0.5 [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed 1]',
+      'npm run tool -- study:power --effect 0.5 [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed 1]',
     options: { texts: ['effect', 'design', 'power', 'alpha', 'studies', 'seed'] },
     argumentsOf: ({ rest: _, ...given }) => [JSON.stringify(given)],
   },
@@ -81,7 +81,7 @@ const programs = {
   'study:simulate': {
     program: 'src/study/cli/simulate/main.ts',
     usage:
-      'npm run study:simulate -- [STUDY.json] [--out DIR] [--participants 15] [--seed NUMBER] [--effect CONDITION=POINTS …] ' +
+      'npm run tool -- study:simulate [STUDY.json] [--out DIR] [--participants 15] [--seed NUMBER] [--effect CONDITION=POINTS …] ' +
       '[--score-effect CONDITION=CHANCE …]\n' +
       "Without a study: the paper's. DIR must be empty or new: simulated files are never put among others.",
     options: {
@@ -103,17 +103,29 @@ const programs = {
   /** Recomputes an exported study from its raw records and prints the differences. */
   'study:verify': {
     program: 'src/study/cli/verify/main.ts',
-    usage: 'npm run study:verify -- FILE.zip',
+    usage: 'npm run tool -- study:verify FILE.zip',
     options: { rest: 'paths' },
     check: oneArgument('export'),
     argumentsOf: ({ rest }) => rest,
   },
 };
 
-await main(async () => {
-  // The name is taken out of the arguments; what is left are those of the npm script.
+/** The tools that are scripts of their own. */
+export const scriptTools = [
+  ...['train', 'train:gait', 'evaluate', 'report', 'goldens', 'renew', 'reliability'],
+  ...['bench', 'avatars:fetch', 'avatars:try'],
+];
+
+/** Returns the path of the script of a tool. */
+export const scriptOf = (name) => join(root, 'scripts', `${name.replace(':', '-')}.mjs`);
+
+await mainOf(import.meta.url, async () => {
+  // The name is taken out of the arguments; what is left are those of the tool.
   const [name] = process.argv.splice(2, 1);
-  if (!(name in programs)) throw new SetupError(`program: there are ${Object.keys(programs).join(', ')}`);
+  if (scriptTools.includes(name)) return (await run(process.execPath, [scriptOf(name), ...process.argv.slice(2)])).code;
+  if (!(name in programs)) {
+    throw new SetupError(`The tools are: ${[...scriptTools, ...Object.keys(programs)].toSorted().join(', ')}`);
+  }
   const { program, usage, options, check, argumentsOf = (given) => [JSON.stringify(given)] } = programs[name];
   if (process.argv.some((word) => word === '--help' || word === '-h')) {
     console.log(usage);

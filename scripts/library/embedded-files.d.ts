@@ -1,0 +1,12 @@
+declare module '*.bin' {
+  const bytes: Uint8Array<ArrayBuffer>;
+  export default bytes;
+}
+declare module '*.vrm' {
+  const bytes: Uint8Array<ArrayBuffer>;
+  export default bytes;
+}
+declare module '*?bundled' {
+  const code: string;
+  export default code;
+}
