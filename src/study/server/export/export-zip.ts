@@ -10,6 +10,7 @@ import { codebookOf, type Table, tidyCsv } from '../../model/tables/tidy-csv';
 import type { ServedSoftware } from '../storage/software';
 import type { MotionFile } from '../storage/study-motion';
 import { bidsDataset } from './bids';
+import { portableName } from './portable-name';
 
 /** The content of an export. */
 export interface ExportContent {
@@ -81,7 +82,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
 
 /** Returns the path of a recording in an export. */
 export const motionPath = ({ participant, trial }: Pick<MotionFile, 'participant' | 'trial'>): string =>
-  `motion/${participant}-${trial.replace(/[^a-z0-9]+/g, '-')}.json`;
+  `motion/${participant}-${portableName(trial)}.json`;
 
 const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
 
@@ -127,7 +128,12 @@ export const exportName = (
   { plan, simulated, planVersion }: Pick<ExportContent, 'plan' | 'simulated' | 'planVersion'>,
   participant?: string,
 ): string =>
-  [simulated ? 'SIMULATED' : '', plan.id, planVersion === undefined ? '' : `version-${planVersion}`, participant ?? '']
+  [
+    simulated ? 'SIMULATED' : '',
+    portableName(plan.id),
+    planVersion === undefined ? '' : `version-${planVersion}`,
+    participant ?? '',
+  ]
     .filter(Boolean)
     .join('-');
 
