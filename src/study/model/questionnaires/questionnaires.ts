@@ -64,7 +64,7 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
       throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire has none for all questions');
     if (question.answer) questionKind(question.answer).check?.(question.answer, `${way}.answer`);
     if (question.reversed && questionKind(answer).range(answer) === null) {
-      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} cannot be reversed`);
+      throw new ValidationError(`${way}.reversed`, `answers of the kind "${answer.kind}" cannot be reversed`);
     }
     return { ...question, answer };
   });
