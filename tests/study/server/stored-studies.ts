@@ -1,6 +1,6 @@
 import { join } from 'node:path';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import type { StoredRecord, StudyRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
@@ -38,3 +38,7 @@ export function completed(participant = 'P01', { simulated = false, motion = fal
   one.doUntil(({ kind }) => kind === 'end');
   return one.records;
 }
+
+/** Returns a stored record as it was sent, without what the server has added. */
+export const asSent = ({ author: _author, receivedAt: _receivedAt, ...record }: StoredRecord): StudyRecord =>
+  record as StudyRecord;

@@ -8,7 +8,7 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { now } from './running-studies';
-import { completed, opened } from './stored-studies';
+import { asSent, completed, opened } from './stored-studies';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 
@@ -31,7 +31,7 @@ describe('storage that is full', () => {
     expect(full.records.all('paper', 'P01')).toHaveLength(stored);
     full.close();
     const { store: roomy } = opened(file);
-    expect(roomy.records.all('paper', 'P01').at(-1)).toEqual(remark(stored - 1));
+    expect(roomy.records.all('paper', 'P01').map(asSent).at(-1)).toEqual(remark(stored - 1));
     roomy.records.store('paper', 'P01', [remark(stored)], now);
     expect(roomy.records.all('paper', 'P01')).toHaveLength(stored + 1);
   });

@@ -5,8 +5,10 @@ import { jsonResponse, noContent } from 'threepoint-http/response';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { scheduleFor } from '../../model/plan/schedule';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
+import { refuseUnscheduled, refuseUnscheduledTrial } from '../../model/records/scheduled-record';
 import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/study-store';
 import { bodyLimits, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
@@ -88,9 +90,18 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
     }),
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
-      const plan = store.plans.planFor(call.study, call.participant);
-      const valid = records.map((record, index) => within(`records[${index}]`, () => checkedRecord(record, plan)));
-      return jsonResponse({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
+      const { study, participant, at } = call;
+      const plan = store.plans.planFor(study, participant);
+      const schedule = scheduleFor(plan, participant);
+      const valid = records.map((value, index) =>
+        within(`records[${index}]`, () => {
+          const record = checkedRecord(value, plan);
+          if (record.participant === participant) refuseUnscheduled(record, schedule);
+          return record;
+        }),
+      );
+      const author = guard.isParticipant(call) ? 'participant' : 'experimenter';
+      return jsonResponse({ acknowledged: store.records.store(study, participant, valid, at, author) });
     }),
     route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
       jsonResponse({ records: store.records.all(study, participant) }),
@@ -116,6 +127,7 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
     }),
     route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, at, query, body }) => {
       const { trial } = checked(motionSchema, { trial: query.get('trial') });
+      refuseUnscheduledTrial(trial, scheduleFor(store.plans.planFor(study, participant), participant));
       const recording = textOf({ body });
       try {
         parseRecording(recording);

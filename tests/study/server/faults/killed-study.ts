@@ -15,6 +15,7 @@ import { isAlive, kill, messageFrom } from '../../../server/child-process';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
 import { experimenter } from '../running-studies';
+import { asSent } from '../stored-studies';
 
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 
@@ -134,7 +135,7 @@ async function act(device: Device, ask: Ask, random: RandomSource): Promise<void
 /** Returns the acknowledged data of a device that the files of a killed server lack. */
 function check(device: Device, store: ReturnType<typeof openStudyStore>, report: KillReport): void {
   const { study, participant, schedule } = device;
-  const stored = store.records.all(study, participant);
+  const stored = store.records.all(study, participant).map(asSent);
   if (device.withdrawn === 'yes') {
     if (stored.length > 0) report.undeleted.push(`${study} ${participant}: ${stored.length} records`);
     return;
