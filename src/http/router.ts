@@ -93,7 +93,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       const known = refusalOf(error) ?? service.refusalOf(error);
       if (known) return errorResponse(known);
       service.onFault(error);
-      return errorResponse(new HttpError(500, 'the server failed, and stored nothing; try again'));
+      return errorResponse(new HttpError(500, 'the server failed; try again'));
     },
   };
 }

@@ -4,6 +4,7 @@ import type { HttpResponse } from 'threepoint-http/response';
 import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
 import { StoreRefusal } from '../storage/store-refusal';
 import type { StudyStore } from '../storage/study-store';
+import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';
 import type { StudyParts, StudyRequest, StudyRoute } from './route';
@@ -61,13 +62,16 @@ const statusOfRefusal = {
 /** The time after which a page repeats its request if the database is locked or busy [s]. */
 export const retryAfterSeconds = 5;
 
-/** Returns the HTTP error for an error, or null for a fault of the server. */
-export function refusalOf(error: unknown): HttpError | null {
+/** Returns the HTTP error for an error of a request with this effect, or null for a fault of the server. */
+export function refusalOf(error: unknown, effect: Effect): HttpError | null {
   if (!(error instanceof StoreRefusal)) return knownRefusalOf(error);
-  const { reason, message } = error;
-  return new HttpError(statusOfRefusal[reason], message, {
+  const { reason, failure, message } = error;
+  // The page for withdrawals takes 507 for a sign that nothing was deleted.
+  const isUnknown = reason === 'lost' && failure !== 'not done';
+  const status = isUnknown && effect === 'withdraws' ? 503 : statusOfRefusal[reason];
+  return new HttpError(status, failure === null ? message : failureSentence(message, effect, failure === 'not done'), {
     field: reason === 'begun' ? 'newVersion' : null,
-    headers: statusOfRefusal[reason] === 503 ? { 'retry-after': String(retryAfterSeconds) } : {},
+    headers: status === 503 ? { 'retry-after': String(retryAfterSeconds) } : {},
   });
 }
 
@@ -100,8 +104,8 @@ export class StudyDispatcher {
 
   /** Resolves with whether the request is permitted, before its body is read; `index` is that of the route. */
   admit(index: number, request: StudyRequest): Promise<StudyOutcome> {
-    return this.#outcome(async () => {
-      const { access } = this.routes[index] as StudyRoute;
+    const { access, effect } = this.routes[index] as StudyRoute;
+    return this.#outcome(effect, async () => {
       await untilUnlocked(performance.now() + lockedMs, () => this.#guard.admit(access, senderOf(request)));
       return { status: 204 };
     });
@@ -109,15 +113,16 @@ export class StudyDispatcher {
 
   /** Handles a request. If its route takes a body, it was admitted before. */
   handle(index: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome> {
-    return this.#outcome(async () => {
-      const route = this.routes[index] as StudyRoute;
+    const route = this.routes[index] as StudyRoute;
+    const changes = route.effect !== 'reads';
+    return this.#outcome(route.effect, async () => {
       const sender = senderOf(request);
       const call = { ...sender, at: request.at, query: new URLSearchParams(request.query), body };
       const until = performance.now() + lockedMs;
       if (route.bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(route.access, sender));
       const run = () => untilUnlocked(until, () => route.handle(call));
-      const answer = await (route.changes ? this.#afterEarlierChanges(run) : run());
-      if (route.changes) await this.#store.flushed();
+      const answer = await (changes ? this.#afterEarlierChanges(run) : run());
+      if (changes) await this.#store.flushed();
       const text = answer.body;
       return typeof text === 'string' ? { ...answer, body: new TextEncoder().encode(text) } : answer;
     });
@@ -131,12 +136,12 @@ export class StudyDispatcher {
     return result;
   }
 
-  async #outcome(run: () => Promise<HttpResponse>): Promise<StudyOutcome> {
+  async #outcome(effect: Effect, run: () => Promise<HttpResponse>): Promise<StudyOutcome> {
     try {
       return { answer: await run() };
     } catch (error) {
       if (error instanceof StoreRefusal && error.reason === 'lost') this.#logLost(error);
-      const known = refusalOf(error);
+      const known = refusalOf(error, effect);
       if (!known) return { fault: error instanceof Error ? (error.stack ?? error.message) : String(error) };
       const { status, message, field, headers } = known;
       return { refused: { status, message, field, headers } };

@@ -144,7 +144,7 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
         // A request that is admitted without the participant's token is from an experimenter, who watches.
         return jsonResponse(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
       }),
-      changes: false,
+      effect: 'reads',
     },
     {
       ...route('GET', `${own}/export`, 'participant', 0, ({ study, participant, at }) =>

@@ -10,11 +10,18 @@ export class StoreRefusal extends Error {
   readonly reason: 'unknown' | 'conflict' | 'begun' | 'forbidden' | 'full' | 'locked' | 'busy' | 'lost';
   /** Details for the log that the message must not show, such as paths; null: none. */
   readonly detail: string | null;
+  /** Whether the message is only the cause of a failure, and whether it is known that nothing was done; null: neither. */
+  readonly failure: 'not done' | 'unknown' | null;
 
-  constructor(reason: StoreRefusal['reason'], message: string, detail: string | null = null) {
+  constructor(
+    reason: StoreRefusal['reason'],
+    message: string,
+    { detail = null, failure = null }: Partial<Pick<StoreRefusal, 'detail' | 'failure'>> = {},
+  ) {
     super(message);
     this.reason = reason;
     this.detail = detail;
+    this.failure = failure;
   }
 }
 
@@ -31,17 +38,17 @@ export function sqliteCodeOf(error: unknown): number | null {
   return typeof sqliteExtendedCode === 'number' ? sqliteExtendedCode : null;
 }
 
-/** Returns the StoreRefusal for an error of SQLite; other errors unchanged. */
+/** Returns the StoreRefusal with the cause for an error of SQLite; other errors unchanged. */
 export function refusalOfSqlite(error: unknown): unknown {
   const code = sqliteCodeOf(error);
   if (code === null) return error;
   if (diskIsFull.has(code)) {
-    return new StoreRefusal('full', 'the disk of the server is full: nothing was stored');
+    return new StoreRefusal('full', 'the disk of the server is full', { failure: 'not done' });
   }
   const primary = code & 0xff;
   if (primary === sqliteBusy) {
-    return new StoreRefusal('locked', 'another program holds the lock of the database: nothing was stored');
+    return new StoreRefusal('locked', 'another program holds the lock of the database', { failure: 'not done' });
   }
   if (!fileIsBad.has(primary)) return error;
-  return new StoreRefusal('lost', 'the database cannot be used: nothing was stored', reasonOf(error));
+  return new StoreRefusal('lost', 'the database cannot be used', { detail: reasonOf(error), failure: 'not done' });
 }

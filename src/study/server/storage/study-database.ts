@@ -141,12 +141,12 @@ export class StudyDatabase {
     try {
       await this.#commits.flush();
     } catch (error) {
-      const text = 'the disk of the server failed, and this may not be stored. Restart the server';
-      throw new StoreRefusal('lost', text, reasonOf(error));
+      const text = 'the disk of the server failed, and the server must be restarted';
+      throw new StoreRefusal('lost', text, { detail: reasonOf(error), failure: 'unknown' });
     }
     if (this.#misplaced !== null) {
       const text = 'the folder of the studies was deleted or replaced. Put it back, or restart the server';
-      throw new StoreRefusal('lost', text, this.#misplaced);
+      throw new StoreRefusal('lost', text, { detail: this.#misplaced });
     }
   }
 
