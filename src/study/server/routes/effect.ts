@@ -9,7 +9,7 @@ const notDone = {
   withdraws: ': nothing was deleted yet. Try again later, or ask the experimenter',
 } as const satisfies Record<Effect, string>;
 
-/** The same of a request of which it is unknown whether it was done. */
+/** What is unknown about a request that may have been done, and what its sender can do. */
 const unknown = {
   reads: '. Try again later',
   stores: ', and it is unknown whether this was stored. Send it again',

@@ -10,7 +10,7 @@ export class StoreRefusal extends Error {
   readonly reason: 'unknown' | 'conflict' | 'begun' | 'forbidden' | 'full' | 'locked' | 'busy' | 'lost';
   /** Details for the log that the message must not show, such as paths; null: none. */
   readonly detail: string | null;
-  /** Whether the message is only the cause of a failure, and whether it is known that nothing was done; null: neither. */
+  /** Set if the message is only the cause of a failure: whether it is known that nothing was done. */
   readonly failure: 'not done' | 'unknown' | null;
 
   constructor(
