@@ -64,5 +64,5 @@ test('the built server needs no loader: it serves the page, rooms, the studies f
   const { dependencies } = JSON.parse(readFileSync(join(directory, 'package.json'), 'utf8'));
   for (const name of ['socket.io', '@photostructure/sqlite']) expect(dependencies).toHaveProperty([name]);
   for (const name of ['three', 'onnxruntime-web', 'iwer']) expect(dependencies).not.toHaveProperty([name]);
-  expect(files.some((file) => file.endsWith('analysis/analyse.py'))).toBe(true);
+  expect(files.some((file) => file.endsWith('results/answers-overall.csv'))).toBe(true);
 });

@@ -1,5 +1,4 @@
 import { createHash } from 'node:crypto';
-import { readFileSync } from 'node:fs';
 import { strToU8, type Zippable, zipSync } from 'fflate';
 import type { Software } from 'threepoint-http/software-version';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
@@ -41,12 +40,6 @@ const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0,
 const simulatedNotice =
   'SIMULATED: a program made this. It says nothing about people and must not be analysed with data of people.';
 
-/** Returns the analysis in Python, which is next to this file. */
-const analysisFiles = () =>
-  ['analyse.py', 'requirements.txt'].map(
-    (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
-  );
-
 function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {
   const { plan, simulated, records, at, retentionUntil } = content;
   const participants = new Set(records.map(({ participant }) => participant));
@@ -67,8 +60,6 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     ...(whole
       ? [
           'results/      the results of the page: planned, then exploratory',
-          'analysis/     the same from the tidy tables: "pip install -r analysis/requirements.txt"',
-          '              and "python analysis/analyse.py"',
         ]
       : []),
     'motion/       recordings of tracking frames, with consent to them',
@@ -116,7 +107,6 @@ export function exportFiles(content: ExportContent, participant?: string): Reado
     'codebook.csv': tidyCsv(codebookOf([...tables, codebookOf([])])),
   };
   for (const table of tables) files[`${table.name}.csv`] = tidyCsv(table);
-  if (whole) for (const [path, text] of analysisFiles()) files[path] = text;
   for (const file of motion) files[motionPath(file)] = file.text;
   for (const [path, text] of Object.entries(bids.files)) files[`bids/${path}`] = text;
   const lines = Object.entries(files).map(([path, text]) => `${sha256(text)}  ${path}\n`);
