@@ -57,11 +57,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'codebook.csv  every column of the other tables: meaning, unit, values, source',
     'The tables are tidy: UTF-8, a row per observation, an empty field for a missing value.',
     'Text that a spreadsheet would take for a formula begins with an added apostrophe.',
-    ...(whole
-      ? [
-          'results/      the results of the page: planned, then exploratory',
-        ]
-      : []),
+    ...(whole ? ['results/      the results of the page: planned, then exploratory'] : []),
     'motion/       recordings of tracking frames, with consent to them',
     'bids/         the same as a BIDS data set (motion)',
     ...leftOut.map((reason) => `  left out: ${reason}`),

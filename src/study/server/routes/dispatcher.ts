@@ -1,8 +1,8 @@
 import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
 import { HttpError } from 'threepoint-http/http-error';
 import type { HttpResponse } from 'threepoint-http/response';
-import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
-import { StoreRefusal } from '../storage/store-refusal';
+import { refusalOf } from 'threepoint-http/router';
+import { Refusal } from '../../model/progress/refusal';
 import type { StudyStore } from '../storage/study-store';
 import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
@@ -13,14 +13,7 @@ import { studyRoutes } from './study-routes';
 /** The result of a request, in a form that can be sent between threads. */
 export type StudyOutcome =
   | { readonly answer: HttpResponse }
-  | {
-      readonly refused: {
-        readonly status: number;
-        readonly message: string;
-        readonly field: string | null;
-        readonly headers: Readonly<Record<string, string>>;
-      };
-    }
+  | { readonly refused: Pick<HttpError, 'status' | 'message' | 'field' | 'headers'> }
   /** A fault of the server, for its log. */
   | { readonly fault: string };
 
@@ -41,7 +34,7 @@ async function untilUnlocked<T>(until: number, run: () => T | Promise<T>): Promi
     try {
       return await run();
     } catch (error) {
-      const isLocked = error instanceof StoreRefusal && error.reason === 'locked';
+      const isLocked = error instanceof Refusal && error.reason === 'locked';
       if (!isLocked || performance.now() > until) throw error;
       await wait(retryMs);
     }
@@ -55,24 +48,19 @@ const senderOf = ({ token, address, names }: StudyRequest): Sender => ({
   participant: names.participant === undefined ? '' : checked(participantId, names.participant),
 });
 
-const statusOfRefusal = {
-  ...{ unknown: 404, conflict: 409, begun: 409, forbidden: 403, locked: 503, busy: 503, full: 507, lost: 507 },
-} as const satisfies Readonly<Record<StoreRefusal['reason'], number>>;
-
 /** The time after which a page repeats its request if the database is locked or busy [s]. */
 export const retryAfterSeconds = 5;
 
 /** Returns the HTTP error for an error of a request with this effect, or null for a fault of the server. */
-export function refusalOf(error: unknown, effect: Effect): HttpError | null {
-  if (!(error instanceof StoreRefusal)) return knownRefusalOf(error);
-  const { reason, failure, message } = error;
+function httpErrorOf(error: unknown, effect: Effect): HttpError | null {
+  if (!(error instanceof Refusal)) return refusalOf(error);
+  const { reason, field, failure } = error;
+  const message = failure === null ? error.message : failureSentence(error.message, effect, failure === 'not done');
   // The page for withdrawals takes 507 for a sign that nothing was deleted.
   const isUnknown = reason === 'lost' && failure !== 'not done';
-  const status = isUnknown && effect === 'withdraws' ? 503 : statusOfRefusal[reason];
-  return new HttpError(status, failure === null ? message : failureSentence(message, effect, failure === 'not done'), {
-    field: reason === 'begun' ? 'newVersion' : null,
-    headers: status === 503 ? { 'retry-after': String(retryAfterSeconds) } : {},
-  });
+  const status = isUnknown && effect === 'withdraws' ? 503 : error.status;
+  const headers = status === 503 ? { 'retry-after': String(retryAfterSeconds) } : {};
+  return new HttpError(status, message, { field, headers });
 }
 
 export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, StudyGuardOptions {
@@ -140,15 +128,15 @@ export class StudyDispatcher {
     try {
       return { answer: await run() };
     } catch (error) {
-      if (error instanceof StoreRefusal && error.reason === 'lost') this.#logLost(error);
-      const known = refusalOf(error, effect);
+      if (error instanceof Refusal && error.reason === 'lost') this.#logLost(error);
+      const known = httpErrorOf(error, effect);
       if (!known) return { fault: error instanceof Error ? (error.stack ?? error.message) : String(error) };
       const { status, message, field, headers } = known;
       return { refused: { status, message, field, headers } };
     }
   }
 
-  #logLost({ message, detail }: StoreRefusal): void {
+  #logLost({ message, detail }: Refusal): void {
     if (performance.now() - this.#logged < logEveryMs) return;
     this.#logged = performance.now();
     this.#log(`study: ${message}${detail === null ? '' : ` (${detail})`}`);

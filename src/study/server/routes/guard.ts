@@ -7,8 +7,8 @@ import {
   TooManyAttempts,
 } from 'threepoint-http/auth-throttle';
 import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/http-error';
 import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
+import { Refusal } from '../../model/progress/refusal';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/study-store';
 
@@ -64,7 +64,7 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
 
 export type StudyGuard = ReturnType<typeof createStudyGuard>;
 
-/** Returns the checks of tokens, invitations and withdrawal codes, which throw HttpErrors. */
+/** Returns the checks of tokens, invitations and withdrawal codes, which throw Refusals. */
 export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: StudyGuardOptions) {
   const experimenterDigest = digest(experimenterToken);
   const throttle = createAuthThrottle(onFailedAttempt);
@@ -100,7 +100,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
       if (access === 'participant' && isParticipant(sender)) return;
       if (await isExperimenter(sender)) return;
-      throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
+      throw new Refusal('unauthorised', 'this needs the token of the participant or of an experimenter');
     },
     /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
     async claiming<T>(sender: Sender, invitation: string | undefined, claim: () => T): Promise<T> {
@@ -109,13 +109,14 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
         const why = `${participant} needs an invitation, which is in the participant’s link`;
-        throw new HttpError(403, why, { field: 'invitation' });
+        throw new Refusal('forbidden', why, { field: 'invitation' });
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;
       const right = await attempt({ what: 'invitation', address, of: study, secret }, () =>
         store.places.acceptsInvitation(study, participant, invitation),
       );
-      if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
+      if (!right)
+        throw new Refusal('forbidden', `this is not the invitation of ${participant}`, { field: 'invitation' });
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
     /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
@@ -127,7 +128,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
         result = withdraw();
         return result !== null;
       });
-      if (result === null) throw new HttpError(404, 'nothing is recorded under this code');
+      if (result === null) throw new Refusal('unknown', 'nothing is recorded under this code');
       return result;
     },
   };

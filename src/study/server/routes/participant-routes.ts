@@ -1,11 +1,11 @@
 import { parseRecording } from 'threepoint/core/tracking/recording';
 import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
-import { HttpError } from 'threepoint-http/http-error';
 import { jsonResponse, noContent } from 'threepoint-http/response';
 import { jsonOf, textOf } from 'threepoint-http/router';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { scheduleFor } from '../../model/plan/schedule';
+import { Refusal } from '../../model/progress/refusal';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
 import { refuseUnscheduled, refuseUnscheduledTrial } from '../../model/records/scheduled-record';
@@ -47,8 +47,8 @@ function refuseOutdated(plan: StudyPlan): void {
     checkedPlan(plan);
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
-    throw new HttpError(
-      409,
+    throw new Refusal(
+      'conflict',
       `the plan of this study is of an older version of the program and no longer valid: ${error.message}. ` +
         'Its records can be exported and deleted. Give a study with another plan another id',
     );
@@ -64,7 +64,9 @@ function takePlace(store: StudyStore, { study, participant, at }: StudyCall, rea
   refuseOutdated(plan);
   const { version } = plan.consent;
   if (read !== undefined && read !== version) {
-    throw new HttpError(409, `consent was given to text ${read}, but the study shows ${version}`, { field: 'consent' });
+    throw new Refusal('conflict', `consent was given to text ${read}, but the study shows ${version}`, {
+      field: 'consent',
+    });
   }
   return store.places.claim(study, participant, at);
 }
@@ -132,7 +134,7 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
       try {
         parseRecording(recording);
       } catch (error) {
-        throw new HttpError(400, (error as Error).message);
+        throw new Refusal('invalid', (error as Error).message);
       }
       store.motion.store(study, participant, trial, recording, at);
       return noContent;

@@ -6,8 +6,9 @@ import { reasonOf } from 'threepoint/core/errors/reasons';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { secretWeakness } from 'threepoint-http/secret-strength';
 import type { Software } from 'threepoint-http/software-version';
+import { Refusal } from '../../model/progress/refusal';
 import { DatabaseProblem } from './schema';
-import { StoreRefusal, sqliteBusy, sqliteCodeOf } from './store-refusal';
+import { sqliteBusy, sqliteCodeOf } from './sqlite-refusal';
 import { createPrivateFile } from './study-database';
 import { openStudyStore, type StudyStore } from './study-store';
 
@@ -81,7 +82,7 @@ function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
-  if (error instanceof StoreRefusal)
+  if (error instanceof Refusal)
     return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
   const { code } = (error ?? {}) as NodeJS.ErrnoException;
   if (code === 'ENOSPC' || code === 'EDQUOT') {

@@ -1,3 +1,4 @@
+import { Refusal } from '../../model/progress/refusal';
 import type { StudyCommand } from '../../model/progress/study-api';
 import {
   type RecordAuthor,
@@ -6,7 +7,6 @@ import {
   type StudyEvent,
   type StudyRecord,
 } from '../../model/records/study-record';
-import { StoreRefusal } from './store-refusal';
 import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
 import { notConsented, type StudyPlaces } from './study-places';
@@ -140,10 +140,10 @@ export class StudyRecords {
     );
     if (stored) {
       if (stored.record === text) return false;
-      throw new StoreRefusal('conflict', `${participant} has stored something else as "${id}" already`);
+      throw new Refusal('conflict', `${participant} has stored something else as "${id}" already`);
     }
     if (this.count(study, participant) >= maxRecordsPerParticipant) {
-      throw new StoreRefusal('full', `${participant} has ${maxRecordsPerParticipant} records already`);
+      throw new Refusal('full', `${participant} has ${maxRecordsPerParticipant} records already`);
     }
     this.#database.run(
       'INSERT INTO records (study, participant, id, record, received_at, author) VALUES (?, ?, ?, ?, ?, ?)',
@@ -162,7 +162,7 @@ export class StudyRecords {
     const given = this.#commands.after(study, participant, 0).filter(({ command }) => hasCaused(command, body));
     const events = this.all(study, participant).filter((one) => one.kind === 'event' && isSameEvent(one.body, body));
     if (events.length <= given.length) return;
-    throw new StoreRefusal('forbidden', `"${id}" follows from no command of the experimenter`);
+    throw new Refusal('forbidden', `"${id}" follows from no command of the experimenter`);
   }
 }
 
@@ -183,7 +183,7 @@ function hasCaused(command: StudyCommand, event: CommandedEvent): boolean {
 
 function refuseOtherText(read: unknown, shown: string): void {
   if (read === shown) return;
-  throw new StoreRefusal('conflict', `consent is to text ${read}, the study shows ${shown}`);
+  throw new Refusal('conflict', `consent is to text ${read}, the study shows ${shown}`);
 }
 
 /**
@@ -192,13 +192,13 @@ function refuseOtherText(read: unknown, shown: string): void {
  */
 function refuseForeign(record: StudyRecord, study: string, participant: string, simulated: boolean): void {
   if (record.study !== study || record.participant !== participant) {
-    throw new StoreRefusal('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
+    throw new Refusal('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
   }
   if (record.id.startsWith(remarkPrefix)) {
-    throw new StoreRefusal('forbidden', `"${record.id}" is the name of an experimenter's remark`);
+    throw new Refusal('forbidden', `"${record.id}" is the name of an experimenter's remark`);
   }
   if (record.simulated !== simulated) {
-    throw new StoreRefusal(
+    throw new Refusal(
       'forbidden',
       `the study "${study}" is ${simulated ? 'simulated' : 'of people'}, "${record.id}" is not`,
     );
