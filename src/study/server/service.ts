@@ -44,7 +44,7 @@ const unavailable = (message: string): HttpError =>
   new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
 
 const causes = {
-  full: 'there are too many requests to the studies',
+  full: 'too many requests to the studies',
   late: 'the database did not answer in time',
   ended: 'the studies were interrupted',
 } as const;
@@ -108,7 +108,9 @@ class StudyThread {
       return await this.call(name, args, { patient: isPatient && name === 'handle' });
     } catch (error) {
       if (!(error instanceof ThreadUnavailable)) throw error;
-      throw unavailable(failureSentence(causes[error.reason], effect, error.reason === 'full'));
+      const sentence = failureSentence(causes[error.reason], effect, error.reason === 'full');
+      const again = error.reason === 'full' && effect === 'stores' ? '. Send it again in a few seconds' : '';
+      throw unavailable(`${sentence}${again}`);
     }
   }
 

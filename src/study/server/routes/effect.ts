@@ -5,7 +5,7 @@ export type Effect = 'reads' | 'stores' | 'deletes' | 'withdraws';
 const notDone = {
   reads: '. Try again later',
   stores: ': nothing was stored',
-  deletes: ': nothing was deleted yet. Make room, and try again',
+  deletes: ': nothing was deleted yet. Try again later',
   withdraws: ': nothing was deleted yet. Try again later, or ask the experimenter',
 } as const satisfies Record<Effect, string>;
 

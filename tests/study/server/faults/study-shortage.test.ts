@@ -104,7 +104,7 @@ test('a disk that fills refuses to store and to delete, and is no matter to an e
   expect([answer.status, answer.error]).toEqual([507, 'the database cannot be used: nothing was stored']);
   expect(await ask(server, 'DELETE', '/participants/P01')).toMatchObject({
     status: 507,
-    error: 'the database cannot be used: nothing was deleted yet. Make room, and try again',
+    error: 'the database cannot be used: nothing was deleted yet. Try again later',
   });
   expect(await ask(server, 'POST', '/withdraw', { code })).toMatchObject({
     status: 507,
