@@ -1,6 +1,5 @@
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { RoomKinds } from 'threepoint-rooms/server/hosting/room-kinds';
+import { BallPolicy, ballKind } from 'threepoint-games/ball';
+import type { RoomKinds } from 'threepoint-rooms/server';
 
 /** Returns the games of this project. `ballSeconds`: length of a round of the ball game whose room has no terms. */
 export const shippedRoomKinds = ({ ballSeconds }: { readonly ballSeconds: number }): RoomKinds =>

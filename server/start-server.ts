@@ -1,11 +1,13 @@
-import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { createRouter } from 'threepoint-http/router';
-import { createSitePolicy } from 'threepoint-http/site-policy';
-import { readSoftwareVersion } from 'threepoint-http/software-version';
-import { type Credentials, prepareServer } from 'threepoint-http/web-server';
-import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
-import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
-import { openStudyService } from 'threepoint-study/server/service';
+import {
+  ConnectionLimiter,
+  type Credentials,
+  createRouter,
+  createSitePolicy,
+  prepareServer,
+  readSoftwareVersion,
+} from 'threepoint-http';
+import { attachRooms, type RelayConfiguration } from 'threepoint-rooms/server';
+import { openStudyService } from 'threepoint-study/server';
 import { createPageHandler } from './page-handler';
 import { shippedRoomKinds } from './room-kinds';
 

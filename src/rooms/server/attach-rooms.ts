@@ -1,11 +1,16 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
-import { parseRequestTarget } from 'threepoint-http/request-target';
-import { sendResponse } from 'threepoint-http/response';
-import { createRouter, noPage } from 'threepoint-http/router';
-import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
-import { refusesUpgrade, withHostCheck } from 'threepoint-http/web-server';
+import {
+  createRouter,
+  createSitePolicy,
+  noPage,
+  parseRequestTarget,
+  refusesUpgrade,
+  type SitePolicy,
+  sendResponse,
+  withHostCheck,
+} from 'threepoint-http';
 import { peopleKind, peoplePolicy } from '../room/people-policy';
 import type { RoomKinds } from './hosting/room-kinds';
 import { createRelay } from './relay';

@@ -1,12 +1,18 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
-import { checked } from 'threepoint/core/validation/validation';
-import { AdminGuard } from 'threepoint-http/admin-guard';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/http-error';
-import { type HttpResponse, jsonResponse } from 'threepoint-http/response';
-import { type Call, jsonOf, type Route, type Service } from 'threepoint-http/router';
+import { checked } from 'threepoint/core';
+import {
+  AdminGuard,
+  type Call,
+  clientAddressOf,
+  HttpError,
+  type HttpResponse,
+  jsonOf,
+  jsonResponse,
+  type Route,
+  type Service,
+} from 'threepoint-http';
 import * as v from 'valibot';
 import { roomTerms } from '../protocol/messages';
 import { createJoinLimit } from './access/join-limit';

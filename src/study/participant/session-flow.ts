@@ -1,5 +1,5 @@
-import { otherSide } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { otherSide } from 'threepoint/math';
+import type { TrackingFrame } from 'threepoint/core';
 import type { ProgressEvent } from '../model/progress/apply-event';
 import type { Refusal } from '../model/progress/refusal';
 import { BodyMeasurement } from './body-measurement';

@@ -1,4 +1,4 @@
-import { formatSentence } from 'threepoint-ui/text-format';
+import { formatSentence } from 'threepoint-ui';
 import type { ParticipantClient } from '../client/study-client';
 import { inLanguage } from '../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';

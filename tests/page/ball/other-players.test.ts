@@ -1,5 +1,5 @@
-import { hideLabel, muteLabel, otherPlayers, type SeatRow } from 'threepoint-page/ball/panel/other-players';
 import { describe, expect, it } from 'vitest';
+import { hideLabel, muteLabel, otherPlayers, type SeatRow } from '../../../src/page/ball/panel/other-players';
 
 const seated = (seat: number, change: Partial<SeatRow> = {}): SeatRow => ({
   ...{ seat, name: `Player ${seat}`, role: 'Right thrower' },

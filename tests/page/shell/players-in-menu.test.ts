@@ -1,15 +1,15 @@
 import { Vector3 } from 'three';
-import { MutablePointer } from 'threepoint/core/input/pointer';
-import { up, zero } from 'threepoint/core/math/vec3';
-import { stations } from 'threepoint-games/ball/stations';
-import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
-import { type PlayersSheetActions, playersSheet } from 'threepoint-page/ball/menu/players-sheet';
-import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
-import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
-import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
-import { VrMenu } from 'threepoint-page/shell/vr-menu/vr-menu';
-import { maxNameLength } from 'threepoint-rooms/protocol/player-name';
+import { MutablePointer } from 'threepoint/core';
+import { up, zero } from 'threepoint/math';
+import { stations } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import { menuHeight, menuMargin, menuWidth } from '../../../src/page/activity/activity-menu';
+import { type PlayersSheetActions, playersSheet } from '../../../src/page/ball/menu/players-sheet';
+import type { OtherPlayer } from '../../../src/page/ball/panel/other-players';
+import { menuButtons, type VrMenuActions, type VrMenuState } from '../../../src/page/shell/vr-menu/menu-buttons';
+import { drawMenu } from '../../../src/page/shell/vr-menu/menu-drawing';
+import { VrMenu } from '../../../src/page/shell/vr-menu/vr-menu';
+import { maxNameLength } from '../../../src/rooms/protocol/player-name';
 import { drawNowhere } from './drawing-in-node';
 import { expectApart, paper, studioMenu } from './menu-parts';
 

@@ -1,9 +1,15 @@
 import fc from 'fast-check';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { maxSeats } from 'threepoint-rooms/protocol/messages';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { decodeFrame, encodeFrame, frameLength, type SeatPose, writeFrame } from 'threepoint-rooms/protocol/pose-frame';
+import { unknownFingers } from 'threepoint/core';
 import { beforeAll, describe, expect, test } from 'vitest';
+import { maxSeats } from '../../../src/rooms/protocol/messages';
+import { encodePose } from '../../../src/rooms/protocol/pose-codec';
+import {
+  decodeFrame,
+  encodeFrame,
+  frameLength,
+  type SeatPose,
+  writeFrame,
+} from '../../../src/rooms/protocol/pose-frame';
 import { packetOf, pinnedPacketOf, pinnedSenders, senders } from './sent-bodies';
 
 const seed = 20261122;

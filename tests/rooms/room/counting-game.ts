@@ -1,9 +1,8 @@
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { createMatch } from 'threepoint-games/match';
-import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
-import { roomMessageReader } from 'threepoint-rooms/protocol/messages';
-import type { HostedGame, MatchAction, MatchPolicy, MatchState } from 'threepoint-rooms/room/match-policy';
+import { identity, vec3 } from 'threepoint/math';
+import { createMatch } from 'threepoint-games';
+import type { ClientPolicy } from '../../../src/rooms/client/client-policy';
+import { roomMessageReader } from '../../../src/rooms/protocol/messages';
+import type { HostedGame, MatchAction, MatchPolicy, MatchState } from '../../../src/rooms/room/match-policy';
 
 interface CountingState extends MatchState {
   readonly total: number;

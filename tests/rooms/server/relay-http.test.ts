@@ -1,8 +1,8 @@
 import { SignJWT } from 'jose';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { clientAddressOf } from 'threepoint-http';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
+import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
 import { type RunningRelay, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
 import { guestOfTest } from './until-finished';
 

@@ -1,10 +1,10 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import type { BallState } from 'threepoint-games/ball/ball-state';
-import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import { bannerText } from 'threepoint-rooms/client/connection-text';
-import { protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
+import { defaultCalibration } from 'threepoint/core';
+import type { BallState } from 'threepoint-games/ball';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { ConnectionStatus } from '../../../src/rooms/client/connection';
+import { bannerText } from '../../../src/rooms/client/connection-text';
+import { protocolVersion } from '../../../src/rooms/protocol/messages';
+import { messageEvent } from '../../../src/rooms/protocol/socket-parsers';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 import { personOfTest } from './until-finished';

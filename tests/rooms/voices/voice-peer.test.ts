@@ -1,5 +1,5 @@
-import { VoicePeer } from 'threepoint-rooms/voices/voice-peer';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { VoicePeer } from '../../../src/rooms/voices/voice-peer';
 
 /** A browser's connection, as far as one that ends needs it. */
 class Connection extends EventTarget {

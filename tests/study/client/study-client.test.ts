@@ -1,5 +1,5 @@
-import { requestTimeoutMs } from 'threepoint-http/web-server';
-import { createParticipantClient, motionTimeoutMs, ServerUnreachable } from 'threepoint-study/client/study-client';
+import { requestTimeoutMs } from '../../../src/http/web-server';
+import { createParticipantClient, motionTimeoutMs, ServerUnreachable } from '../../../src/study/client/study-client';
 import { expect, test } from 'vitest';
 import { answeringHost, says } from '../../rooms/client/answering-host';
 

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import type { QuestionnaireFile } from 'threepoint-study/model/questionnaires/questionnaire-schema';
-import { scaleRange, scaleScore } from 'threepoint-study/model/questionnaires/questionnaire-scores';
+import type { QuestionnaireFile } from '../../../src/study/model/questionnaires/questionnaire-schema';
+import { scaleRange, scaleScore } from '../../../src/study/model/questionnaires/questionnaire-scores';
 import {
   type Answers,
   checkedAnswers,
@@ -11,7 +11,7 @@ import {
   shippedQuestionnaires,
   typedAnswer,
   unanswered,
-} from 'threepoint-study/model/questionnaires/questionnaires';
+} from '../../../src/study/model/questionnaires/questionnaires';
 import { describe, expect, test } from 'vitest';
 
 const shipped = (id: string): Questionnaire => {

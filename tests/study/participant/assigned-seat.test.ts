@@ -1,11 +1,11 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { assignedSeat } from 'threepoint-page/ball/match/ball-connections';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
-import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
+import { defaultAvatar } from 'threepoint/core';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { startServer } from '../../../server/start-server';
+import { assignedSeat } from '../../../src/page/ball/match/ball-connections';
+import { createExperimenterClient, createParticipantClient } from '../../../src/study/client/study-client';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { ParticipantState } from '../../../src/study/model/progress/study-api';
 import { visitor } from '../../rooms/client/people';
 import { testSecret, until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';

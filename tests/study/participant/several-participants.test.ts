@@ -1,7 +1,7 @@
-import { type Schedule, scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StoredRecord } from 'threepoint-study/model/records/study-record';
-import { recordFlags } from 'threepoint-study/model/tables/record-flags';
-import { type RandomSource, randomSource } from 'threepoint-study/simulation/random-source';
+import { type Schedule, scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { StoredRecord } from '../../../src/study/model/records/study-record';
+import { recordFlags } from '../../../src/study/model/tables/record-flags';
+import { type RandomSource, randomSource } from '../../../src/study/simulation/random-source';
 import { expect, test } from 'vitest';
 import { aWomanOf26 } from '../model/studies';
 import { agree, canStart, choose, measure } from './participant-steps';

@@ -1,7 +1,7 @@
 import { join } from 'node:path';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StoredRecord, StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { StoredRecord, StudyRecord } from '../../../src/study/model/records/study-record';
+import { openStudyStore, type StudyStore } from '../../../src/study/server/storage/study-store';
 import { onTestFinished } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';

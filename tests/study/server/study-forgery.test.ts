@@ -1,7 +1,7 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { csvRows } from '../../../src/study/cli/verify/csv-rows';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';

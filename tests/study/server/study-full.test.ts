@@ -3,7 +3,7 @@ import { readdirSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
+import { recordVersion, type StudyRecord } from '../../../src/study/model/records/study-record';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';

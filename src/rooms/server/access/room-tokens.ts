@@ -1,7 +1,6 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
-import { HttpError } from 'threepoint-http/http-error';
-import type { Call } from 'threepoint-http/router';
+import { type Call, HttpError } from 'threepoint-http';
 import * as v from 'valibot';
 import { maxSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
 

@@ -1,4 +1,4 @@
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import { isPlayed, type Schedule, type StudyStep, trialOf } from '../plan/schedule';
 import type { Place, StudyRecord } from './study-record';
 

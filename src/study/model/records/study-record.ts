@@ -1,13 +1,4 @@
-import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import {
-  checked,
-  identifier,
-  integerBetween,
-  numberBetween,
-  participantId,
-  text,
-  ValidationError,
-} from 'threepoint/core/validation/validation';
+import { threePointNames, checked, identifier, integerBetween, numberBetween, participantId, text, ValidationError } from 'threepoint/core';
 import * as v from 'valibot';
 import { languageTag } from '../phrases/localized-text';
 import type { StudyPlan } from '../plan/plan';

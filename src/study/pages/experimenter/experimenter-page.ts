@@ -1,7 +1,6 @@
 import 'threepoint-ui/styles/document.css';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { element, pageElement } from 'threepoint-ui/element';
-import { formatSentence } from 'threepoint-ui/text-format';
+import { reasonOf } from 'threepoint/core';
+import { element, pageElement, formatSentence } from 'threepoint-ui';
 import type { ExperimenterClient } from '../../client/study-client';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { Refusal } from '../../model/progress/refusal';

@@ -1,7 +1,5 @@
-import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
-import { HttpError } from 'threepoint-http/http-error';
-import type { HttpResponse } from 'threepoint-http/response';
-import { refusalOf } from 'threepoint-http/router';
+import { checked, identifier, participantId } from 'threepoint/core';
+import { HttpError, type HttpResponse, refusalOf } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
 import type { StudyStore } from '../storage/study-store';
 import { type Effect, failureSentence } from './effect';

@@ -1,13 +1,6 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import { RateLimiterMemory } from 'rate-limiter-flexible';
-import {
-  type AuthAttempt,
-  createAuthThrottle,
-  type FailedAttempt,
-  TooManyAttempts,
-} from 'threepoint-http/auth-throttle';
-import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
-import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
+import { type AuthAttempt, createAuthThrottle, type FailedAttempt, TooManyAttempts, type ClientAddress, requiredAddress, consumePoint, tooManyRequests } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/study-store';

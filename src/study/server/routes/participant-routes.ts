@@ -1,7 +1,5 @@
-import { parseRecording } from 'threepoint/core/tracking/recording';
-import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
-import { jsonResponse, noContent } from 'threepoint-http/response';
-import { jsonOf, textOf } from 'threepoint-http/router';
+import { parseRecording, checked, integerBetween, text, ValidationError } from 'threepoint/core';
+import { jsonResponse, noContent, jsonOf, textOf } from 'threepoint-http';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { scheduleFor } from '../../model/plan/schedule';

@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import { Refusal } from '../../model/progress/refusal';
 
 /** SQLite's primary code BUSY: another connection holds the lock. */

@@ -2,8 +2,8 @@
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import { exportFiles } from 'threepoint-study/server/export/export-zip';
+import { csvRows } from '../../../../src/study/cli/verify/csv-rows';
+import { exportFiles } from '../../../../src/study/server/export/export-zip';
 import { describe, expect, test } from 'vitest';
 import { installed } from '../../../server/installed';
 import { directoryWith } from '../../../temporary-directory';

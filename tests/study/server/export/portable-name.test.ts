@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { exportName, motionPath } from 'threepoint-study/server/export/export-zip';
+import { exportName, motionPath } from '../../../../src/study/server/export/export-zip';
 import { describe, expect, test } from 'vitest';
 import { seed } from '../../../threepoint/core/arbitraries';
 import { paperPlan } from '../../model/studies';
