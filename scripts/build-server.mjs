@@ -1,6 +1,6 @@
 // Builds the server into JavaScript, for machines without the tools that run it from its sources: node
 // dist-server/main.mjs. Its dependencies are not bundled (npm ci --omit=dev). npm run build builds the page.
-import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { rolldown } from 'rolldown';
@@ -71,7 +71,6 @@ export async function buildServer(out) {
   const manifest = { name: 'threepoint-server', version, type, private: true, dependencies: own };
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
   writeLicences(out, installedFolders(Object.keys(own)));
-  cpSync(join(root, 'src/study/server/export/analysis'), join(out, 'analysis'), { recursive: true });
 }
 
 await mainOf(import.meta.url, () => {

@@ -28,7 +28,7 @@ export class TooManyAttempts extends Error {
   readonly retryAfterSeconds: number;
 
   constructor(what: SecretKind, retryAfterSeconds: number) {
-    super(`too many wrong guesses of a ${what}; try again in ${retryAfterSeconds} s`);
+    super(`too many wrong guesses of the ${what}; try again in ${retryAfterSeconds} s`);
     this.retryAfterSeconds = retryAfterSeconds;
   }
 }

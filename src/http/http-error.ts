@@ -18,4 +18,4 @@ export class HttpError extends Error {
 }
 
 /** Returns what a client receives for a fault of the server; the log has the details. */
-export const internalError = (): HttpError => new HttpError(500, 'the server failed, and stored nothing; try again');
+export const internalError = (): HttpError => new HttpError(500, 'the server failed; try again');

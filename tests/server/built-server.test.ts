@@ -19,7 +19,7 @@ test('the built server serves the page and rooms, stores studies in their thread
   const exported = await fetch(`${url}/api/studies/paper/export`, { headers });
   expect(exported.status).toBe(200);
   const files = Object.keys(unzipSync(new Uint8Array(await exported.arrayBuffer())));
-  expect(files.some((file) => file.endsWith('analysis/analyse.py'))).toBe(true);
+  expect(files.some((file) => file.endsWith('results/answers-overall.csv'))).toBe(true);
 });
 
 test('the built server answers 400 to percent signs that encode no text, and lives on', async () => {

@@ -1,5 +1,6 @@
 import { reasonOf } from 'threepoint/core';
 import type { Progress } from '../model/progress/progress';
+import { Refusal } from '../model/progress/refusal';
 import type {
   Claim,
   NumberedCommand,
@@ -16,28 +17,8 @@ import type {
 import type { StudyRecord } from '../model/records/study-record';
 import type { SimulatedParticipant } from '../simulation/simulate-study';
 
-/** The server answered and refused the request. */
-export class ServerRefusal extends Error {
-  readonly status: number;
-  /** The invalid field of the request, as `records[1].body.age`; null: no single field is at fault. */
-  readonly field: string | null;
-
-  constructor(status: number, message: string, field: string | null = null) {
-    super(message);
-    this.status = status;
-    this.field = field;
-  }
-}
-
 /** The message for a host without studies. */
 export const noStudiesHere = 'Studies need a threepoint server, and this page comes from a host without one.';
-
-/** The server that answered does not know studies: it is another program, and its answer has no message. */
-export class NoStudyServer extends ServerRefusal {
-  constructor(status: number) {
-    super(status, noStudiesHere);
-  }
-}
 
 /** There was no answer: no network, no server, or an aborted request. A later attempt may succeed. */
 export class ServerUnreachable extends Error {}
@@ -83,12 +64,12 @@ async function request(
   if (response.ok) return response;
   const answer: unknown = await response.json().catch(() => null);
   const isStudyServer = typeof answer === 'object' && answer !== null && 'error' in answer;
-  if (!isStudyServer && response.status === 404) throw new NoStudyServer(response.status);
+  if (!isStudyServer && response.status === 404) throw new Refusal('elsewhere', noStudiesHere);
   const sentence = isStudyServer ? String(answer.error) : `the server answered ${response.status}`;
   // Proxies send these while the server is away. The server itself sends 5xx if nothing was acknowledged.
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
   const field = typeof answer === 'object' && answer !== null && 'field' in answer ? answer.field : null;
-  throw new ServerRefusal(response.status, sentence, typeof field === 'string' ? field : null);
+  throw Refusal.from(response.status, sentence, typeof field === 'string' ? field : null);
 }
 
 /** Resolves with the body of an answer; rejects if it is incomplete. */
@@ -125,7 +106,7 @@ export interface TakenPlace extends StudyPlace {
 
 export type ParticipantClient = ReturnType<typeof createParticipantClient>;
 
-/** Returns the requests of a participant's page. Every call rejects with ServerRefusal or ServerUnreachable. */
+/** Returns the requests of a participant's page. Every call rejects with Refusal or ServerUnreachable. */
 export function createParticipantClient(server: string) {
   const answer = answersOf(server);
   const ownPath = ({ study, participant }: StudyPlace, name: string) => `${pathOf(study, participant)}/${name}`;
@@ -165,7 +146,7 @@ export function createParticipantClient(server: string) {
   };
 }
 
-/** Returns the requests of the withdrawal page. Every call rejects with ServerRefusal or ServerUnreachable. */
+/** Returns the requests of the withdrawal page. Every call rejects with Refusal or ServerUnreachable. */
 export function createWithdrawalClient(server: string) {
   const answer = answersOf(server);
   return {
@@ -182,7 +163,7 @@ const recordsAtOnce = 50;
 
 export type ExperimenterClient = ReturnType<typeof createExperimenterClient>;
 
-/** Returns the requests of the experimenter's pages. Every call rejects with ServerRefusal or ServerUnreachable. */
+/** Returns the requests of the experimenter's pages. Every call rejects with Refusal or ServerUnreachable. */
 export function createExperimenterClient(token: string, server: string) {
   const answer = answersOf(server);
   const post = <T>(path: string, body?: unknown) => answer<T>(path, { method: 'POST', token, body });

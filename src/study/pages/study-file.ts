@@ -1,13 +1,13 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { reasonOf } from 'threepoint/core';
 import { type StudyPlan, storedPlan } from '../model/plan/plan';
-import { checkedRecord, type StudyRecord } from '../model/records/study-record';
+import { exportedRecord, type StoredRecord } from '../model/records/study-record';
 
 /** A study and its records under one version of its plan, as an export contains them. */
 export interface OpenedStudy {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
-  readonly records: readonly StudyRecord[];
+  readonly records: readonly StoredRecord[];
   /** The version of the plan that the records follow, if the plan has several. */
   readonly planVersion?: number;
 }
@@ -46,7 +46,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
   }
   const records = file.records.map((record: unknown, index: number) => {
     try {
-      return checkedRecord(record, plan);
+      return exportedRecord(record, plan);
     } catch (error) {
       throw new Error(`records.json: records[${index}]: ${reasonOf(error)}`);
     }

@@ -1,15 +1,10 @@
 import { reasonOf } from 'threepoint/core';
 import { PhrasedError, type Phrases } from '../model/phrases/phrases';
-import { refusals } from '../model/progress/apply-event';
+import { Refusal } from '../model/progress/refusal';
 
 /** Returns an error in the participant's language. Technical errors stay in English. */
-export const localizedReason = (error: unknown, phrases: Phrases): string =>
-  error instanceof PhrasedError ? error.in(phrases) : phrases.text('reason', { reason: reasonOf(error) });
-
-/** Returns why a session refused an event, in the participant's language, or null. */
-export function localizedRefusal(refusal: string | null, { text }: Phrases): string | null {
-  if (refusal === null) return null;
-  if (refusal === refusals.paused) return text('refused.paused');
-  if (refusal === refusals.asked) return text('refused.asked');
-  return text('reason', { reason: refusal });
+export function localizedReason(error: unknown, phrases: Phrases): string {
+  if (error instanceof PhrasedError) return error.in(phrases);
+  const phrase = error instanceof Refusal ? error.phrase : null;
+  return phrase === null ? phrases.text('reason', { reason: reasonOf(error) }) : phrases.text(phrase);
 }

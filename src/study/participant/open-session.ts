@@ -1,7 +1,8 @@
-import { type ParticipantClient, ServerRefusal, ServerUnreachable, type StudyPlace } from '../client/study-client';
+import { type ParticipantClient, ServerUnreachable, type StudyPlace } from '../client/study-client';
 import { PhrasedError } from '../model/phrases/phrases';
 import { scheduleFor } from '../model/plan/schedule';
 import { isLater, type Progress } from '../model/progress/progress';
+import { Refusal } from '../model/progress/refusal';
 import type { PublicStudy } from '../model/progress/study-api';
 import type { ConsentChoices } from './forms/study-form';
 import { ParticipantSession, type ParticipantSessionOptions, startSession } from './session/participant-session';
@@ -88,7 +89,7 @@ async function reportedProgress(client: ParticipantClient, session: KeptSession)
   try {
     return await client.progress(session);
   } catch (error) {
-    if (error instanceof ServerUnreachable || error instanceof ServerRefusal) return null;
+    if (error instanceof ServerUnreachable || error instanceof Refusal) return null;
     throw error;
   }
 }
@@ -129,11 +130,11 @@ export async function openSession(place: StudyPlace, opening: OpeningOptions): P
           return session;
         }
         const refusal = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
-        return refusal === null ? session : { why: new Error(refusal) };
+        return refusal === null ? session : { why: refusal };
       } catch (error) {
-        if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
-        if (error instanceof ServerRefusal && error.field === 'consent') return 'changed';
-        if (error instanceof ServerRefusal && error.status === 409)
+        if (error instanceof Refusal && error.field === 'invitation') return 'uninvited';
+        if (error instanceof Refusal && error.field === 'consent') return 'changed';
+        if (error instanceof Refusal && error.reason === 'conflict')
           return { why: new PhrasedError('entrance.taken', { participant }) };
         return { why: error };
       }

@@ -1,10 +1,11 @@
 import type { TrackingFrame } from 'threepoint/core';
 import { otherSide } from 'threepoint/math';
 import type { ProgressEvent } from '../model/progress/apply-event';
+import type { Refusal } from '../model/progress/refusal';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
-import { localizedReason, localizedRefusal } from './localized-reasons';
+import { localizedReason } from './localized-reasons';
 import { PauseGesture } from './pause-gesture';
 import { QuestionnaireState } from './questionnaire-state';
 import { lockedOutScreen, screenOf } from './screens/study-screens';
@@ -244,22 +245,26 @@ export class SessionFlow {
     const { session } = this;
     const { attempt } = this.#trials;
     const refusal = session.apply({ type: 'trial-finished', outcome });
-    this.#refusal = localizedRefusal(refusal, session.phrases);
+    this.#refusal = this.#inWords(refusal);
     if (recording !== null && refusal === null) session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 
   #apply(event: ProgressEvent): void {
     this.conclude();
-    this.#refusal = localizedRefusal(this.session.apply(event), this.session.phrases);
+    this.#refusal = this.#inWords(this.session.apply(event));
     void this.exchange();
     this.show();
   }
 
   /** Shows why an action changed nothing; null: it did. */
-  #showRefusal(refusal: string | null): void {
-    this.#refusal = localizedRefusal(refusal, this.session.phrases);
+  #showRefusal(refusal: Refusal | null): void {
+    this.#refusal = this.#inWords(refusal);
     this.show();
+  }
+
+  #inWords(refusal: Refusal | null): string | null {
+    return refusal && localizedReason(refusal, this.session.phrases);
   }
 
   /** Returns why the answers are refused, or null if they are stored. */
@@ -270,7 +275,7 @@ export class SessionFlow {
       this.#setBowSide();
     }
     this.show();
-    return localizedRefusal(complaint, this.session.phrases);
+    return this.#inWords(complaint);
   }
 
   /** Puts the bow into the hand that does not draw it. */

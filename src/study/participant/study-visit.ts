@@ -1,7 +1,8 @@
 import { formatSentence } from 'threepoint-ui';
-import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
+import type { ParticipantClient } from '../client/study-client';
 import { inLanguage } from '../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
+import { Refusal } from '../model/progress/refusal';
 import type { PublicStudy } from '../model/progress/study-api';
 import { localizedReason } from './localized-reasons';
 import { forgetSession, type OpenedSession, openSession } from './open-session';
@@ -118,7 +119,7 @@ export class StudyVisit {
 
   #fault(error: unknown): { readonly phrases: Phrases; readonly text: string } {
     const phrases = this.#phrasesOf(null);
-    const unknown = error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer);
+    const unknown = error instanceof Refusal && error.reason === 'unknown';
     const text = unknown
       ? phrases.text('entrance.noStudy', { study: this.#requested.study })
       : localizedReason(error, phrases);

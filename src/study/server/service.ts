@@ -15,6 +15,7 @@ import {
   ThreadUnavailable,
 } from 'threepoint-http';
 import { retryAfterSeconds, type StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
+import { failureSentence } from './routes/effect';
 import type { RouteAccess } from './routes/guard';
 import type { StudyRequest, StudyRoute } from './routes/route';
 import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './thread';
@@ -48,10 +49,10 @@ const hourMs = 3_600_000;
 const unavailable = (message: string): HttpError =>
   new HttpError(503, message, { headers: { 'retry-after': String(retryAfterSeconds) } });
 
-const sentences = {
-  full: 'too many requests to the studies: nothing was stored. Send it again in a few seconds',
-  late: 'the database did not answer in time, and it is unknown whether this was stored. Send it again',
-  ended: 'the studies were interrupted, and it is unknown whether this was stored. Send it again',
+const causes = {
+  full: 'too many requests to the studies',
+  late: 'the database did not answer in time',
+  ended: 'the studies were interrupted',
 } as const;
 
 /** The thread of the studies. After a fault, such as a lack of memory, the next request starts it again. */
@@ -93,18 +94,29 @@ class StudyThread {
     }
   }
 
-  /** Calls the thread; rejects with an HttpError 503 if it is overloaded, late or ended. */
+  /** Calls the thread; rejects with a ThreadUnavailable if it is overloaded, late or ended. */
   async call<Name extends keyof StudyThreadApi>(
     name: Name,
     args: Parameters<StudyThreadApi[Name]>,
     options?: { readonly patient: boolean },
   ): Promise<Awaited<ReturnType<StudyThreadApi[Name]>>> {
+    const calls = this.#calls ?? this.#restarted();
+    return calls.call(name, args, options);
+  }
+
+  /** Runs a request in the thread; rejects with an HttpError 503 if the thread is overloaded, late or ended. */
+  async request<Name extends 'admit' | 'handle'>(
+    name: Name,
+    args: Parameters<StudyThreadApi[Name]>,
+    { effect, isPatient }: Pick<StudyRoute, 'effect' | 'isPatient'>,
+  ): Promise<StudyOutcome> {
     try {
-      const calls = this.#calls ?? this.#restarted();
-      return await calls.call(name, args, options);
+      return await this.call(name, args, { patient: isPatient && name === 'handle' });
     } catch (error) {
       if (!(error instanceof ThreadUnavailable)) throw error;
-      throw unavailable(sentences[error.reason]);
+      const sentence = failureSentence(causes[error.reason], effect, error.reason === 'full');
+      const again = error.reason === 'full' && effect === 'stores' ? '. Send it again in a few seconds' : '';
+      throw unavailable(`${sentence}${again}`);
     }
   }
 
@@ -202,9 +214,8 @@ export async function openStudyService(options: StudyServiceOptions): Promise<St
   const service = createStudyService({
     ...{ routes, now, trustProxy, log },
     dispatcher: {
-      admit: (index, request) => thread.call('admit', [index, request]),
-      handle: (index, request, body) =>
-        thread.call('handle', [index, request, body], { patient: routes[index]?.isPatient ?? false }),
+      admit: (index, request) => thread.request('admit', [index, request], routes[index] as StudyRoute),
+      handle: (index, request, body) => thread.request('handle', [index, request, body], routes[index] as StudyRoute),
     },
   });
   return {

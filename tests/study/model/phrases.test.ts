@@ -1,3 +1,4 @@
+import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import { english, type Phrase } from '../../../src/study/model/phrases/english';
 import { german } from '../../../src/study/model/phrases/german';
@@ -31,6 +32,26 @@ function frenchPlan(phrases: object) {
 }
 const complaintsOf = (phrases: object) => planComplaints(JSON.stringify(frenchPlan(phrases)), 'mine.json');
 const planOf = (phrases: object) => checkedPlan(JSON.parse(JSON.stringify(frenchPlan(phrases))));
+
+describe('a sentence with a name that is filled in', () => {
+  test('has no article before it in English or German, because the article depends on the name', () => {
+    const article = /\b(an?|eine?[mnrs]?) \{/i;
+    for (const phrases of [english, german]) {
+      for (const key of phraseKeys) for (const text of formsOf(phrases[key])) expect(text).not.toMatch(article);
+    }
+    // The names that follow an article: "left" or "right", "whole" or nothing, "participant" or "pair".
+    const known = [
+      'threepoint/core/body/calibration.ts',
+      'study/model/questionnaires/kinds/number.ts',
+      'study/pages/results/charts.ts',
+    ];
+    const sources = new URL('../../../src/', import.meta.url);
+    const files = readdirSync(sources, { recursive: true, encoding: 'utf8' }).filter((file) => /\.tsx?$/.test(file));
+    expect(files.length).toBeGreaterThan(100);
+    const found = files.filter((file) => /\ban? \$\{/i.test(readFileSync(new URL(file, sources), 'utf8')));
+    expect(found.toSorted()).toEqual(known.toSorted());
+  });
+});
 
 describe('what the page says in German', () => {
   test('is every phrase, none of them empty or left in English', () => {

@@ -231,7 +231,7 @@ describe('a questionnaire of one’s own', () => {
       {
         questions: [{ id: 'a', text: 'A', reversed: true, answer: { kind: 'text', maxLength: 9 } }],
       },
-      'questions[0].reversed: a text cannot be reversed',
+      'questions[0].reversed: answers of the kind "text" cannot be reversed',
     ],
     [
       'a scale of a question that is not there',

@@ -101,7 +101,7 @@ export function session(schedule: Schedule, simulated = false) {
       const next = applyEvent(schedule, progress, event, now);
       progress = next.progress;
       records.push(...next.records);
-      return next.refusal;
+      return next.refusal?.message ?? null;
     },
     /** Completes the present step; every question gets the same answer. */
     doStep(answer = 4, score = 40): void {

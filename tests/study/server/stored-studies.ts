@@ -1,7 +1,7 @@
 import { join } from 'node:path';
 import { onTestFinished } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
-import type { StudyRecord } from '../../../src/study/model/records/study-record';
+import type { StoredRecord, StudyRecord } from '../../../src/study/model/records/study-record';
 import { openStudyStore, type StudyStore } from '../../../src/study/server/storage/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
@@ -38,3 +38,7 @@ export function completed(participant = 'P01', { simulated = false, motion = fal
   one.doUntil(({ kind }) => kind === 'end');
   return one.records;
 }
+
+/** Returns a stored record as it was sent, without what the server has added. */
+export const asSent = ({ author: _author, receivedAt: _receivedAt, ...record }: StoredRecord): StudyRecord =>
+  record as StudyRecord;

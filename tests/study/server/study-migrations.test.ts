@@ -11,6 +11,7 @@ import { directoryWith } from '../../temporary-directory';
 import { latencyPlan, session } from '../model/studies';
 import { withoutInvitations, withoutPlanVersions } from './older-databases';
 import { type Anything, experimenter, servedStudies } from './running-studies';
+import { asSent } from './stored-studies';
 
 const now = 1_800_000_000;
 const plan = latencyPlan();
@@ -51,7 +52,7 @@ test('a database from before invitations gives each place one, and loses nothing
   expect(store.places.acceptsInvitation('latency', 'P01', given[0] as string)).toBe(true);
   expect(store.places.acceptsInvitation('latency', 'P04', given[0] as string)).toBe(false);
   expect(store.places.holds('latency', 'P02', token)).toBe(true);
-  expect(store.records.all('latency')).toEqual(records);
+  expect(store.records.all('latency').map(asSent)).toEqual(records);
   expect(store.deletion.withdraw('latency', withdrawalCode, now)).toMatchObject({ participant: 'P02' });
 });
 
@@ -62,7 +63,7 @@ test('a database from before versions of plans keeps every plan and participant,
     ...{ plan, version: 1, createdAt: now },
     versions: [{ version: 1, since: now, participants: ['P02', 'P03'] }],
   });
-  expect(store.records.all('latency')).toEqual(records);
+  expect(store.records.all('latency').map(asSent)).toEqual(records);
   expect(store.places.holds('latency', 'P02', token)).toBe(true);
   expect(store.plans.add(later, { simulated: false, newVersion: true, at: now }).version).toBe(2);
   expect(store.plans.planFor('latency', 'P02')).toEqual(plan);
@@ -90,12 +91,15 @@ describe('a database that the first version of the program wrote', () => {
     for (const participant of ['P01', 'P02']) {
       const { token, progress, records } = sent[participant];
       const own = store.records.all('paper', participant).filter(({ id }) => !id.startsWith('experimenter-'));
-      expect(own).toEqual(records);
+      expect(own.map(asSent)).toEqual(records);
       kept += own.length;
       expect(store.places.progress('paper', participant)).toEqual(progress);
       expect(store.places.holds('paper', participant, token)).toBe(true);
     }
-    expect(store.records.all('paper', 'P02').at(-1)).toMatchObject({ body: { type: 'remark' } });
+    expect(store.records.all('paper', 'P02').at(-1)).toMatchObject({
+      author: 'experimenter',
+      body: { type: 'remark' },
+    });
     expect(store.commands.after('paper', 'P02', 0)).toMatchObject([{ command: { type: 'pause' } }]);
     expect(store.motion.all('paper').map(unpacked)).toEqual([{ participant: 'P01', ...sent.motion }]);
     expect(store.deletion.receipts('paper')).toMatchObject([{ participant: 'P07', reason: 'withdrawn' }]);
@@ -126,7 +130,9 @@ describe('a database that the first version of the program wrote', () => {
     for (const path of ['', '/participants', '/records', '/export', '/participants/P01/export']) {
       expect((await ask('GET', `${pairs}${path}`, { token: experimenter })).status, path).toBe(200);
     }
-    expect((await ask('GET', `${pairs}/participants/P01/records`, { token })).json.records).toEqual(records);
+    expect((await ask('GET', `${pairs}/participants/P01/records`, { token })).json.records.map(asSent)).toEqual(
+      records,
+    );
     const claim = await ask('POST', `${pairs}/participants/P02/claim`, { token: experimenter, json: {} });
     expect([claim.status, claim.json.error]).toEqual([
       409,

@@ -6,7 +6,7 @@ import type { StudyRecord } from '../../../src/study/model/records/study-record'
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';
-import { completed } from './stored-studies';
+import { asSent, completed } from './stored-studies';
 
 const place = '/api/studies/paper/participants/P01';
 const schedule = scheduleFor(paperPlan(), 'P01');
@@ -104,7 +104,7 @@ test('records that arrive in any order, in batches that overlap, are stored once
   for (const batch of [others.slice(5), others.slice(0, 8), records.toReversed(), others.slice(3, 6)]) {
     expect((await send(batch)).status).toBe(200);
   }
-  const stored = store.records.all('paper', 'P01');
+  const stored = store.records.all('paper', 'P01').map(asSent);
   expect(new Map(stored.map((record) => [record.id, record]))).toEqual(
     new Map(records.map((record) => [record.id, record])),
   );

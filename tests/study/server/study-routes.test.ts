@@ -6,6 +6,7 @@ import { bodyLimits } from '../../../src/study/server/routes/route';
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';
+import { asSent } from './stored-studies';
 
 function completed(participant: string): StudyRecord[] {
   const one = session(scheduleFor(paperPlan(), participant));
@@ -25,7 +26,7 @@ describe('a participant', () => {
     const records = completed('P01');
     const sent = await ask('POST', own('P01', '/records'), { token: claimed.json.token, json: { records } });
     expect(sent.json.acknowledged).toEqual(records.map(({ id }) => id));
-    expect(store.records.all('paper', 'P01')).toEqual(records);
+    expect(store.records.all('paper', 'P01').map(asSent)).toEqual(records);
   });
 
   test('cannot put records under the code of another', async () => {
@@ -141,7 +142,9 @@ describe('the experimenter', () => {
     const exported = people.map(async (participant) => {
       const { status, body } = await ask('GET', own(participant, '/export'), { token: experimenter });
       expect(status).toBe(200);
-      return JSON.parse(strFromU8(unzipSync(body)[`paper-${participant}/records.json`] as Uint8Array)).records;
+      return JSON.parse(strFromU8(unzipSync(body)[`paper-${participant}/records.json`] as Uint8Array)).records.map(
+        asSent,
+      );
     });
     expect(await Promise.all(exported)).toEqual(people.map((participant) => completed(participant)));
   });

@@ -8,7 +8,7 @@ import type { StudyRecord } from '../../../src/study/model/records/study-record'
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
-import { completed, opened, withPaperStudy } from './stored-studies';
+import { asSent, completed, opened, withPaperStudy } from './stored-studies';
 
 describe('the store', () => {
   test('gives back what it was given, after being closed and opened', () => {
@@ -16,7 +16,7 @@ describe('the store', () => {
     const records = completed();
     expect(store.records.store('paper', 'P01', records, now)).toEqual(records.map(({ id }) => id));
     store.close();
-    expect(opened(file).store.records.all('paper', 'P01')).toEqual(records);
+    expect(opened(file).store.records.all('paper', 'P01').map(asSent)).toEqual(records);
   });
 
   test('keeps its log beside it (WAL)', () => {
@@ -31,7 +31,7 @@ describe('the store', () => {
     store.close();
     const copy = join(directoryWith(), 'copy.db');
     copyFileSync(file, copy);
-    expect(opened(copy).store.records.all('paper', 'P01')).toEqual(records);
+    expect(opened(copy).store.records.all('paper', 'P01').map(asSent)).toEqual(records);
   });
 
   test('stores once what is sent twice, and says so both times', () => {
@@ -48,7 +48,7 @@ describe('the store', () => {
     store.records.store('paper', 'P01', records, now);
     const changed = { ...(records[1] as StudyRecord), at: 7 };
     expect(() => store.records.store('paper', 'P01', [changed], now)).toThrow('has stored something else');
-    expect(store.records.all('paper', 'P01')[1]).toEqual(records[1]);
+    expect(store.records.all('paper', 'P01').map(asSent)[1]).toEqual(records[1]);
   });
 
   test('stores a batch whole or not at all', () => {

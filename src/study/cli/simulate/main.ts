@@ -127,7 +127,7 @@ function run(values: Options): void {
     const { retentionUntil } = store.plans.add(plan, { simulated: true, at: firstSession });
     for (const { participant, records, progress } of simulated) {
       store.places.claim(plan.id, participant, firstSession);
-      store.records.store(plan.id, participant, records, firstSession);
+      store.records.store(plan.id, participant, records, records.at(-1)?.at ?? firstSession, 'experimenter');
       store.places.saveProgress(plan.id, participant, progress, firstSession);
     }
     const used = readSoftwareVersion(join(root, 'public'), pathToFileURL(join(root, 'package.json')));

@@ -270,7 +270,7 @@ export const english = {
     'Nothing is recorded under this code. Compare it with your note; if you have sent it before, everything is deleted already.',
   'withdrawal.unheard':
     'It is unknown whether your data were deleted: {reason}. Send the code again. If they were, the code is no longer known.',
-  'withdrawal.failed': 'Nothing was deleted: {reason}.',
+  'withdrawal.failed': 'The deletion failed: {reason}.',
   'receipt.name': 'Receipt',
   'receipt.title': 'Everything is deleted',
   'receipt.number': 'Receipt {number} of the study “{study}”',

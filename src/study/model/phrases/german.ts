@@ -271,7 +271,8 @@ export const german = {
     'Unter diesem Code ist nichts gespeichert. Vergleichen Sie ihn mit Ihrer Notiz; haben Sie ihn schon einmal abgeschickt, ist bereits alles gelöscht.',
   'withdrawal.unheard':
     'Ob alles gelöscht ist, ist nicht bekannt. Schicken Sie den Code noch einmal ab; wurde gelöscht, ist unter ihm nichts mehr gespeichert. Technischer Grund (englisch): {reason}.',
-  'withdrawal.failed': 'Es wurde nichts gelöscht. Technischer Grund (englisch): {reason}.',
+  'withdrawal.failed':
+    'Es wurde noch nichts gelöscht. Versuchen Sie es noch einmal, oder fragen Sie die Versuchsleitung. Technischer Grund (englisch): {reason}.',
   'receipt.name': 'Beleg',
   'receipt.title': 'Alles ist gelöscht',
   'receipt.number': 'Beleg {number} der Studie „{study}“',

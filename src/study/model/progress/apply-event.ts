@@ -1,12 +1,14 @@
 import { type Calibration, checked, text, ValidationError } from 'threepoint/core';
+import type { PlainKey } from '../phrases/phrases';
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep, trialOf } from '../plan/schedule';
 import type { Answer } from '../questionnaires/question-kind';
-import { checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';
+import { checkedAnswer, completeAnswers } from '../questionnaires/questionnaires';
 import { reachedRule } from '../questionnaires/stopping-rule';
 import { checkedDemographics } from '../records/demographics';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from '../records/study-record';
 import { checkedOutcome, type TrialOutcome } from '../records/trial-log';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
+import { Refusal } from './refusal';
 import type { TargetBlock } from './study-api';
 
 /** An event from participant, experimenter, game or clock. */
@@ -44,8 +46,8 @@ export interface EventResult {
   readonly progress: Progress;
   /** The records to store and send, in this order. */
   readonly records: readonly StudyRecord[];
-  /** Why nothing changed, in a sentence; null: the event was accepted. */
-  readonly refusal: string | null;
+  /** Why nothing changed; null: the event was accepted. */
+  readonly refusal: Refusal | null;
 }
 
 type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type: Type }>;
@@ -62,12 +64,6 @@ const acceptedInPause: readonly ProgressEvent['type'][] = [
   'go-on',
 ];
 
-/** The reasons for refusals that participants can cause by pressing at the wrong moment. */
-export const refusals = {
-  paused: 'the session is paused',
-  asked: 'the participant is asked whether to stop',
-} as const;
-
 /** The events that are refused until a participant who may be unwell has decided whether to stop. */
 const refusedWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
 
@@ -77,9 +73,10 @@ const refusedWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrate
  */
 export function applyEvent(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): EventResult {
   const session = new SessionAtEvent(schedule, progress, now);
-  if (progress.paused && !acceptedInPause.includes(event.type)) return session.refuse(refusals.paused);
+  if (progress.paused && !acceptedInPause.includes(event.type))
+    return session.refuse('the session is paused', 'refused.paused');
   if (progress.unwell && refusedWhileAsked.includes(event.type)) {
-    return session.refuse(refusals.asked);
+    return session.refuse('the participant is asked whether to stop', 'refused.asked');
   }
   try {
     const next =
@@ -123,8 +120,8 @@ class SessionAtEvent {
     return `${this.step.id}${suffix}:${kind}`;
   }
 
-  refuse(refusal: string): EventResult {
-    return { progress: this.progress, records: [], refusal };
+  refuse(message: string, phrase: PlainKey | null = null): EventResult {
+    return { progress: this.progress, records: [], refusal: new Refusal('conflict', message, { phrase }) };
   }
 
   accept(progress: Progress, records: readonly StudyRecord[] = []): EventResult {
@@ -221,14 +218,14 @@ function answer(session: SessionAtEvent, { question, value }: EventOf<'answer'>)
   const { step, progress } = session;
   if (step.kind !== 'questionnaire') return null;
   const { [question]: _, ...others } = progress.draft;
-  const draft = checkedDraft(step.questionnaire, value === null ? others : { ...progress.draft, [question]: value });
-  return session.accept({ ...progress, draft: { ...draft } });
+  const given = value === null ? {} : { [question]: checkedAnswer(step.questionnaire, question, value) };
+  return session.accept({ ...progress, draft: { ...others, ...given } });
 }
 
 function submit(session: SessionAtEvent): EventResult | null {
   const { step, place, progress } = session;
   if (step.kind !== 'questionnaire' || !place) return null;
-  const answers = checkedAnswers(step.questionnaire, progress.draft);
+  const answers = completeAnswers(step.questionnaire, progress.draft);
   const seconds = elapsedSeconds(progress, session.now);
   const { embodiment } = trialOf(session.schedule, step) as PlayedStep;
   const body = {

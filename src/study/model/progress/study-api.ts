@@ -2,7 +2,7 @@ import { identifier, integerBetween, text } from 'threepoint/core';
 import * as v from 'valibot';
 import type { StudyPlan } from '../plan/plan';
 import type { ParticipantProfile } from '../records/participant-profile';
-import type { StudyRecord } from '../records/study-record';
+import type { StoredRecord } from '../records/study-record';
 import type { Progress } from './progress';
 
 const blockSchema = v.strictObject({ task: identifier, block: integerBetween(1, 1000) });
@@ -138,7 +138,7 @@ export interface StudyListing extends Pick<StudyPlan, 'id' | 'participants'> {
 
 /** All records of a study. */
 export interface RecordedStudy extends StudyInfo {
-  readonly records: readonly StudyRecord[];
+  readonly records: readonly StoredRecord[];
 }
 
 /** A stored command; numbers increase. */

@@ -64,7 +64,7 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
       throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire has none for all questions');
     if (question.answer) questionKind(question.answer).check?.(question.answer, `${way}.answer`);
     if (question.reversed && questionKind(answer).range(answer) === null) {
-      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} cannot be reversed`);
+      throw new ValidationError(`${way}.reversed`, `answers of the kind "${answer.kind}" cannot be reversed`);
     }
     return { ...question, answer };
   });
@@ -144,15 +144,19 @@ export function typedAnswer(form: AnswerForm, typed: string): Answer | null {
 
 const loose = v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text'));
 
-/** Returns answers that may be incomplete; throws for unknown questions and invalid values. */
+/** Returns the answer to a question; throws for an unknown question and an invalid value. */
+export function checkedAnswer({ id, questions }: Questionnaire, question: string, answer: unknown): Answer {
+  const asked = questions.find((one) => one.id === question);
+  if (!asked) throw new ValidationError(question, `the questionnaire "${id}" does not ask this`);
+  const given = v.safeParse(questionKind(asked.answer).answer(asked.answer), answer);
+  if (!given.success) throw new ValidationError(question, given.issues[0].message);
+  return given.output;
+}
+
+/** Returns answers that may be incomplete; throws as `checkedAnswer` does. */
 export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answers {
   const answers = checked(loose, value);
-  for (const [id, answer] of Object.entries(answers)) {
-    const asked = questionnaire.questions.find((question) => question.id === id);
-    if (!asked) throw new ValidationError(id, `the questionnaire "${questionnaire.id}" does not ask this`);
-    const given = v.safeParse(questionKind(asked.answer).answer(asked.answer), answer);
-    if (!given.success) throw new ValidationError(id, given.issues[0].message);
-  }
+  for (const [question, answer] of Object.entries(answers)) checkedAnswer(questionnaire, question, answer);
   return answers;
 }
 
@@ -160,10 +164,13 @@ export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answ
 export const unanswered = ({ questions }: Pick<Questionnaire, 'questions'>, answers: Answers): readonly string[] =>
   questions.filter(({ id, optional }) => !optional && answers[id] === undefined).map(({ id }) => id);
 
-/** Returns complete answers; throws as `checkedDraft` does and for the first missing answer. */
-export function checkedAnswers(questionnaire: Questionnaire, value: unknown): Answers {
-  const answers = checkedDraft(questionnaire, value);
+/** Returns checked answers if they are complete; throws for the first missing one. */
+export function completeAnswers(questionnaire: Questionnaire, answers: Answers): Answers {
   const [missing] = unanswered(questionnaire, answers);
   if (missing) throw new ValidationError(missing, 'this question has no answer');
   return answers;
 }
+
+/** Returns complete answers; throws as `checkedDraft` and `completeAnswers` do. */
+export const checkedAnswers = (questionnaire: Questionnaire, value: unknown): Answers =>
+  completeAnswers(questionnaire, checkedDraft(questionnaire, value));

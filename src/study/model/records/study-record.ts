@@ -143,6 +143,18 @@ export type Place = v.InferOutput<typeof placeSchema>;
 export type StudyEvent = v.InferOutput<typeof eventSchema>;
 /** A record about a participant, complete in itself. */
 export type StudyRecord = v.InferOutput<typeof recordSchema>;
+
+/** The fields that the server adds to a record. They are absent in records of earlier versions and of no server. */
+const arrivalSchema = v.object({
+  /** The token with which the record came. */
+  author: v.exactOptional(v.picklist(['participant', 'experimenter'])),
+  /** Seconds since 1970 by the server's clock. */
+  receivedAt: v.exactOptional(v.number()),
+});
+
+export type RecordAuthor = NonNullable<v.InferOutput<typeof arrivalSchema>['author']>;
+/** A record as the server returns it. */
+export type StoredRecord = StudyRecord & v.InferOutput<typeof arrivalSchema>;
 export type DemographicsRecord = Extract<StudyRecord, { kind: 'demographics' }>;
 export type TrialRecord = Extract<StudyRecord, { kind: 'trial' }>;
 
@@ -155,6 +167,12 @@ export function within<T>(field: string, check: () => T): T {
     throw new ValidationError(error.field ? `${field}.${error.field}` : field, error.complaint);
   }
 }
+
+/** Returns a record from an export, with the fields that the server added; throws as `checkedRecord` does. */
+export const exportedRecord = (value: unknown, plan: Pick<StudyPlan, 'questionnaires'>): StoredRecord => ({
+  ...checkedRecord(value, plan),
+  ...checked(arrivalSchema, value),
+});
 
 /**
  * Returns a record of this study that may be stored; throws a ValidationError that names the field, also for one that

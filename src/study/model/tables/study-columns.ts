@@ -18,6 +18,18 @@ const who = [
   text('study', ids, 'records: study', 'Id of the study.'),
   text('participant', 'P01 to P999', 'records: participant', 'Code of the participant.'),
   boolean('simulated', 'records: simulated', 'TRUE: made by a program. Never analyse together with people.'),
+  text(
+    'author',
+    'participant, experimenter',
+    'records: author',
+    'Whose token the record came with; empty: stored by an earlier version.',
+  ),
+  text(
+    'flag',
+    'clock, repeated, run, hits, divided by semicolons',
+    'computed from all records',
+    'Why the row is doubtful: at is after its receipt or a year before it; a second result of the same trial or questionnaire; a run without enough voided blocks; more hits than shots. Empty: it is not.',
+  ),
 ];
 const blockMeaning = 'Place of the condition in the order of this participant, from 1.';
 const runMeaning = 'From 1; a block that was voided and repeated runs again.';
@@ -36,7 +48,10 @@ const excluded = text(
   'void-block events of the same task, block and run; tutorials have no condition',
   'Why the row is not counted; empty: it is.',
 );
-const time = number('at', 's', moment, 'records: at', 'Time by the clock of the device.');
+const times = [
+  number('at', 's', moment, 'records: at', 'Time by the clock of the device.'),
+  number('received', 's', moment, 'records: receivedAt', 'Time of receipt by the clock of the server.'),
+];
 
 /** Returns the options of a question about the participant. */
 function optionsOf(id: keyof Demographics): string {
@@ -89,7 +104,7 @@ export const answerColumns = [
     'From the first question shown to handing in the whole questionnaire, pauses left out.',
   ),
   boolean('overtime', 'answers: body.overtime', 'Whether that took longer than the time limit in the plan.'),
-  time,
+  ...times,
   excluded,
 ];
 
@@ -106,7 +121,7 @@ export const scaleColumns = [
     'computed from answers: body.answers',
     'Empty: a question that it needs has no answer.',
   ),
-  time,
+  ...times,
   excluded,
 ];
 
@@ -218,7 +233,7 @@ export const trialColumns = [
     outcome('clock.start'),
     'Second 0 on the clock of the recorded frames, which runs on in pauses (pauses.csv); empty: not known.',
   ),
-  time,
+  ...times,
   excluded,
 ];
 
@@ -276,5 +291,5 @@ export const eventColumns = [
     'event: body.text, body.reason, or by, measure and value',
     'Remark or reason, as typed; what was found.',
   ),
-  time,
+  ...times,
 ];

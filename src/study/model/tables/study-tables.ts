@@ -3,8 +3,9 @@ import { languagesOf, type StudyPlan } from '../plan/plan';
 import type { Answer } from '../questionnaires/question-kind';
 import { scaleScore } from '../questionnaires/questionnaire-scores';
 import { type Answers, type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
-import type { Place, StudyEvent, StudyRecord, TrialRecord } from '../records/study-record';
+import type { Place, StoredRecord, StudyEvent, StudyRecord, TrialRecord } from '../records/study-record';
 import { conditionTable, plannedTable, questionTable, scaleTable } from './plan-tables';
+import { recordFlags } from './record-flags';
 import {
   answerColumns,
   eventColumns,
@@ -65,6 +66,8 @@ function rowsOf(
   });
 }
 
+type FlagOf = ReturnType<typeof recordFlags>;
+
 /** Returns a row with its record for every question of every submitted questionnaire, with voided ones marked. */
 export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan) =>
   rowsOf(records, plan, ({ questions }, answers) => questions.map(({ id }) => [id, answers[id] ?? null]));
@@ -101,18 +104,18 @@ export function trialsIn(records: readonly StudyRecord[]): readonly (TrialRow & 
   });
 }
 
-function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
+function participantRows(records: readonly StoredRecord[], plan: StudyPlan, flagOf: FlagOf) {
   const cohorts = cohortsByParticipant(plan);
-  const people = new Map<string, Pick<StudyRecord, 'study' | 'participant' | 'simulated'> & { body: object }>();
+  const people = new Map<string, { readonly first: StoredRecord; readonly body: object }>();
   for (const record of records) {
-    const { study, participant, simulated } = record;
-    const known = people.get(participant) ?? { study, participant, simulated, body: {} };
+    const known = people.get(record.participant) ?? { first: record, body: {} };
     if (record.kind === 'consent' || record.kind === 'demographics') Object.assign(known.body, record.body);
-    people.set(participant, known);
+    people.set(record.participant, known);
   }
-  return [...people.values()].map((one) =>
-    rowFrom(participantColumns, one, { cohort: cohorts.get(one.participant)?.id ?? null }),
-  );
+  return [...people].map(([participant, { first, body }]) => {
+    const computed = { cohort: cohorts.get(participant)?.id ?? null, flag: flagOf(first) };
+    return rowFrom(participantColumns, { ...first, body }, computed);
+  });
 }
 
 /** Returns the text of an event. */
@@ -131,13 +134,13 @@ function eventText(body: StudyEvent): string {
   }
 }
 
-const eventRows = (records: readonly StudyRecord[]) =>
+const eventRows = (records: readonly StoredRecord[], flagOf: FlagOf) =>
   records.flatMap((record) => {
     if (record.kind !== 'event') return [];
     const { body } = record;
     const place = 'place' in body ? body.place : body.type === 'void-block' ? body : null;
     const { task = null, block = null, run = null } = place ?? {};
-    return [rowFrom(eventColumns, record, { task, block, run, text: eventText(body) })];
+    return [rowFrom(eventColumns, record, { task, block, run, text: eventText(body), flag: flagOf(record) })];
   });
 
 /** Throws if simulated records and records of people are mixed, because no table may contain both. */
@@ -148,11 +151,12 @@ export function refuseMixture(records: readonly { readonly simulated: boolean }[
 }
 
 /** Returns the tables of an export. Throws if simulated records and records of people are mixed. */
-export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
+export function studyTables(records: readonly StoredRecord[], plan: StudyPlan): readonly Table[] {
   refuseMixture(records);
+  const flagOf = recordFlags(records);
   const trials = trialsIn(records);
   return [
-    { name: 'participants', columns: participantColumns, rows: participantRows(records, plan) },
+    { name: 'participants', columns: participantColumns, rows: participantRows(records, plan, flagOf) },
     conditionTable(plan),
     plannedTable(plan),
     {
@@ -161,7 +165,7 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
       rows: answersIn(records, plan).map(({ record, question, answer, excluded }) => {
         const { language = languagesOf(plan)[0] } = record.body;
         const given = typeof answer === 'string' ? { answer: null, answer_text: answer } : { answer, answer_text: '' };
-        return rowFrom(answerColumns, record, { question, ...given, language, excluded });
+        return rowFrom(answerColumns, record, { question, ...given, language, excluded, flag: flagOf(record) });
       }),
     },
     questionTable(plan),
@@ -169,7 +173,7 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
       name: 'scales',
       columns: scaleColumns,
       rows: scalesIn(records, plan).map(({ record, question, answer, excluded }) =>
-        rowFrom(scaleColumns, record, { scale: question, value: answer, excluded }),
+        rowFrom(scaleColumns, record, { scale: question, value: answer, excluded, flag: flagOf(record) }),
       ),
     },
     scaleTable(plan),
@@ -178,7 +182,12 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
       columns: trialColumns,
       rows: trials.map(({ record, score, maximum, excluded }) => {
         const assists = record.body.outcome.assists.join('; ');
-        return rowFrom(trialColumns, record, { percent: (100 * score) / maximum, assists, excluded });
+        return rowFrom(trialColumns, record, {
+          percent: (100 * score) / maximum,
+          assists,
+          excluded,
+          flag: flagOf(record),
+        });
       }),
     },
     {
@@ -186,7 +195,7 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
       columns: frameTimeColumns,
       rows: trials.flatMap(({ record, excluded }) =>
         Object.entries(record.body.outcome.frames.stages).map(([stage, summary]) =>
-          rowFrom(frameTimeColumns, record, { stage, excluded }, summary),
+          rowFrom(frameTimeColumns, record, { stage, excluded, flag: flagOf(record) }, summary),
         ),
       ),
     },
@@ -194,16 +203,20 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
       name: 'hits',
       columns: hitColumns,
       rows: trials.flatMap(({ record, excluded }) =>
-        record.body.outcome.events.map((event) => rowFrom(hitColumns, record, { excluded }, event)),
+        record.body.outcome.events.map((event) =>
+          rowFrom(hitColumns, record, { excluded, flag: flagOf(record) }, event),
+        ),
       ),
     },
     {
       name: 'pauses',
       columns: pauseColumns,
       rows: trials.flatMap(({ record, excluded }) =>
-        (record.body.outcome.clock?.pauses ?? []).map((pause) => rowFrom(pauseColumns, record, { excluded }, pause)),
+        (record.body.outcome.clock?.pauses ?? []).map((pause) =>
+          rowFrom(pauseColumns, record, { excluded, flag: flagOf(record) }, pause),
+        ),
       ),
     },
-    { name: 'events', columns: eventColumns, rows: eventRows(records) },
+    { name: 'events', columns: eventColumns, rows: eventRows(records, flagOf) },
   ];
 }

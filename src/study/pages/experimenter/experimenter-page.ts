@@ -1,8 +1,9 @@
 import 'threepoint-ui/styles/document.css';
 import { reasonOf } from 'threepoint/core';
 import { element, formatSentence, pageElement } from 'threepoint-ui';
-import { type ExperimenterClient, ServerRefusal } from '../../client/study-client';
+import type { ExperimenterClient } from '../../client/study-client';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { Refusal } from '../../model/progress/refusal';
 import type { StudyInfo } from '../../model/progress/study-api';
 import { effectsInWords, simulatedPlan } from '../../simulation/simulate-study';
 import { ExperimenterAccess } from '../experimenter-access';
@@ -88,7 +89,7 @@ class ExperimenterPage {
         this.#online = true;
       } catch (error) {
         this.#online = false;
-        if (error instanceof ServerRefusal) this.#complaint = error.message;
+        if (error instanceof Refusal) this.#complaint = error.message;
       }
     }
     this.#render();
@@ -212,7 +213,7 @@ async function addOrChange(client: ExperimenterClient, plan: StudyPlan, simulate
   try {
     return await client.addStudy(plan, simulated);
   } catch (error) {
-    if (!(error instanceof ServerRefusal) || error.field !== 'newVersion') throw error;
+    if (!(error instanceof Refusal) || error.field !== 'newVersion') throw error;
     if (!confirm(`${formatSentence(error.message)}\n\nMake it a new version? Results keep the versions apart.`))
       return null;
     return client.addStudy(plan, simulated, true);

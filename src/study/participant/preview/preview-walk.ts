@@ -5,8 +5,9 @@ import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';
 import { type Schedule, type StudyStep, scheduleFor } from '../../model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress } from '../../model/progress/progress';
+import type { Refusal } from '../../model/progress/refusal';
 import type { StudyForm } from '../forms/study-form';
-import { localizedRefusal } from '../localized-reasons';
+import { localizedReason } from '../localized-reasons';
 import { QuestionnaireState } from '../questionnaire-state';
 import type { StudyScreen } from '../questions/study-screen';
 import { screenOf } from '../screens/study-screens';
@@ -74,7 +75,7 @@ class PreviewSession implements ShownSession {
     this.#progress = { ...this.#progress, language };
   }
 
-  apply(event: ProgressEvent): string | null {
+  apply(event: ProgressEvent): Refusal | null {
     const { progress, refusal } = applyEvent(this.schedule, this.#progress, event, 0);
     if (refusal !== null) return refusal;
     this.#drafts.set(this.#progress.step, event.type === 'answer' ? progress.draft : this.#progress.draft);
@@ -278,7 +279,7 @@ export class PreviewWalk {
       return;
     }
     const { id } = this.#session.step;
-    const refusal = localizedRefusal(this.#session.apply(event), this.#session.phrases);
+    const refusal = this.#session.apply(event);
     const { step } = this.#session;
     if (step.id === id) this.#showRefusal(refusal);
     // Not by goTo, because the answers that were handed in may lead to the question whether to stop.
@@ -297,8 +298,8 @@ export class PreviewWalk {
     this.#showRefusal(null);
   }
 
-  #showRefusal(refusal: string | null): void {
-    this.#refusal = refusal;
+  #showRefusal(refusal: Refusal | null): void {
+    this.#refusal = refusal && localizedReason(refusal, this.#session.phrases);
     this.#onChange();
   }
 }

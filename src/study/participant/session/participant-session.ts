@@ -1,9 +1,10 @@
-import { type ParticipantClient, ServerRefusal, ServerUnreachable, type StudyPlace } from '../../client/study-client';
+import { type ParticipantClient, ServerUnreachable, type StudyPlace } from '../../client/study-client';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { languagesOf } from '../../model/plan/plan';
 import { type Schedule, scheduleFor } from '../../model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../model/progress/progress';
+import { Refusal } from '../../model/progress/refusal';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 import { preferredHandOf } from '../../model/records/participant-profile';
 import { MotionSender } from './motion-sender';
@@ -126,7 +127,7 @@ export class ParticipantSession {
    * Applies an event and stores its consequences; returns why it is refused, or null. `command` is the number of the
    * experimenter's command that caused the event, which counts as followed even if nothing changes.
    */
-  apply(event: ProgressEvent, command?: number): string | null {
+  apply(event: ProgressEvent, command?: number): Refusal | null {
     const { kept } = this;
     const before = command === undefined ? kept.progress : { ...kept.progress, commandsSeen: command };
     const { progress, records, refusal } = applyEvent(this.schedule, before, event, this.#now());
@@ -211,9 +212,9 @@ export class ParticipantSession {
 
   #noteFault(error: unknown): void {
     if (error instanceof ServerUnreachable) this.#online = false;
-    else if (error instanceof ServerRefusal) {
+    else if (error instanceof Refusal) {
       this.#refusal = error.message;
-      this.#lockedOut = error.status === 401;
+      this.#lockedOut = error.reason === 'unauthorised';
     } else this.#store.noteFault(error);
   }
 
@@ -225,7 +226,7 @@ export class ParticipantSession {
     const refusal = this.apply(command, number);
     // A record states why a command changed nothing.
     if (refusal === null || motion === null) return;
-    const where = `${step}${running ? ', running' : ''}`;
-    this.apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${where}: ${refusal}` });
+    const why = `${step}${running ? ', running' : ''}: ${refusal.message}`;
+    this.apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${why}` });
   }
 }

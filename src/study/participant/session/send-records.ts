@@ -1,4 +1,4 @@
-import { ServerRefusal } from '../../client/study-client';
+import { Refusal } from '../../model/progress/refusal';
 import type { StudyRecord } from '../../model/records/study-record';
 import type { SessionStore } from './session-store';
 
@@ -34,7 +34,7 @@ export async function refusalOf(send: () => Promise<void>): Promise<string | nul
     await send();
     return null;
   } catch (error) {
-    if (!(error instanceof ServerRefusal) || error.status === 401) throw error;
+    if (!(error instanceof Refusal) || error.reason === 'unauthorised') throw error;
     return error.message;
   }
 }

@@ -1,6 +1,6 @@
 import { reasonOf } from 'threepoint/core';
 import type { StudyRecord } from '../../model/records/study-record';
-import { type KeptMotion, type KeptSession, SessionForgotten, type StudyVault } from './study-vault';
+import { type KeptMotion, type KeptSession, SessionForgotten, StorageEvicted, type StudyVault } from './study-vault';
 
 /** The data that an earlier visit of the page left in the vault. */
 export interface Unsent {
@@ -109,9 +109,13 @@ export class SessionStore {
     return this.#saving;
   }
 
-  /** Reports a fault of the device outside of a save. */
+  /** Reports a fault of the device outside of a save. After an eviction, the next save stores everything once more. */
   noteFault(error: unknown): void {
     this.#fault = reasonOf(error);
+    if (!(error instanceof StorageEvicted)) return;
+    this.#stored = false;
+    this.#unsaved = [...this.#records.values()];
+    for (const motion of this.#motion.values()) this.#unsavedMotion.set(motion.trial, motion);
   }
 
   /** Returns the oldest unsent records that fit one request, without those `left` out; empty: there are none. */
@@ -149,7 +153,7 @@ export class SessionStore {
     this.#onChange();
   }
 
-  async #saveOnce(): Promise<void> {
+  async #saveOnce(isRepeated = false): Promise<void> {
     const vault = this.#forgotten ? null : this.#vault;
     const session = this.#session;
     const records = this.#unsaved;
@@ -166,7 +170,8 @@ export class SessionStore {
       this.#fault = null;
     } catch (error) {
       if (error instanceof SessionForgotten) this.#forgotten = true;
-      else this.#fault = reasonOf(error);
+      else this.noteFault(error);
+      if (error instanceof StorageEvicted && !isRepeated) await this.#saveOnce(true);
     }
     this.#onChange();
   }

@@ -33,6 +33,13 @@ interface Schema extends DBSchema {
 /** The session was deleted from the vault by another page of this browser, for example after a withdrawal. */
 export class SessionForgotten extends Error {}
 
+/** The browser has closed the vault and deleted its data, for example for want of room. It is open again, and empty. */
+export class StorageEvicted extends Error {
+  constructor() {
+    super('the browser has deleted what was stored on this device');
+  }
+}
+
 /** The format of earlier versions, in which the number of the newest command was stored next to the progress. */
 type EarlierSession = KeptSession & { readonly commandsSeen?: number };
 
@@ -46,19 +53,22 @@ const everyOf = ({ study, participant }: StudyPlace) =>
 
 /**
  * Stores sessions, records and recordings in IndexedDB until the server has them. Every request rejects if the storage
- * does not answer within five seconds.
+ * does not answer within five seconds, and with StorageEvicted after its data were deleted.
  */
 export class StudyVault {
-  readonly #database: IDBPDatabase<Schema>;
+  #database: IDBPDatabase<Schema>;
   readonly #timeout: StorageTimeout;
+  readonly #open: () => Promise<IDBPDatabase<Schema>>;
 
-  constructor(database: IDBPDatabase<Schema>, timeout: StorageTimeout) {
+  /** `open` opens the database again after an eviction. */
+  constructor(database: IDBPDatabase<Schema>, timeout: StorageTimeout, open: () => Promise<IDBPDatabase<Schema>>) {
     this.#database = database;
     this.#timeout = timeout;
+    this.#open = open;
   }
 
   session({ study, participant }: StudyPlace): Promise<KeptSession | null> {
-    return this.#timeout.limit(async () => {
+    return this.#request(async () => {
       const kept = await this.#database.get('sessions', [study, participant]);
       return kept ? broughtUpToDate(kept) : null;
     });
@@ -69,7 +79,7 @@ export class StudyVault {
    * if it is saved `again` after it was deleted.
    */
   save(session: KeptSession, records: readonly StudyRecord[], again = false): Promise<void> {
-    return this.#timeout.limit(async () => {
+    return this.#request(async () => {
       // With strict durability, resolved means written to the disk.
       const transaction = this.#database.transaction(['sessions', 'records'], 'readwrite', { durability: 'strict' });
       const { study, participant } = session;
@@ -87,7 +97,7 @@ export class StudyVault {
 
   /** Resolves with the records that the server has not acknowledged, in the order in which they were made. */
   records(place: StudyPlace): Promise<readonly StudyRecord[]> {
-    return this.#timeout.limit(async () => {
+    return this.#request(async () => {
       const kept = await this.#database.getAll('records', everyOf(place));
       // Ids have no order. Among records of one moment, consent is first, because nothing may be stored before it.
       const rank = ({ kind }: StudyRecord) => (kind === 'consent' ? 0 : kind === 'event' ? 2 : 1);
@@ -96,27 +106,27 @@ export class StudyVault {
   }
 
   removeRecords({ study, participant }: StudyPlace, ids: readonly string[]): Promise<void> {
-    return this.#timeout.limit(async () => {
+    return this.#request(async () => {
       const transaction = this.#database.transaction('records', 'readwrite');
       await Promise.all([...ids.map((id) => transaction.store.delete([study, participant, id])), transaction.done]);
     });
   }
 
   async saveMotion({ study, participant }: StudyPlace, motion: KeptMotion): Promise<void> {
-    await this.#timeout.limit(() => this.#database.put('motion', { ...motion, study, participant }));
+    await this.#request(() => this.#database.put('motion', { ...motion, study, participant }));
   }
 
   motion(place: StudyPlace): Promise<readonly KeptMotion[]> {
-    return this.#timeout.limit(() => this.#database.getAll('motion', everyOf(place)));
+    return this.#request(() => this.#database.getAll('motion', everyOf(place)));
   }
 
   removeMotion({ study, participant }: StudyPlace, trial: string): Promise<void> {
-    return this.#timeout.limit(() => this.#database.delete('motion', [study, participant, trial]));
+    return this.#request(() => this.#database.delete('motion', [study, participant, trial]));
   }
 
   /** Deletes everything of this participant from the device. */
   forget(place: StudyPlace): Promise<void> {
-    return this.#timeout.limit(async () => {
+    return this.#request(async () => {
       const transaction = this.#database.transaction(['sessions', 'records', 'motion'], 'readwrite');
       await Promise.all([
         transaction.objectStore('sessions').delete([place.study, place.participant]),
@@ -130,6 +140,16 @@ export class StudyVault {
   close(): void {
     this.#database.close();
   }
+
+  async #request<Answer>(request: () => Promise<Answer>): Promise<Answer> {
+    try {
+      return await this.#timeout.limit(request);
+    } catch (error) {
+      if ((error as Error).name !== 'InvalidStateError') throw error;
+      this.#database = await this.#timeout.limit(this.#open);
+      throw new StorageEvicted();
+    }
+  }
 }
 
 /**
@@ -138,14 +158,13 @@ export class StudyVault {
  */
 export async function openStudyVault(name = 'threepoint-studies', limitMs?: number): Promise<StudyVault> {
   const timeout = new StorageTimeout(limitMs);
-  const database = await timeout.limit(() =>
+  const open = () =>
     openDB<Schema>(name, 1, {
       upgrade(fresh) {
         fresh.createObjectStore('sessions', { keyPath: ['study', 'participant'] });
         fresh.createObjectStore('records', { keyPath: ['study', 'participant', 'id'] });
         fresh.createObjectStore('motion', { keyPath: ['study', 'participant', 'trial'] });
       },
-    }),
-  );
-  return new StudyVault(database, timeout);
+    });
+  return new StudyVault(await timeout.limit(open), timeout, open);
 }

@@ -1,9 +1,10 @@
 import 'threepoint-ui/styles/document.css';
 import { reasonOf } from 'threepoint/core';
 import { button, element, labelled, offerDownload, pageElement, pageFolder } from 'threepoint-ui';
-import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
+import { createWithdrawalClient, ServerUnreachable } from '../../client/study-client';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
+import { Refusal } from '../../model/progress/refusal';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
 import { languageChoice } from '../forms/form-parts';
 import { localizedReason } from '../localized-reasons';
@@ -76,7 +77,7 @@ const unknownCode = 'nothing is recorded under this code';
 
 /** Returns why there is no receipt. Without an answer, the server may have deleted everything nevertheless. */
 function failure(error: unknown, phrases: Phrases): string {
-  if (error instanceof ServerRefusal && error.message === unknownCode) return phrases.text('withdrawal.unknownCode');
+  if (error instanceof Refusal && error.message === unknownCode) return phrases.text('withdrawal.unknownCode');
   const reason = reasonOf(error);
   return phrases.text(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
 }

@@ -1,5 +1,4 @@
 import { createHash } from 'node:crypto';
-import { readFileSync } from 'node:fs';
 import { strToU8, type Zippable, zipSync } from 'fflate';
 import type { Software } from 'threepoint-http';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
@@ -10,6 +9,7 @@ import { codebookOf, type Table, tidyCsv } from '../../model/tables/tidy-csv';
 import type { ServedSoftware } from '../storage/software';
 import type { MotionFile } from '../storage/study-motion';
 import { bidsDataset } from './bids';
+import { portableName } from './portable-name';
 
 /** The content of an export. */
 export interface ExportContent {
@@ -40,12 +40,6 @@ const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0,
 const simulatedNotice =
   'SIMULATED: a program made this. It says nothing about people and must not be analysed with data of people.';
 
-/** Returns the analysis in Python, which is next to this file. */
-const analysisFiles = () =>
-  ['analyse.py', 'requirements.txt'].map(
-    (name) => [`analysis/${name}`, readFileSync(new URL(`./analysis/${name}`, import.meta.url), 'utf8')] as const,
-  );
-
 function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {
   const { plan, simulated, records, at, retentionUntil } = content;
   const participants = new Set(records.map(({ participant }) => participant));
@@ -63,13 +57,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'codebook.csv  every column of the other tables: meaning, unit, values, source',
     'The tables are tidy: UTF-8, a row per observation, an empty field for a missing value.',
     'Text that a spreadsheet would take for a formula begins with an added apostrophe.',
-    ...(whole
-      ? [
-          'results/      the results of the page: planned, then exploratory',
-          'analysis/     the same from the tidy tables: "pip install -r analysis/requirements.txt"',
-          '              and "python analysis/analyse.py"',
-        ]
-      : []),
+    ...(whole ? ['results/      the results of the page: planned, then exploratory'] : []),
     'motion/       recordings of tracking frames, with consent to them',
     'bids/         the same as a BIDS data set (motion)',
     ...leftOut.map((reason) => `  left out: ${reason}`),
@@ -81,7 +69,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
 
 /** Returns the path of a recording in an export. */
 export const motionPath = ({ participant, trial }: Pick<MotionFile, 'participant' | 'trial'>): string =>
-  `motion/${participant}-${trial.replace(/[^a-z0-9]+/g, '-')}.json`;
+  `motion/${participant}-${portableName(trial)}.json`;
 
 const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
 
@@ -115,7 +103,6 @@ export function exportFiles(content: ExportContent, participant?: string): Reado
     'codebook.csv': tidyCsv(codebookOf([...tables, codebookOf([])])),
   };
   for (const table of tables) files[`${table.name}.csv`] = tidyCsv(table);
-  if (whole) for (const [path, text] of analysisFiles()) files[path] = text;
   for (const file of motion) files[motionPath(file)] = file.text;
   for (const [path, text] of Object.entries(bids.files)) files[`bids/${path}`] = text;
   const lines = Object.entries(files).map(([path, text]) => `${sha256(text)}  ${path}\n`);
@@ -127,7 +114,12 @@ export const exportName = (
   { plan, simulated, planVersion }: Pick<ExportContent, 'plan' | 'simulated' | 'planVersion'>,
   participant?: string,
 ): string =>
-  [simulated ? 'SIMULATED' : '', plan.id, planVersion === undefined ? '' : `version-${planVersion}`, participant ?? '']
+  [
+    simulated ? 'SIMULATED' : '',
+    portableName(plan.id),
+    planVersion === undefined ? '' : `version-${planVersion}`,
+    participant ?? '',
+  ]
     .filter(Boolean)
     .join('-');
 

@@ -1,7 +1,7 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { type Software, shortageOf } from 'threepoint-http';
-import { StoreRefusal } from '../storage/store-refusal';
+import { Refusal } from '../../model/progress/refusal';
 
 /** The parameters of an export, whose process reads the content from the database. */
 export interface ExportOrder {
@@ -16,7 +16,7 @@ export interface ExportOrder {
 }
 
 /**
- * Makes the zip file of an export; rejects with a StoreRefusal if too many exports wait, or without enough memory or
+ * Makes the zip file of an export; rejects with a Refusal if too many exports wait, or without enough memory or
  * files.
  */
 export type Exporter = (order: ExportOrder) => Promise<Uint8Array>;
@@ -46,9 +46,7 @@ function zipInProcess(file: string, order: ExportOrder): Promise<Uint8Array> {
   return new Promise((resolve, reject) => {
     const fail = (error: Error) => {
       const shortage = shortageOf(error);
-      reject(
-        shortage === null ? error : new StoreRefusal('full', `${shortage} Or export the participants one by one.`),
-      );
+      reject(shortage === null ? error : new Refusal('full', `${shortage} Or export the participants one by one.`));
     };
     child.once('error', fail);
     child.once('close', (code, signal) => {
@@ -64,7 +62,7 @@ export function createExporter(file: string): Exporter {
   let waiting = 0;
   return async (order) => {
     if (waiting >= maxWaiting) {
-      throw new StoreRefusal('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
+      throw new Refusal('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
     }
     waiting += 1;
     const zip = last.then(() => zipInProcess(file, order)).finally(() => (waiting -= 1));

@@ -1,7 +1,8 @@
 import { checked, identifier, participantId } from 'threepoint/core';
-import { HttpError, type HttpResponse, refusalOf as knownRefusalOf } from 'threepoint-http';
-import { StoreRefusal } from '../storage/store-refusal';
+import { HttpError, type HttpResponse, refusalOf } from 'threepoint-http';
+import { Refusal } from '../../model/progress/refusal';
 import type { StudyStore } from '../storage/study-store';
+import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';
 import type { StudyParts, StudyRequest, StudyRoute } from './route';
@@ -10,14 +11,7 @@ import { studyRoutes } from './study-routes';
 /** The result of a request, in a form that can be sent between threads. */
 export type StudyOutcome =
   | { readonly answer: HttpResponse }
-  | {
-      readonly refused: {
-        readonly status: number;
-        readonly message: string;
-        readonly field: string | null;
-        readonly headers: Readonly<Record<string, string>>;
-      };
-    }
+  | { readonly refused: Pick<HttpError, 'status' | 'message' | 'field' | 'headers'> }
   /** A fault of the server, for its log. */
   | { readonly fault: string };
 
@@ -38,7 +32,7 @@ async function untilUnlocked<T>(until: number, run: () => T | Promise<T>): Promi
     try {
       return await run();
     } catch (error) {
-      const isLocked = error instanceof StoreRefusal && error.reason === 'locked';
+      const isLocked = error instanceof Refusal && error.reason === 'locked';
       if (!isLocked || performance.now() > until) throw error;
       await wait(retryMs);
     }
@@ -52,21 +46,19 @@ const senderOf = ({ token, address, names }: StudyRequest): Sender => ({
   participant: names.participant === undefined ? '' : checked(participantId, names.participant),
 });
 
-const statusOfRefusal = {
-  ...{ unknown: 404, conflict: 409, begun: 409, forbidden: 403, locked: 503, busy: 503, full: 507, lost: 507 },
-} as const satisfies Readonly<Record<StoreRefusal['reason'], number>>;
-
 /** The time after which a page repeats its request if the database is locked or busy [s]. */
 export const retryAfterSeconds = 5;
 
-/** Returns the HTTP error for an error, or null for a fault of the server. */
-export function refusalOf(error: unknown): HttpError | null {
-  if (!(error instanceof StoreRefusal)) return knownRefusalOf(error);
-  const { reason, message } = error;
-  return new HttpError(statusOfRefusal[reason], message, {
-    field: reason === 'begun' ? 'newVersion' : null,
-    headers: statusOfRefusal[reason] === 503 ? { 'retry-after': String(retryAfterSeconds) } : {},
-  });
+/** Returns the HTTP error for an error of a request with this effect, or null for a fault of the server. */
+function httpErrorOf(error: unknown, effect: Effect): HttpError | null {
+  if (!(error instanceof Refusal)) return refusalOf(error);
+  const { reason, field, failure } = error;
+  const message = failure === null ? error.message : failureSentence(error.message, effect, failure === 'not done');
+  // The page for withdrawals takes 507 for a sign that nothing was deleted.
+  const isUnknown = reason === 'lost' && failure !== 'not done';
+  const status = isUnknown && effect === 'withdraws' ? 503 : error.status;
+  const headers = status === 503 ? { 'retry-after': String(retryAfterSeconds) } : {};
+  return new HttpError(status, message, { field, headers });
 }
 
 export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, StudyGuardOptions {
@@ -98,8 +90,8 @@ export class StudyDispatcher {
 
   /** Resolves with whether the request is permitted, before its body is read; `index` is that of the route. */
   admit(index: number, request: StudyRequest): Promise<StudyOutcome> {
-    return this.#outcome(async () => {
-      const { access } = this.routes[index] as StudyRoute;
+    const { access, effect } = this.routes[index] as StudyRoute;
+    return this.#outcome(effect, async () => {
       await untilUnlocked(performance.now() + lockedMs, () => this.#guard.admit(access, senderOf(request)));
       return { status: 204 };
     });
@@ -107,15 +99,16 @@ export class StudyDispatcher {
 
   /** Handles a request. If its route takes a body, it was admitted before. */
   handle(index: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome> {
-    return this.#outcome(async () => {
-      const route = this.routes[index] as StudyRoute;
+    const route = this.routes[index] as StudyRoute;
+    const changes = route.effect !== 'reads';
+    return this.#outcome(route.effect, async () => {
       const sender = senderOf(request);
       const call = { ...sender, at: request.at, query: new URLSearchParams(request.query), body };
       const until = performance.now() + lockedMs;
       if (route.bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(route.access, sender));
       const run = () => untilUnlocked(until, () => route.handle(call));
-      const answer = await (route.changes ? this.#afterEarlierChanges(run) : run());
-      if (route.changes) await this.#store.flushed();
+      const answer = await (changes ? this.#afterEarlierChanges(run) : run());
+      if (changes) await this.#store.flushed();
       const text = answer.body;
       return typeof text === 'string' ? { ...answer, body: new TextEncoder().encode(text) } : answer;
     });
@@ -129,19 +122,19 @@ export class StudyDispatcher {
     return result;
   }
 
-  async #outcome(run: () => Promise<HttpResponse>): Promise<StudyOutcome> {
+  async #outcome(effect: Effect, run: () => Promise<HttpResponse>): Promise<StudyOutcome> {
     try {
       return { answer: await run() };
     } catch (error) {
-      if (error instanceof StoreRefusal && error.reason === 'lost') this.#logLost(error);
-      const known = refusalOf(error);
+      if (error instanceof Refusal && error.reason === 'lost') this.#logLost(error);
+      const known = httpErrorOf(error, effect);
       if (!known) return { fault: error instanceof Error ? (error.stack ?? error.message) : String(error) };
       const { status, message, field, headers } = known;
       return { refused: { status, message, field, headers } };
     }
   }
 
-  #logLost({ message, detail }: StoreRefusal): void {
+  #logLost({ message, detail }: Refusal): void {
     if (performance.now() - this.#logged < logEveryMs) return;
     this.#logged = performance.now();
     this.#log(`study: ${message}${detail === null ? '' : ` (${detail})`}`);

@@ -6,11 +6,11 @@ import {
   consumePoint,
   createAuthThrottle,
   type FailedAttempt,
-  HttpError,
   requiredAddress,
   TooManyAttempts,
   tooManyRequests,
 } from 'threepoint-http';
+import { Refusal } from '../../model/progress/refusal';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/study-store';
 
@@ -66,7 +66,7 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
 
 export type StudyGuard = ReturnType<typeof createStudyGuard>;
 
-/** Returns the checks of tokens, invitations and withdrawal codes, which throw HttpErrors. */
+/** Returns the checks of tokens, invitations and withdrawal codes, which throw Refusals. */
 export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: StudyGuardOptions) {
   const experimenterDigest = digest(experimenterToken);
   const throttle = createAuthThrottle(onFailedAttempt);
@@ -102,7 +102,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
       if (access === 'participant' && isParticipant(sender)) return;
       if (await isExperimenter(sender)) return;
-      throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
+      throw new Refusal('unauthorised', 'this needs the token of the participant or of an experimenter');
     },
     /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
     async claiming<T>(sender: Sender, invitation: string | undefined, claim: () => T): Promise<T> {
@@ -111,13 +111,14 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
         const why = `${participant} needs an invitation, which is in the participant’s link`;
-        throw new HttpError(403, why, { field: 'invitation' });
+        throw new Refusal('forbidden', why, { field: 'invitation' });
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;
       const right = await attempt({ what: 'invitation', address, of: study, secret }, () =>
         store.places.acceptsInvitation(study, participant, invitation),
       );
-      if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
+      if (!right)
+        throw new Refusal('forbidden', `this is not the invitation of ${participant}`, { field: 'invitation' });
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
     /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
@@ -129,7 +130,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
         result = withdraw();
         return result !== null;
       });
-      if (result === null) throw new HttpError(404, 'nothing is recorded under this code');
+      if (result === null) throw new Refusal('unknown', 'nothing is recorded under this code');
       return result;
     },
   };

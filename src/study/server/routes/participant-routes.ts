@@ -1,9 +1,12 @@
 import { checked, integerBetween, parseRecording, text, ValidationError } from 'threepoint/core';
-import { HttpError, jsonOf, jsonResponse, noContent, textOf } from 'threepoint-http';
+import { jsonOf, jsonResponse, noContent, textOf } from 'threepoint-http';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { scheduleFor } from '../../model/plan/schedule';
+import { Refusal } from '../../model/progress/refusal';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
+import { refuseUnscheduled, refuseUnscheduledTrial } from '../../model/records/scheduled-record';
 import { checkedRecord, within } from '../../model/records/study-record';
 import type { StudyStore } from '../storage/study-store';
 import { bodyLimits, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
@@ -42,8 +45,8 @@ function refuseOutdated(plan: StudyPlan): void {
     checkedPlan(plan);
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
-    throw new HttpError(
-      409,
+    throw new Refusal(
+      'conflict',
       `the plan of this study is of an older version of the program and no longer valid: ${error.message}. ` +
         'Its records can be exported and deleted. Give a study with another plan another id',
     );
@@ -59,7 +62,9 @@ function takePlace(store: StudyStore, { study, participant, at }: StudyCall, rea
   refuseOutdated(plan);
   const { version } = plan.consent;
   if (read !== undefined && read !== version) {
-    throw new HttpError(409, `consent was given to text ${read}, but the study shows ${version}`, { field: 'consent' });
+    throw new Refusal('conflict', `consent was given to text ${read}, but the study shows ${version}`, {
+      field: 'consent',
+    });
   }
   return store.places.claim(study, participant, at);
 }
@@ -85,9 +90,18 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
     }),
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
-      const plan = store.plans.planFor(call.study, call.participant);
-      const valid = records.map((record, index) => within(`records[${index}]`, () => checkedRecord(record, plan)));
-      return jsonResponse({ acknowledged: store.records.store(call.study, call.participant, valid, call.at) });
+      const { study, participant, at } = call;
+      const plan = store.plans.planFor(study, participant);
+      const schedule = scheduleFor(plan, participant);
+      const valid = records.map((value, index) =>
+        within(`records[${index}]`, () => {
+          const record = checkedRecord(value, plan);
+          if (record.participant === participant) refuseUnscheduled(record, schedule);
+          return record;
+        }),
+      );
+      const author = guard.isParticipant(call) ? 'participant' : 'experimenter';
+      return jsonResponse({ acknowledged: store.records.store(study, participant, valid, at, author) });
     }),
     route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
       jsonResponse({ records: store.records.all(study, participant) }),
@@ -113,11 +127,12 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
     }),
     route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, at, query, body }) => {
       const { trial } = checked(motionSchema, { trial: query.get('trial') });
+      refuseUnscheduledTrial(trial, scheduleFor(store.plans.planFor(study, participant), participant));
       const recording = textOf({ body });
       try {
         parseRecording(recording);
       } catch (error) {
-        throw new HttpError(400, (error as Error).message);
+        throw new Refusal('invalid', (error as Error).message);
       }
       store.motion.store(study, participant, trial, recording, at);
       return noContent;
@@ -129,7 +144,7 @@ export function participantRoutes(parts: StudyParts): StudyRoute[] {
         // A request that is admitted without the participant's token is from an experimenter, who watches.
         return jsonResponse(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
       }),
-      changes: false,
+      effect: 'reads',
     },
     {
       ...route('GET', `${own}/export`, 'participant', 0, ({ study, participant, at }) =>

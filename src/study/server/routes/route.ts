@@ -2,6 +2,7 @@ import type { ClientAddress, HttpResponse, Route, Software } from 'threepoint-ht
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
 import type { StudyStore } from '../storage/study-store';
+import type { Effect } from './effect';
 import type { RouteAccess, Sender, StudyGuard } from './guard';
 import type { StudySeats } from './seats';
 
@@ -30,8 +31,8 @@ export interface StudyCall extends Sender {
 }
 
 export interface StudyRoute extends Omit<Route<RouteAccess>, 'handle'> {
-  /** Whether the answer waits until the change is on the disk. */
-  readonly changes: boolean;
+  /** If it is not "reads", the answer waits until the change is on the disk. */
+  readonly effect: Effect;
   /** Whether the answer has no time limit. */
   readonly isPatient: boolean;
   handle(call: StudyCall): HttpResponse | Promise<HttpResponse>;
@@ -57,6 +58,6 @@ export const route = (
   handle: StudyRoute['handle'],
 ): StudyRoute => ({
   ...{ method, path: `${prefix}${path}`, access, bodyLimit, handle },
-  changes: method !== 'GET',
+  effect: ({ GET: 'reads', POST: 'stores', PUT: 'stores', DELETE: 'deletes' } as const)[method],
   isPatient: false,
 });

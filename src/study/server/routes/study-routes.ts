@@ -101,11 +101,14 @@ export function studyRoutes(parts: StudyParts): StudyRoute[] {
     route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
       jsonResponse({ participants: store.overview(study, at) }),
     ),
-    route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {
-      const { code } = checked(withdrawalSchema, jsonOf(call));
-      return jsonResponse(
-        await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)),
-      );
-    }),
+    {
+      ...route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {
+        const { code } = checked(withdrawalSchema, jsonOf(call));
+        return jsonResponse(
+          await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)),
+        );
+      }),
+      effect: 'withdraws',
+    },
   ];
 }

@@ -1,6 +1,6 @@
+import { Refusal } from '../../model/progress/refusal';
 import type { Receipt } from '../../model/progress/study-api';
 import { newCode } from './schema';
-import { StoreRefusal } from './store-refusal';
 import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
 import type { StudyMotion } from './study-motion';
@@ -56,10 +56,7 @@ export class StudyDeletion {
   deleteSimulated(study: string): void {
     const { database, plans } = this.#parts;
     if (!plans.get(study).simulated) {
-      throw new StoreRefusal(
-        'forbidden',
-        `the study "${study}" has data of people: delete its participants one by one`,
-      );
+      throw new Refusal('forbidden', `the study "${study}" has data of people: delete its participants one by one`);
     }
     database.transaction(() => {
       for (const table of ['records', 'motion', 'receipts']) {

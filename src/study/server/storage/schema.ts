@@ -106,6 +106,11 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
   UPDATE participants SET plan_version = 1 WHERE token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1
     OR EXISTS (SELECT 1 FROM records WHERE records.study = participants.study AND records.participant = participants.participant);
   `,
+  // Earlier versions stored only of the experimenter's remarks with whose token they came.
+  `
+  ALTER TABLE records ADD COLUMN author TEXT CHECK (author IN ('participant', 'experimenter'));
+  UPDATE records SET author = 'experimenter' WHERE id LIKE 'experimenter-%';
+  `,
 ];
 
 /** Why a database cannot be used, as the end of a sentence that begins with its file. */

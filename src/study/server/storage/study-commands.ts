@@ -1,5 +1,5 @@
+import { Refusal } from '../../model/progress/refusal';
 import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
-import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
 
@@ -23,7 +23,7 @@ export class StudyCommands {
         ...[study, participant],
       );
       if (count >= maxCommandsPerParticipant) {
-        throw new StoreRefusal('full', `${participant} was sent ${maxCommandsPerParticipant} commands already`);
+        throw new Refusal('full', `${participant} was sent ${maxCommandsPerParticipant} commands already`);
       }
       const { number } = this.#database.getOne<{ number: number }>(
         'INSERT INTO commands (study, participant, command, at) VALUES (?, ?, ?, ?) RETURNING number',

@@ -4,8 +4,9 @@ import { promisify } from 'node:util';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core';
 import { GroupCommit } from 'threepoint-http';
+import { Refusal } from '../../model/progress/refusal';
 import { migrate } from './schema';
-import { refusalOfSqlite, StoreRefusal } from './store-refusal';
+import { refusalOfSqlite } from './sqlite-refusal';
 
 type Statement = ReturnType<DatabaseSyncInstance['prepare']>;
 type Parameter = Parameters<Statement['run']>[number];
@@ -39,7 +40,7 @@ interface OpenedFile {
 /**
  * The SQLite file of the studies. A committed transaction survives a crash of the process; it survives a power cut once
  * `flushed` has resolved. Deleted data are overwritten. No call waits for the lock of another program: it throws a
- * StoreRefusal and can be repeated.
+ * Refusal and can be repeated.
  */
 export class StudyDatabase {
   readonly #database: DatabaseSyncInstance;
@@ -75,7 +76,7 @@ export class StudyDatabase {
   }
 
   /**
-   * Runs `body` in a transaction; throws a StoreRefusal if the disk is full, the database locked or its file unusable.
+   * Runs `body` in a transaction; throws a Refusal if the disk is full, the database locked or its file unusable.
    */
   transaction<T>(body: () => T): T {
     try {
@@ -134,19 +135,19 @@ export class StudyDatabase {
   }
 
   /**
-   * Resolves when everything written before this call survives a power cut. Rejects with a StoreRefusal after a failure
+   * Resolves when everything written before this call survives a power cut. Rejects with a Refusal after a failure
    * of the disk, until the server starts again, and if the files were moved or deleted.
    */
   async flushed(): Promise<void> {
     try {
       await this.#commits.flush();
     } catch (error) {
-      const text = 'the disk of the server failed, and this may not be stored. Restart the server';
-      throw new StoreRefusal('lost', text, reasonOf(error));
+      const text = 'the disk of the server failed, and the server must be restarted';
+      throw new Refusal('lost', text, { detail: reasonOf(error), failure: 'unknown' });
     }
     if (this.#misplaced !== null) {
       const text = 'the folder of the studies was deleted or replaced. Put it back, or restart the server';
-      throw new StoreRefusal('lost', text, this.#misplaced);
+      throw new Refusal('lost', text, { detail: this.#misplaced });
     }
   }
 
@@ -160,7 +161,7 @@ export class StudyDatabase {
       const [row] = this.all<{ busy: number }>('PRAGMA wal_checkpoint(TRUNCATE)');
       this.#mustPurge = row?.busy !== 0;
     } catch (error) {
-      if (!(error instanceof StoreRefusal)) throw error;
+      if (!(error instanceof Refusal)) throw error;
     }
     return !this.#mustPurge;
   }

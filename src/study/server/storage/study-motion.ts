@@ -1,5 +1,5 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
-import { StoreRefusal } from './store-refusal';
+import { Refusal } from '../../model/progress/refusal';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
 
@@ -41,7 +41,7 @@ export class StudyMotion {
     const gzipped = gzipSync(text);
     this.#database.transaction(() => {
       if (this.#places.getPresent(study, participant).motion_consent !== 1) {
-        throw new StoreRefusal('forbidden', `${participant} has not consented to motion recording`);
+        throw new Refusal('forbidden', `${participant} has not consented to motion recording`);
       }
       const stored = this.#database.get<PackedMotion>(
         'SELECT gzipped FROM motion WHERE study = ? AND participant = ? AND trial = ?',
@@ -49,14 +49,14 @@ export class StudyMotion {
       );
       if (stored) {
         if (gunzipSync(stored.gzipped).toString() === text) return;
-        throw new StoreRefusal('conflict', `${participant} has stored another recording of "${trial}" already`);
+        throw new Refusal('conflict', `${participant} has stored another recording of "${trial}" already`);
       }
       const { bytes } = this.#database.getOne<{ bytes: number }>(
         'SELECT coalesce(sum(length(gzipped)), 0) AS bytes FROM motion WHERE study = ? AND participant = ?',
         ...[study, participant],
       );
       if (bytes + gzipped.length > maxMotionPerParticipant) {
-        throw new StoreRefusal('full', `${participant} has ${bytes} bytes of motion already`);
+        throw new Refusal('full', `${participant} has ${bytes} bytes of motion already`);
       }
       this.#database.run(
         'INSERT INTO motion (study, participant, trial, gzipped, received_at) VALUES (?, ?, ?, ?, ?)',

@@ -1,8 +1,8 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import { scheduleFor } from '../../model/plan/schedule';
 import { isLater, type Progress, resumed, sinceReport } from '../../model/progress/progress';
+import { Refusal } from '../../model/progress/refusal';
 import { newCode, normalisedCode } from './schema';
-import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlans } from './study-plans';
 
@@ -20,8 +20,8 @@ export interface PlaceRow {
   readonly progress_at: number | null;
 }
 
-export const notConsented = (participant: string): StoreRefusal =>
-  new StoreRefusal('forbidden', `${participant} has not consented: nothing is recorded`);
+export const notConsented = (participant: string): Refusal =>
+  new Refusal('forbidden', `${participant} has not consented: nothing is recorded`);
 
 const hashOf = (secret: string): Buffer => createHash('sha256').update(secret).digest();
 const newToken = (): string => randomBytes(32).toString('base64url');
@@ -36,17 +36,17 @@ export class StudyPlaces {
     this.#plans = plans;
   }
 
-  /** Returns the place of a participant; throws a StoreRefusal for an unknown one. */
+  /** Returns the place of a participant; throws a Refusal for an unknown one. */
   get(study: string, participant: string): PlaceRow {
     const row = this.#row(study, participant);
-    if (!row) throw new StoreRefusal('unknown', `the study "${study}" has no participant ${participant}`);
+    if (!row) throw new Refusal('unknown', `the study "${study}" has no participant ${participant}`);
     return row;
   }
 
-  /** Returns the place of a participant; throws a StoreRefusal for an unknown one and for one who has withdrawn. */
+  /** Returns the place of a participant; throws a Refusal for an unknown one and for one who has withdrawn. */
   getPresent(study: string, participant: string): PlaceRow {
     const row = this.get(study, participant);
-    if (row.withdrawn) throw new StoreRefusal('forbidden', `${participant} has withdrawn`);
+    if (row.withdrawn) throw new Refusal('forbidden', `${participant} has withdrawn`);
     return row;
   }
 
@@ -80,11 +80,11 @@ export class StudyPlaces {
     at: number,
   ): { readonly token: string; readonly withdrawalCode: string | null } {
     const { retentionUntil } = this.#plans.get(study);
-    if (at > retentionUntil) throw new StoreRefusal('forbidden', `the study "${study}" is past its retention date`);
+    if (at > retentionUntil) throw new Refusal('forbidden', `the study "${study}" is past its retention date`);
     return this.#database.transaction(() => {
       const row = this.getPresent(study, participant);
       if (row.token_hash) {
-        throw new StoreRefusal(
+        throw new Refusal(
           'conflict',
           `${participant} is taken by another device: go on there, or ask for the place to be released`,
         );
@@ -134,13 +134,13 @@ export class StudyPlaces {
     );
   }
 
-  /** Stores the progress of a participant unless a later report is stored; throws a StoreRefusal before consent. */
+  /** Stores the progress of a participant unless a later report is stored; throws a Refusal before consent. */
   saveProgress(study: string, participant: string, progress: unknown, at: number): void {
     const { simulated } = this.#plans.get(study);
     const schedule = scheduleFor(this.#plans.planFor(study, participant), participant);
     const checked = resumed(schedule, JSON.stringify(progress));
     if (checked.simulated !== simulated) {
-      throw new StoreRefusal(
+      throw new Refusal(
         'forbidden',
         `the study "${study}" is ${simulated ? 'simulated' : 'of people'}, the session is not`,
       );

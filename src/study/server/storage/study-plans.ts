@@ -1,9 +1,9 @@
 import { ValidationError } from 'threepoint/core';
 import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
+import { Refusal } from '../../model/progress/refusal';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { newCode } from './schema';
-import { StoreRefusal } from './store-refusal';
 import type { StudyDatabase } from './study-database';
 
 interface StudyRow {
@@ -47,10 +47,10 @@ export class StudyPlans {
     this.#database = database;
   }
 
-  /** Returns a study with this version of its plan or with the newest; throws a StoreRefusal if it is unknown. */
+  /** Returns a study with this version of its plan or with the newest; throws a Refusal if it is unknown. */
   get(id: string, version?: number): StudyInfo {
     const row = this.#row(id);
-    if (!row) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+    if (!row) throw new Refusal('unknown', `there is no study "${id}"`);
     return this.#infoOf(row, version);
   }
 
@@ -87,7 +87,7 @@ export class StudyPlans {
         return this.get(plan.id);
       }
       if (stored.simulated !== Number(simulated)) {
-        throw new StoreRefusal(
+        throw new Refusal(
           'conflict',
           `the study "${plan.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
         );
@@ -103,7 +103,7 @@ export class StudyPlans {
         const text =
           `the study "${plan.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
           `Add the plan as version ${known.version + 1} for later participants, or give it another id`;
-        throw new StoreRefusal('begun', text);
+        throw new Refusal('begun', text, { field: 'newVersion' });
       }
       return this.get(plan.id);
     });
@@ -162,7 +162,7 @@ export class StudyPlans {
   }
 
   #refuseUnknown(id: string): void {
-    if (!this.#row(id)) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+    if (!this.#row(id)) throw new Refusal('unknown', `there is no study "${id}"`);
   }
 
   #infoOf(row: StudyRow, asked?: number): StudyInfo {
@@ -181,7 +181,7 @@ export class StudyPlans {
         }),
       );
     const shown = asked === undefined ? versions.at(-1) : versions.find(({ version }) => version === asked);
-    if (!shown) throw new StoreRefusal('unknown', `the plan of "${row.id}" has no version ${asked}`);
+    if (!shown) throw new Refusal('unknown', `the plan of "${row.id}" has no version ${asked}`);
     return {
       plan: shown.plan,
       version: shown.version,
@@ -215,7 +215,7 @@ export class StudyPlans {
         ? undefined
         : [...togetherWith(plan, participant)].find((one) => kept.has(one));
       if (mixed === undefined) continue;
-      throw new StoreRefusal(
+      throw new Refusal(
         'conflict',
         `${participant} would play with ${mixed}, who stays with version ${kept.get(mixed)}: leave seed, participants and ` +
           'group sizes as they are, or give the plan another id',

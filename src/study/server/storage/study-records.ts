@@ -1,5 +1,13 @@
-import { recordVersion, type StudyRecord } from '../../model/records/study-record';
-import { StoreRefusal } from './store-refusal';
+import { Refusal } from '../../model/progress/refusal';
+import type { StudyCommand } from '../../model/progress/study-api';
+import {
+  type RecordAuthor,
+  recordVersion,
+  type StoredRecord,
+  type StudyEvent,
+  type StudyRecord,
+} from '../../model/records/study-record';
+import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
 import { notConsented, type StudyPlaces } from './study-places';
 import type { StudyPlans } from './study-plans';
@@ -9,20 +17,44 @@ export const maxRecordsPerParticipant = 10_000;
 /** The prefix of the ids of the experimenter's remarks. */
 const remarkPrefix = 'experimenter-';
 
+interface RecordRow {
+  /** The record as JSON. */
+  readonly record: string;
+  /** null: stored by an earlier version. */
+  readonly author: RecordAuthor | null;
+  readonly received_at: number;
+}
+
+/** Returns a record as JSON, with the fields that the server adds. */
+function storedJson({ record, author, received_at }: RecordRow): string {
+  const added = JSON.stringify({ ...(author && { author }), receivedAt: received_at });
+  return `${record.slice(0, -1)},${added.slice(1)}`;
+}
+
 /** The records of participants who have consented. */
 export class StudyRecords {
   readonly #database: StudyDatabase;
   readonly #plans: StudyPlans;
   readonly #places: StudyPlaces;
+  readonly #commands: StudyCommands;
 
-  constructor(database: StudyDatabase, plans: StudyPlans, places: StudyPlaces) {
+  constructor(database: StudyDatabase, plans: StudyPlans, places: StudyPlaces, commands: StudyCommands) {
     this.#database = database;
     this.#plans = plans;
     this.#places = places;
+    this.#commands = commands;
   }
 
-  /** Stores the new ones of these records in one transaction; returns the ids of all. */
-  store(study: string, participant: string, records: readonly StudyRecord[], at: number): readonly string[] {
+  /**
+   * Stores the new ones of these records in one transaction; returns the ids of all. `at` is the time of their receipt.
+   */
+  store(
+    study: string,
+    participant: string,
+    records: readonly StudyRecord[],
+    at: number,
+    author: RecordAuthor = 'participant',
+  ): readonly string[] {
     const { simulated } = this.#plans.get(study);
     const plan = this.#plans.planFor(study, participant);
     return this.#database.transaction(() => {
@@ -32,7 +64,9 @@ export class StudyRecords {
         if (record.kind === 'consent') refuseOtherText(record.body.version, plan.consent.version);
         else if (consented === null) throw notConsented(participant);
         // A repeated record changes nothing, because the consent to motion may have been withdrawn since.
-        if (!this.#insert(record, at) || record.kind !== 'consent') continue;
+        if (!this.#insert(record, author, at)) continue;
+        if (author === 'participant') this.#refuseUncommanded(record);
+        if (record.kind !== 'consent') continue;
         consented = Number(record.body.motion && plan.consent.motion !== null);
         this.#places.setMotionConsent(study, participant, consented);
       }
@@ -49,24 +83,21 @@ export class StudyRecords {
       );
       const id = `${remarkPrefix}${next}`;
       const about = { version: recordVersion, id, study, participant, simulated, at } as const;
-      this.#insert({ ...about, kind: 'event', body: { type: 'remark', text } }, at);
+      this.#insert({ ...about, kind: 'event', body: { type: 'remark', text } }, 'experimenter', at);
       return id;
     });
   }
 
   /** Returns the records of one participant, or of all. */
-  all(study: string, participant?: string): readonly StudyRecord[] {
+  all(study: string, participant?: string): readonly StoredRecord[] {
     const rows =
       participant === undefined
-        ? this.#database.all<{ record: string }>(
-            'SELECT record FROM records WHERE study = ? ORDER BY participant, number',
-            study,
-          )
-        : this.#database.all<{ record: string }>(
-            'SELECT record FROM records WHERE study = ? AND participant = ? ORDER BY number',
+        ? this.#database.all<RecordRow>('SELECT * FROM records WHERE study = ? ORDER BY participant, number', study)
+        : this.#database.all<RecordRow>(
+            'SELECT * FROM records WHERE study = ? AND participant = ? ORDER BY number',
             ...[study, participant],
           );
-    return rows.map(({ record }) => JSON.parse(record) as StudyRecord);
+    return rows.map((row) => JSON.parse(storedJson(row)) as StoredRecord);
   }
 
   /**
@@ -75,13 +106,13 @@ export class StudyRecords {
    */
   listed(study: string, participants: ReadonlySet<string>): readonly Uint8Array[] {
     const chunks: Buffer[] = [];
-    const rows = this.#database.each<{ participant: string; record: string }>(
-      'SELECT participant, record FROM records WHERE study = ? ORDER BY participant, number',
+    const rows = this.#database.each<RecordRow & { readonly participant: string }>(
+      'SELECT * FROM records WHERE study = ? ORDER BY participant, number',
       study,
     );
-    for (const { participant, record } of rows) {
-      if (!participants.has(participant)) continue;
-      chunks.push(Buffer.from(`${chunks.length === 0 ? '[' : ','}${record}`));
+    for (const row of rows) {
+      if (!participants.has(row.participant)) continue;
+      chunks.push(Buffer.from(`${chunks.length === 0 ? '[' : ','}${storedJson(row)}`));
     }
     chunks.push(Buffer.from(chunks.length === 0 ? '[]' : ']'));
     return chunks;
@@ -100,7 +131,7 @@ export class StudyRecords {
   }
 
   /** Stores a record, in a transaction; returns false if it is stored already. */
-  #insert(record: StudyRecord, receivedAt: number): boolean {
+  #insert(record: StudyRecord, author: RecordAuthor, receivedAt: number): boolean {
     const { study, participant, id } = record;
     const text = JSON.stringify(record);
     const stored = this.#database.get<{ record: string }>(
@@ -109,22 +140,50 @@ export class StudyRecords {
     );
     if (stored) {
       if (stored.record === text) return false;
-      throw new StoreRefusal('conflict', `${participant} has stored something else as "${id}" already`);
+      throw new Refusal('conflict', `${participant} has stored something else as "${id}" already`);
     }
     if (this.count(study, participant) >= maxRecordsPerParticipant) {
-      throw new StoreRefusal('full', `${participant} has ${maxRecordsPerParticipant} records already`);
+      throw new Refusal('full', `${participant} has ${maxRecordsPerParticipant} records already`);
     }
     this.#database.run(
-      'INSERT INTO records (study, participant, id, record, received_at) VALUES (?, ?, ?, ?, ?)',
-      ...[study, participant, id, text, receivedAt],
+      'INSERT INTO records (study, participant, id, record, received_at, author) VALUES (?, ?, ?, ?, ?, ?)',
+      ...[study, participant, id, text, receivedAt, author],
     );
     return true;
   }
+
+  /**
+   * Refuses, in the transaction that has stored it, an event that only the experimenter causes: a participant's page
+   * records one for each command.
+   */
+  #refuseUncommanded({ id, study, participant, ...record }: StudyRecord): void {
+    if (record.kind !== 'event' || !isCommanded(record.body)) return;
+    const { body } = record;
+    const given = this.#commands.after(study, participant, 0).filter(({ command }) => hasCaused(command, body));
+    const events = this.all(study, participant).filter((one) => one.kind === 'event' && isSameEvent(one.body, body));
+    if (events.length <= given.length) return;
+    throw new Refusal('forbidden', `"${id}" follows from no command of the experimenter`);
+  }
+}
+
+type CommandedEvent = Extract<StudyEvent, { readonly type: 'void-block' | 'stop' }>;
+
+const isCommanded = (event: StudyEvent): event is CommandedEvent =>
+  event.type === 'void-block' || (event.type === 'stop' && event.by === 'experimenter');
+
+const isSameEvent = (one: StudyEvent, other: CommandedEvent): boolean =>
+  isCommanded(one) && JSON.stringify({ ...one, run: 0 }) === JSON.stringify({ ...other, run: 0 });
+
+function hasCaused(command: StudyCommand, event: CommandedEvent): boolean {
+  if (command.type === 'stop') return event.type === 'stop' && event.reason === command.reason;
+  if (command.type !== 'void-block' || event.type !== 'void-block') return false;
+  const { reason, repeat, of = event } = command;
+  return event.reason === reason && event.repeat === repeat && event.task === of.task && event.block === of.block;
 }
 
 function refuseOtherText(read: unknown, shown: string): void {
   if (read === shown) return;
-  throw new StoreRefusal('conflict', `consent is to text ${read}, the study shows ${shown}`);
+  throw new Refusal('conflict', `consent is to text ${read}, the study shows ${shown}`);
 }
 
 /**
@@ -133,13 +192,13 @@ function refuseOtherText(read: unknown, shown: string): void {
  */
 function refuseForeign(record: StudyRecord, study: string, participant: string, simulated: boolean): void {
   if (record.study !== study || record.participant !== participant) {
-    throw new StoreRefusal('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
+    throw new Refusal('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
   }
   if (record.id.startsWith(remarkPrefix)) {
-    throw new StoreRefusal('forbidden', `"${record.id}" is the name of an experimenter's remark`);
+    throw new Refusal('forbidden', `"${record.id}" is the name of an experimenter's remark`);
   }
   if (record.simulated !== simulated) {
-    throw new StoreRefusal(
+    throw new Refusal(
       'forbidden',
       `the study "${study}" is ${simulated ? 'simulated' : 'of people'}, "${record.id}" is not`,
     );

@@ -53,9 +53,9 @@ export function openStudyStore(
   const database = new StudyDatabase(file, { maxBytes, readOnly });
   const plans = new StudyPlans(database);
   const places = new StudyPlaces(database, plans);
-  const records = new StudyRecords(database, plans, places);
-  const motion = new StudyMotion(database, places);
   const commands = new StudyCommands(database, places);
+  const records = new StudyRecords(database, plans, places, commands);
+  const motion = new StudyMotion(database, places);
   return {
     ...{ plans, places, records, motion, commands },
     software: new StudySoftware(database),

@@ -77,11 +77,11 @@ describe('an export', () => {
     expect(content.software.exportedBy.weights[0]?.sha256).toMatch(/^[0-9a-f]{64}$/);
   });
 
-  test('of a whole study holds results and their analysis in Python; of one participant neither', () => {
-    expect(Object.keys(files)).toEqual(expect.arrayContaining(['results/answers-overall.csv', 'analysis/analyse.py']));
+  test('of a whole study holds results, of one participant none', () => {
+    expect(Object.keys(files)).toContain('results/answers-overall.csv');
     const records = content.records.filter(({ participant }) => participant === 'P01');
     const own = Object.keys(exportFiles({ ...content, records }, 'P01'));
-    expect(own.filter((path) => /^(results|analysis)\//.test(path))).toEqual([]);
+    expect(own.filter((path) => /^results\//.test(path))).toEqual([]);
     expect(own).toContain('trials.csv');
   });
 });
@@ -131,7 +131,7 @@ describe('verifying an export', () => {
     expect(complaints).toContainEqual(expect.stringMatching(/^results\/scores-compared\.csv, row 1, mean_first: /));
   });
 
-  test.each(['answers.csv', 'results/answers-overall.csv', 'analysis/analyse.py', 'bids/participants.tsv'])(
+  test.each(['answers.csv', 'results/answers-overall.csv', 'bids/participants.tsv'])(
     'says that %s is missing',
     (path) => {
       expect(complaintsOf({ [path]: null })).toEqual([`${path} is missing.`]);

@@ -10,6 +10,7 @@ import { type RandomSource, randomSource } from '../../../../src/study/simulatio
 import { experimenterToken, startServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';
+import { asSent } from '../stored-studies';
 
 /** The result of the kills; empty lists: nothing was lost. */
 export interface KillReport {
@@ -110,7 +111,7 @@ async function act(device: Device, ask: Ask, random: RandomSource): Promise<void
 /** Returns the acknowledged data of a device that the files of a killed server lack. */
 function check(device: Device, store: ReturnType<typeof openStudyStore>, report: KillReport): void {
   const { study, participant, schedule } = device;
-  const stored = store.records.all(study, participant);
+  const stored = store.records.all(study, participant).map(asSent);
   if (device.withdrawn === 'yes') {
     if (stored.length > 0) report.undeleted.push(`${study} ${participant}: ${stored.length} records`);
     return;

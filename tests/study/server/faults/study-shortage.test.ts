@@ -11,7 +11,7 @@ import { experimenterToken, type StartedServer } from '../../../server/started-s
 import { directoryWith } from '../../../temporary-directory';
 import { consentAt, paperPlan } from '../../model/studies';
 
-/** Returns a folder with a study in which P01 has stored this number of remarks of 2 kB. */
+/** Returns a folder with a study in which P01 has stored this number of remarks of 2 kB, and P01's withdrawal code. */
 function studyWith(remarks: number) {
   const directory = directoryWith({ 'studies/.keep': '' });
   const file = join(directory, 'studies/studies.db');
@@ -19,9 +19,10 @@ function studyWith(remarks: number) {
   const at = Date.now() / 1000;
   store.plans.add(paperPlan(), { simulated: false, at });
   const base = { version: recordVersion, study: 'paper', simulated: false } as const;
+  const codes: (string | null)[] = [];
   for (let number = 0; number <= remarks / 5000; number++) {
     const participant = `P0${number + 1}`;
-    store.places.claim('paper', participant, at);
+    codes.push(store.places.claim('paper', participant, at).withdrawalCode);
     const rest = Array.from({ length: Math.min(5000, remarks - 5000 * number) }, (_, index): StudyRecord => {
       const text = `${index} `.padEnd(2000, 'a remark ');
       return { ...base, participant, at, id: `event-${index}`, kind: 'event', body: { type: 'remark', text } };
@@ -29,7 +30,7 @@ function studyWith(remarks: number) {
     store.records.store('paper', participant, [consentAt(at, participant), ...rest], at);
   }
   store.close();
-  return { directory, file };
+  return { directory, file, code: codes[0] };
 }
 
 /** A permanent connection, because no other one can be opened later. */
@@ -89,15 +90,23 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   reportFigures('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
 });
 
-test('a disk that fills is no matter to an export: it needs none', async () => {
-  const { directory, file } = studyWith(100);
+test('a disk that fills refuses to store and to delete, and is no matter to an export', async () => {
+  const { directory, file, code } = studyWith(100);
   // The limit is the size of the database in blocks of 1024 bytes. Further writes fail, as on a full disk.
   const through = ['bash', '-c', `trap '' XFSZ; ulimit -f 48; exec "$0" "$@"`];
   const server = await forkServer({}, { directory, through });
   let stored = 101;
   let answer = await remark(server);
   for (; answer.status === 201; answer = await remark(server)) stored += 1;
-  expect(answer.status).toBe(507);
+  expect([answer.status, answer.error]).toEqual([507, 'the database cannot be used: nothing was stored']);
+  expect(await ask(server, 'DELETE', '/participants/P01')).toMatchObject({
+    status: 507,
+    error: 'the database cannot be used: nothing was deleted yet. Try again later',
+  });
+  expect(await ask(server, 'POST', '/withdraw', { code })).toMatchObject({
+    status: 507,
+    error: 'the database cannot be used: nothing was deleted yet. Try again later, or ask the experimenter',
+  });
   const exported = await ask(server, 'GET', '/export');
   expect(exported.status).toBe(200);
   const records = JSON.parse((await ask(server, 'GET', '/records')).bytes.toString()).records as StudyRecord[];
