@@ -3,11 +3,11 @@ import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { readSoftwareVersion } from 'threepoint-http/software-version';
 import { type Credentials, prepareServer } from 'threepoint-http/web-server';
+import type { RoomKinds } from 'threepoint-rooms/room/room-kind';
 import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
 import { openStudyService } from 'threepoint-study/server/service';
 import { createPageHandler } from './page-handler';
-import { shippedRoomKinds } from './room-kinds';
 
 export interface StartOptions {
   /** The folder of the built page. */
@@ -16,6 +16,7 @@ export interface StartOptions {
   /** null: the token that is stored with the studies. */
   readonly experimenterToken: string | null;
   readonly relay: RelayConfiguration;
+  readonly games: RoomKinds;
   /** Signs the passes into rooms. */
   readonly secret: string;
   readonly host: string;
@@ -37,7 +38,7 @@ export interface RunningServer {
 
 /** Starts the server of `npm start`. Throws if the page is not built. */
 export async function startServer(options: StartOptions): Promise<RunningServer> {
-  const { relay: relaying, host, port, credentials, log } = options;
+  const { relay: relaying, games, host, port, credentials, log } = options;
   const now = () => Date.now() / 1000;
   const page = createPageHandler(options.pageDirectory, {
     microphone: relaying.voices !== null,
@@ -64,7 +65,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
   const rooms = attachRooms(prepared.http, {
     ...relaying,
     secret: options.secret,
-    games: shippedRoomKinds(relaying),
+    games,
     monitoring: true,
     connections: connectionLimiter,
   });

@@ -3,10 +3,11 @@ import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import { maxSeats } from 'threepoint-rooms/protocol/messages';
+import type { RoomKind } from 'threepoint-rooms/room/room-kind';
 import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../server/room-kinds';
-import { countingKind, countingPolicy } from '../../tests/rooms/room/counting-game';
+import { countingKind, countingRoomKind } from '../../tests/rooms/room/counting-game';
 import { answerAsRelay } from './conversation';
 
 const configuration = relayConfigurationFrom(process.env);
@@ -14,7 +15,7 @@ const connectionLimiter = new ConnectionLimiter({
   perAddress: configuration.connectionsPerAddress,
   behindProxy: configuration.trustProxy,
 });
-const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(maxSeats)]]);
+const kinds = new Map<string, RoomKind>([...shippedRoomKinds(process.env), [countingKind, countingRoomKind(maxSeats)]]);
 const relay = createRelay(configuration, configuration.secret ?? '', connectionLimiter, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
   host: '127.0.0.1',

@@ -1,21 +1,26 @@
-import { createHash } from 'node:crypto';
+import { createHash, randomUUID } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration } from 'threepoint/core/body/calibration';
 import { writeRecording } from 'threepoint/core/tracking/recording';
+import { ballKind } from 'threepoint-games/ball/ball-messages';
+import { ballRoomKind } from 'threepoint-games/ball/ball-room-kind';
+import type { BallState } from 'threepoint-games/ball/ball-state';
 import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter } from 'threepoint-http/router';
 import { createSitePolicy } from 'threepoint-http/site-policy';
 import { prepareServer } from 'threepoint-http/web-server';
 import { poseEvent } from 'threepoint-rooms/protocol/socket-parsers';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { begin } from 'threepoint-study/model/progress/progress';
 import { checkedRecord } from 'threepoint-study/model/records/study-record';
 import { openStudyStore } from 'threepoint-study/server/storage/study-store';
-import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
+import type * as v from 'valibot';
+import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { reportFigures } from '../reliability/report-figures';
 import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from '../rooms/server/running-relay';
@@ -33,6 +38,8 @@ import {
   type SocketRole,
   socketRoles,
   socketRows,
+  type TermRole,
+  termRows,
   withLists,
 } from './access-rows';
 
@@ -64,7 +71,7 @@ async function wholeServer() {
   const rooms = attachRooms(prepared.http, {
     ...configuration,
     secret: testSecret,
-    games: shippedRoomKinds(configuration),
+    games: shippedRoomKinds(environment),
     monitoring: true,
     connections: connectionLimiter,
   });
@@ -326,5 +333,106 @@ describe('a message to a room', () => {
       expect(await refusal(token, headers), JSON.stringify(headers)).toBe('websocket error');
     }
     reportFigures('other-sites', { 'WebSockets of other sites refused': '5 of 5' });
+  });
+});
+
+describe('the terms of a room', () => {
+  let relay: Awaited<ReturnType<typeof startRelay>>;
+  beforeAll(async () => {
+    relay = await startRelay();
+  });
+  afterAll(() => relay.close());
+  const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
+  const trialRoom = `study.${'0'.repeat(24)}`;
+
+  const post = (path: string, body: object) =>
+    fetch(`${relay.url}/api/rooms/${path}`, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify({ kind: ballKind, ...body }),
+    });
+
+  /** Tries to enter a room with a pass that has these terms. */
+  async function outcomeOf(terms: object, role: TermRole): Promise<'taken' | 'refused'> {
+    if (role === 'stranger') return (await post('token', { room: 'meadow', terms })).ok ? 'taken' : 'refused';
+    const assigned = { seat: 0, name: 'P01' };
+    const pass = { identity: randomUUID(), room: trialRoom, kind: ballKind, terms, assigned };
+    const socket = rawSocket(relay.url, await tokens.sign(pass), trialRoom);
+    onTestFinished(() => void socket.disconnect());
+    return new Promise((resolve, reject) => {
+      socket.on('connect', () => resolve('taken'));
+      socket.on('connect_error', ({ message }) => (message === 'refused' ? resolve(message) : reject(message)));
+    });
+  }
+
+  test.each(Object.entries(termRows))('%s: as docs/security.md says', async (term, { inside, outside, outcome }) => {
+    for (const role of Object.keys(outcome) as TermRole[]) {
+      for (const value of inside) expect(await outcomeOf({ [term]: value }, role), `${value}`).toBe(outcome[role]);
+      for (const value of outside) expect(await outcomeOf({ [term]: value }, role), `${value}`).toBe('refused');
+    }
+  });
+
+  test('have a row for every field of their schemas', () => {
+    const { openTerms, assignedTerms } = ballRoomKind(90);
+    for (const schema of [openTerms, assignedTerms]) {
+      const fields = Object.keys((schema as v.StrictObjectSchema<v.ObjectEntries, undefined>).entries);
+      expect(fields.length).toBeGreaterThan(0);
+      expect(Object.keys(termRows)).toEqual(expect.arrayContaining(fields));
+    }
+  });
+
+  test('are refused as a whole where one of them is', async () => {
+    const good = { seconds: 3600, balls: 1 };
+    expect(await outcomeOf(good, 'stranger')).toBe('taken');
+    for (const [term, { inside, outcome }] of Object.entries(termRows)) {
+      if (outcome.stranger === 'refused')
+        expect(await outcomeOf({ ...good, [term]: inside[0] }, 'stranger'), term).toBe('refused');
+    }
+  });
+
+  test('signed by a release that allowed more open no room, and are left out when the pass is renewed', async () => {
+    const room = 'before-the-update';
+    const old = await tokens.sign({
+      ...{ identity: randomUUID(), room, kind: ballKind, assigned: null },
+      terms: { pausable: true, seconds: 3600 },
+    });
+    const refusal = await new Promise((resolve) => {
+      const socket = rawSocket(relay.url, old, room);
+      socket.on('connect', () => resolve('let in'));
+      socket.on('connect_error', ({ message }) => resolve(message));
+    });
+    expect(refusal).toBe('refused');
+    const { token } = (await (await post('token', { room, token: old })).json()) as { token: string };
+    expect((await tokens.verify(token))?.terms).toEqual({});
+    await rawGuest(relay.url, room, token);
+  });
+
+  test('of a stranger lead nobody there by matchmaking, and stop no clock', async () => {
+    const findRoom = async () => (await (await post('match', {})).json()) as { room: string; found: boolean };
+    const enter = async (room: string, terms?: object) => {
+      const { token } = (await (await post('token', { room, terms })).json()) as { token: string };
+      return rawGuest(relay.url, room, token);
+    };
+    const listed = (room: string) => async () => {
+      const { rooms } = (await (await fetch(`${relay.url}/api/rooms`)).json()) as { rooms: { room: string }[] };
+      return rooms.some((each) => each.room === room);
+    };
+    const guests = [await enter('own-terms', { seconds: 3600, balls: 1 })];
+    await vi.waitUntil(listed('own-terms'), 5000);
+    expect((await findRoom()).room).not.toBe('own-terms');
+    guests.push(await enter('usual'), await enter('usual', { seconds: 3600, balls: 1 }));
+    await vi.waitUntil(listed('usual'), 5000);
+    const found = await findRoom();
+    expect(found).toEqual({ room: 'usual', found: true });
+    guests.push(await enter(found.room));
+    const match = relay.relay.rooms.get('usual')?.room.match as BallState | undefined;
+    expect(match?.options).toMatchObject({ seconds: 90, balls: 20 });
+    for (const guest of guests) {
+      guest.say({ type: 'pause', pause: true });
+      guest.say({ type: 'ping', sent: 9 });
+      await until('the answer', () => guest.heard.some(({ type }) => type === 'pong'));
+    }
+    for (const room of ['own-terms', 'usual']) expect(relay.relay.rooms.get(room)?.room.paused).toBe(false);
+    expect(await (await fetch(`${relay.url}/metrics`)).text()).toMatch(/reason="not-pausable".*\} 4$/m);
   });
 });

@@ -5,6 +5,7 @@ import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer } from '../../server/start-server';
 import type { ServerHello, ServerState } from './server-child';
 
@@ -26,6 +27,7 @@ const { port, routes } = await startServer({
   studyDirectory: join(directory, 'studies'),
   experimenterToken: process.env.EXPERIMENTER_TOKEN ?? null,
   relay: relayConfigurationFrom(process.env),
+  games: shippedRoomKinds(process.env),
   secret: 'a secret of the tests, long enough for them',
   host: '127.0.0.1',
   port: 0,

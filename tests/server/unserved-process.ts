@@ -6,6 +6,7 @@ import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { ConfigurationError } from 'threepoint-http/configuration-error';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer } from '../../server/start-server';
 
 /** None follows it that could be tried. */
@@ -22,6 +23,7 @@ try {
     studyDirectory: join(directory, 'studies'),
     experimenterToken: null,
     relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
+    games: shippedRoomKinds({}),
     secret: 'a secret of the tests, long enough for them',
     host: '127.0.0.1',
     port: lastPort,

@@ -87,17 +87,6 @@ export function clientMessageFrom(value: unknown): ClientMessage | null {
 }
 
 /**
- * The terms of a room, which the first person in it sets for good. `seconds` and `balls` are those of a round of the
- * ball game. `pausable`: players may pause the match clock.
- */
-export const roomTerms = v.strictObject({
-  seconds: v.exactOptional(v.pipe(v.number(), v.finite(), v.minValue(1), v.maxValue(3600))),
-  balls: v.exactOptional(v.pipe(v.number(), v.integer(), v.minValue(1), v.maxValue(20))),
-  pausable: v.exactOptional(v.boolean()),
-});
-export type RoomTerms = v.InferOutput<typeof roomTerms>;
-
-/**
  * What others see of a player. away: the page is hidden or the headset is off. gone: the connection is lost, the seat
  * is held.
  */

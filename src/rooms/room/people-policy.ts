@@ -1,7 +1,9 @@
 import { identity } from 'threepoint/core/math/quat';
 import { vec3 } from 'threepoint/core/math/vec3';
+import * as v from 'valibot';
 import { maxSeats } from '../protocol/messages';
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy, MatchState } from './match-policy';
+import type { RoomKind } from './room-kind';
 
 /** A room without a game: people who see each other. It has no actions and no events. */
 export interface People extends HostedGame {
@@ -43,4 +45,13 @@ export const peoplePolicy = (seats: number = maxSeats): MatchPolicy<People> => (
   },
   refusalOf: () => null,
   arenaFromFloor: () => sharedFloor,
+});
+
+const noTerms = v.strictObject({});
+
+/** Returns rooms without a game for a server, with so many seats. */
+export const peopleRoomKind = (seats?: number): RoomKind => ({
+  openTerms: noTerms,
+  assignedTerms: noTerms,
+  createPolicy: () => peoplePolicy(seats),
 });

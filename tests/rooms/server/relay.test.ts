@@ -1,12 +1,14 @@
 import { defaultCalibration } from 'threepoint/core/body/calibration';
+import { ballKind } from 'threepoint-games/ball/ball-messages';
 import type { BallState } from 'threepoint-games/ball/ball-state';
 import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
 import { bannerText } from 'threepoint-rooms/client/connection-text';
 import { protocolVersion } from 'threepoint-rooms/protocol/messages';
 import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
+import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
-import { type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
+import { type RunningRelay, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
 import { personOfTest } from './until-finished';
 
 let server: RunningRelay;
@@ -60,7 +62,7 @@ describe('a relay', () => {
   test('makes a room as the first to come asks for it, and as no one after', async () => {
     const ann = personOfTest(server.url, 'short', 'Ann', { terms: { seconds: 30, balls: 6 } });
     await until('ann in', () => ann.connection.room !== null);
-    const ben = personOfTest(server.url, 'short', 'Ben', { terms: { seconds: 3600, pausable: true } });
+    const ben = personOfTest(server.url, 'short', 'Ben', { terms: { seconds: 3600 } });
     await until('ben in', () => ben.connection.room !== null);
     for (const { match } of [ann, ben]) expect(match.options).toMatchObject({ seconds: 30, balls: 6 });
     expect(server.relay.rooms.get('short')?.room.options.pausable).toBe(false);
@@ -69,10 +71,13 @@ describe('a relay', () => {
     expect(cal.match.options).toMatchObject({ seconds: 90, balls: 20 });
   });
 
-  test('stops the clock of a room that may be paused, and all are told', async () => {
-    const people = ['Ann', 'Ben', 'Cal'].map((name) =>
-      personOfTest(server.url, 'study', name, { terms: { seconds: 60, pausable: true } }),
-    );
+  test('stops the clock of a room with assigned seats, and all are told', async () => {
+    const room = `study.${'0'.repeat(24)}`;
+    const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
+    const people = ['P01', 'P02', 'P03'].map((name, seat) => {
+      const pass = { identity: name, room, kind: ballKind, terms: { seconds: 60 }, assigned: { seat, name } };
+      return personOfTest(server.url, room, name, { pass: { token: () => tokens.sign(pass) } });
+    });
     const [ann] = people as [(typeof people)[0]];
     const all = (isTrue: (person: (typeof people)[0]) => boolean) => () => people.every(isTrue);
     await until(
@@ -89,13 +94,13 @@ describe('a relay', () => {
       'the pause',
       all(({ connection }) => connection.room?.paused ?? false),
     );
-    const stands = server.relay.rooms.get('study')?.room.match.tick ?? -1;
+    const stands = server.relay.rooms.get(room)?.room.match.tick ?? -1;
     const asSeen = people.map(({ match }) => match.tick);
     const heard = people.map(({ poses }) => poses.length);
     await until('each to have heard sixty more poses', () =>
       people.every(({ poses }, i) => poses.length > heard[i]! + 60),
     );
-    expect(server.relay.rooms.get('study')?.room.match.tick).toBe(stands);
+    expect(server.relay.rooms.get(room)?.room.match.tick).toBe(stands);
     expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
     ann.connection.setPaused(false);
     await until(

@@ -6,15 +6,16 @@ import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { createRouter, noPage } from 'threepoint-http/router';
 import { serve } from 'threepoint-http/web-server';
 import type { Visitor } from 'threepoint-rooms/client/connection';
-import { createRoomPass } from 'threepoint-rooms/client/room-pass';
+import { createRoomPass, type RoomPass } from 'threepoint-rooms/client/room-pass';
 import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
-import { maxSeats, type RoomTerms } from 'threepoint-rooms/protocol/messages';
+import { maxSeats } from 'threepoint-rooms/protocol/messages';
 import { messageEvent, pageParser } from 'threepoint-rooms/protocol/socket-parsers';
+import type { RoomKind } from 'threepoint-rooms/room/room-kind';
 import { createRelay } from 'threepoint-rooms/server/relay';
 import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { shippedRoomKinds } from '../../../server/room-kinds';
 import { createPerson, visitor } from '../client/people';
-import { countingKind, countingPolicy } from '../room/counting-game';
+import { countingKind, countingRoomKind } from '../room/counting-game';
 import { poseOf } from '../room/posed-head';
 import { joinMessage } from '../room/test-room';
 
@@ -30,7 +31,10 @@ export async function startRelay(environment: Record<string, string> = {}, port 
     perAddress: configuration.connectionsPerAddress,
     behindProxy: configuration.trustProxy,
   });
-  const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(maxSeats)]]);
+  const kinds = new Map<string, RoomKind>([
+    ...shippedRoomKinds(environment),
+    [countingKind, countingRoomKind(maxSeats)],
+  ]);
   const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);
   const server = await serve(createRouter([relay.service], noPage), {
     host: '127.0.0.1',
@@ -68,10 +72,13 @@ export function arrive(
   url: string,
   room: string,
   name: string,
-  { terms, ...more }: Partial<Visitor> & { readonly terms?: RoomTerms } = {},
+  {
+    terms,
+    pass = createRoomPass(url, room, kindOf(room), undefined, terms),
+    ...more
+  }: Partial<Visitor> & { readonly terms?: object; readonly pass?: RoomPass } = {},
   now = seconds,
 ) {
-  const pass = createRoomPass(url, room, kindOf(room), undefined, terms);
   const connection = new SocketConnection(ballClientPolicy, {
     url,
     room,

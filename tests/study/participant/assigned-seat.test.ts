@@ -5,6 +5,7 @@ import { createExperimenterClient, createParticipantClient } from 'threepoint-st
 import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
 import { expect, onTestFinished, test, vi } from 'vitest';
+import { shippedRoomKinds } from '../../../server/room-kinds';
 import { startServer } from '../../../server/start-server';
 import { visitor } from '../../rooms/client/people';
 import { testSecret, until } from '../../rooms/server/running-relay';
@@ -22,6 +23,7 @@ async function invited() {
     studyDirectory: directoryWith(),
     experimenterToken,
     relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
+    games: shippedRoomKinds({}),
     secret: testSecret,
     host: '127.0.0.1',
     port: 0,

@@ -1,7 +1,7 @@
 import { type BallConnection, ballClientPolicy, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
+import type { BallTerms } from 'threepoint-games/ball/ball-room-kind';
 import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
 import type { LocalClock, Visitor } from 'threepoint-rooms/client/connection';
-import type { RoomTerms } from 'threepoint-rooms/protocol/messages';
 import { fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import type { SignedSeat } from 'threepoint-study/model/progress/study-api';
 import { pageFolder } from 'threepoint-ui/page-folder';
@@ -35,11 +35,10 @@ export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: Local
  */
 export async function connectionsFor(
   room: string | null,
-  { seed, clock, ...terms }: RoomTerms & { readonly seed: number; readonly clock: LocalClock },
+  { seed, clock, ...terms }: BallTerms & { readonly seed: number; readonly clock: LocalClock },
 ): Promise<BallPlace> {
   if (room === null) {
-    const { pausable: _, ...ball } = terms;
-    const host = createBallLoopbackHost({ seed, ball });
+    const host = createBallLoopbackHost({ seed, ball: terms });
     return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
   }
   const [{ RoomAddress }, { tabStorage }] = await Promise.all([
