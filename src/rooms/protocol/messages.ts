@@ -146,8 +146,8 @@ export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
 
 /**
  * Why a client is disconnected: the same person connected again (replaced), a person took the bot's seat (yielded), the
- * client asked for it (left), misbehaved or reads too slowly, the room was closed, the server stops, or the page has
- * another version.
+ * client asked for it (left), misbehaved or reads too slowly, the server has no place for another room (full), the room
+ * was closed, the server stops, or the page has another version.
  */
 const disconnectReasons = [
   'replaced',
@@ -155,6 +155,7 @@ const disconnectReasons = [
   'left',
   'misbehaved',
   'slow',
+  'full',
   'stopping',
   'closed',
   'old-page',

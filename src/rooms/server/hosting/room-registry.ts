@@ -91,10 +91,7 @@ export class RoomRegistry {
     this.#activate(hosted);
   }
 
-  /**
-   * Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the
-   * game.
-   */
+  /** Returns the room of a pass, and creates it if needed; null: the server has too many rooms. */
   getOrCreate(pass: PassClaims): RegisteredRoom | null {
     if (!this.#rooms.has(pass.room) && !this.#create(pass)) return null;
     return this.wake(pass.room) ?? null;
