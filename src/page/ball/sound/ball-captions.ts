@@ -4,7 +4,7 @@ import type { BallEvent, Refusal } from 'threepoint-games/ball/ball-state';
 import type { BallCue } from 'threepoint-games/ball/gestures';
 import { directionText } from '../../scene/direction-text';
 import type { DisplayedPlayer } from '../view/displayed-match';
-import { displayName } from '../view/displayed-match';
+import { markedName } from '../view/displayed-match';
 
 /** The listener, and the positions of the other players. */
 export interface Listener {
@@ -19,7 +19,7 @@ export interface Listener {
 
 const playerName = ({ people, me }: Listener, player: number): string => {
   const person = people[player];
-  return player === me ? 'You' : person ? displayName(person) : 'A player';
+  return player === me ? 'You' : person ? markedName(person) : 'A player';
 };
 
 const refusals: Partial<Readonly<Record<Refusal, string>>> = {
