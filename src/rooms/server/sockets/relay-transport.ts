@@ -1,13 +1,12 @@
-import type { EventEmitter } from 'node:events';
-import type { IncomingMessage } from 'node:http';
+import { createServer, type IncomingMessage } from 'node:http';
 import type { Socket as NetSocket } from 'node:net';
 import type { Duplex } from 'node:stream';
-import { Server as Engine } from 'engine.io';
 import { Server, type Socket } from 'socket.io';
 import { HttpError } from 'threepoint-http/http-error';
 import { parseRequestTarget } from 'threepoint-http/request-target';
 import { errorResponse, sendRawResponse } from 'threepoint-http/response';
 import { handshakeTimeoutMs } from 'threepoint-http/web-server';
+import { WebSocketServer } from 'ws';
 import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
 import { TokenBucket } from '../../room/token-bucket';
@@ -21,7 +20,7 @@ export const relayPath = '/relay';
 /** Why the transport ends a connection: it sends too many frames, or reads too slowly. */
 export type WireFault = 'flood' | 'slow';
 
-/** Receives what a connection sends below socket.io. */
+/** Receives what a connection sends besides socket.io's packets. */
 export interface WireListener {
   onPose(bytes: Uint8Array): void;
   /** Called once before the transport ends the connection; further messages are dropped. */
@@ -53,39 +52,25 @@ export function closeConnection(socket: Socket): void {
 }
 
 /**
- * Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns
- * whether to handle it.
+ * Returns a WebSocket server for Engine.IO that counts the frames of each connection. Beyond the limit a connection is
+ * read no further, and `onFlood` is called once. `now`: seconds, monotonic.
  */
-function routeBinaryMessages(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
-  // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
-  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
-  for (const engines of websocket.listeners('message')) {
-    websocket.off('message', engines as () => void);
-    websocket.on('message', (received: Buffer, isBinary: boolean) => {
-      if (!take()) return;
-      if (isBinary) listener(received);
-      else engines.call(websocket, received, isBinary);
-    });
-  }
-  websocket.on('ping', take);
-  websocket.on('pong', take);
-}
-
-/**
- * Returns a function that counts a frame of one connection and returns whether to handle it. Once the limit is exceeded
- * no further frame is handled, and `onFlood` is called once. `now`: seconds, monotonic.
- */
-function createFloodLimiter(now: () => number, onFlood: () => void): () => boolean {
-  const bucket = new TokenBucket(framesPerSecond);
-  let isFlooded = false;
-  return () => {
-    if (isFlooded || bucket.take(now())) return !isFlooded;
-    isFlooded = true;
-    // Earlier packets are still on their way through socket.io, which takes a tick for each.
-    setImmediate(onFlood);
-    return false;
+const limitedServer = (now: () => number, onFlood: (request: IncomingMessage) => void) =>
+  class extends WebSocketServer {
+    override handleUpgrade(...[request, socket, head, done]: Parameters<WebSocketServer['handleUpgrade']>): void {
+      super.handleUpgrade(request, socket, head, (websocket, upgraded) => {
+        const bucket = new TokenBucket(framesPerSecond);
+        const count = () => {
+          if (websocket.isPaused || bucket.take(now())) return;
+          websocket.pause();
+          // Earlier packets are still on their way through socket.io, which takes a tick for each.
+          setImmediate(onFlood, request);
+        };
+        websocket.on('message', count).on('ping', count).on('pong', count);
+        done(websocket, upgraded);
+      });
+    }
   };
-}
 
 export type RelayTransport = ReturnType<typeof createRelayTransport>;
 
@@ -93,17 +78,25 @@ export type RelayTransport = ReturnType<typeof createRelayTransport>;
 export function createRelayTransport(context: RelayContext) {
   const { log, metrics, now } = context;
   const admit = createUpgradeAdmission(context);
-  const engine = new Engine({
+  const io = new Server(createServer(), {
+    path: relayPath,
+    serveClient: false,
+    connectTimeout: handshakeTimeoutMs,
+    parser: relayParser,
     transports: ['websocket'],
     allowUpgrades: false,
     perMessageDeflate: false,
     maxHttpBufferSize: maxMessageBytes,
+    wsEngine: limitedServer(now, (request) => {
+      const conn = connections.get(request);
+      if (conn) end(conn, 'flood');
+    }),
     // A page that hangs, or reads nothing, is detected within seven seconds.
     pingInterval: 3000,
     pingTimeout: 4000,
   });
-  const io = new Server({ serveClient: false, connectTimeout: handshakeTimeoutMs, parser: relayParser });
-  io.bind(engine);
+  const { engine } = io;
+  const connections = new WeakMap<IncomingMessage, Socket['conn']>();
   const listeners = new WeakMap<Socket['conn'], WireListener>();
   function end(conn: Socket['conn'], fault: WireFault): void {
     const listener = listeners.get(conn);
@@ -119,11 +112,12 @@ export function createRelayTransport(context: RelayContext) {
   const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
+    connections.set(conn.request, conn);
     slowReaders.watch(conn);
-    const take = createFloodLimiter(now, () => end(conn, 'flood'));
-    routeBinaryMessages(conn, take, (bytes) => {
+    conn.on('message', (message: string | Uint8Array) => {
+      if (typeof message === 'string') return;
       const listener = listeners.get(conn);
-      if (listener) listener.onPose(bytes);
+      if (listener) listener.onPose(message);
       else conn.close();
     });
     conn.once('close', () => destroySoon(raw));
@@ -136,11 +130,12 @@ export function createRelayTransport(context: RelayContext) {
       return engine.clientsCount;
     },
     /**
-     * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io,
-     * which cost more for a message than a room does for its pose. A binary message on a connection without a listener
-     * closes it.
+     * Registers the listener for a connection's poses. Binary messages are poses, which Engine.IO reports before
+     * socket.io reads them. A binary message on a connection without a listener closes it.
      */
     listen: (socket: Socket, listener: WireListener): void => void listeners.set(socket.conn, listener),
+    /** Returns whether so much waits on a connection that it should miss poses. */
+    isBusy: ({ conn }: Socket): boolean => slowReaders.isBusy(conn),
     /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
     upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean {
       const target = parseRequestTarget(request.url);

@@ -3,22 +3,24 @@ import type { Socket } from 'socket.io';
 /** A connection is too slow if it accepts no frame for this long [s], or if more packets than this wait. */
 const slowSeconds = 5;
 const maxWaiting = 256;
-/** The most bytes that may wait on a connection that still receives poses: with TLS each write takes a moment. */
-export const maxQueuedBytes = 4096;
+/** The most bytes and packets that may wait on a connection that still receives poses: TLS takes a moment to write. */
+const maxQueuedBytes = 4096;
+const maxQueuedPackets = 8;
 /** Interval of the check [ms]. */
 const slowCheckMs = 1000;
 
-/** Returns the number of packets that wait in a connection's queue. */
-const packetsWaiting = (conn: Socket['conn']): number =>
-  // reason: private in the types, but the only count: the socket's own buffer holds 16 KiB at most.
-  (conn as unknown as { readonly writeBuffer: readonly unknown[] }).writeBuffer.length;
+interface Reader {
+  /** The last time at which it accepted a frame [s]. */
+  writableAt: number;
+  /** The number of packets in its queue. */
+  waiting: number;
+}
 
 /** Watches all open connections, and ends those whose client reads too slowly. */
 export class SlowReaders {
   readonly #now: () => number;
   readonly #end: (conn: Socket['conn']) => void;
-  /** The last time at which each accepted a frame [s]. */
-  readonly #writableAt = new Map<Socket['conn'], number>();
+  readonly #readers = new Map<Socket['conn'], Reader>();
   readonly #timer = setInterval(() => this.#check(), slowCheckMs);
 
   /** `now`: seconds, monotonic. */
@@ -28,8 +30,21 @@ export class SlowReaders {
   }
 
   watch(conn: Socket['conn']): void {
-    this.#writableAt.set(conn, this.#now());
-    conn.once('close', () => this.#writableAt.delete(conn));
+    const reader: Reader = { writableAt: this.#now(), waiting: 0 };
+    this.#readers.set(conn, reader);
+    conn.on('packetCreate', () => {
+      reader.waiting += 1;
+    });
+    conn.on('flush', () => {
+      reader.waiting = 0;
+    });
+    conn.once('close', () => this.#readers.delete(conn));
+  }
+
+  /** Returns whether so much waits on a connection that it should miss poses. */
+  isBusy(conn: Socket['conn']): boolean {
+    const waiting = this.#readers.get(conn)?.waiting ?? 0;
+    return waiting >= maxQueuedPackets || conn.request.socket.writableLength > maxQueuedBytes;
   }
 
   stop(): void {
@@ -38,11 +53,11 @@ export class SlowReaders {
 
   #check(): void {
     const now = this.#now();
-    for (const [conn, writableAt] of this.#writableAt) {
+    for (const [conn, reader] of this.#readers) {
       const isFree = conn.transport.writable && conn.request.socket.writableLength <= maxQueuedBytes;
-      if (isFree) this.#writableAt.set(conn, now);
-      if ((isFree || now - writableAt <= slowSeconds) && packetsWaiting(conn) <= maxWaiting) continue;
-      this.#writableAt.delete(conn);
+      if (isFree) reader.writableAt = now;
+      if ((isFree || now - reader.writableAt <= slowSeconds) && reader.waiting <= maxWaiting) continue;
+      this.#readers.delete(conn);
       this.#end(conn);
     }
   }
