@@ -28,17 +28,20 @@ export const maxCandidates = 8;
 const line = /^[\x20-\x7e]*$/;
 const lines = /^[\x20-\x7e\t\r\n]*$/;
 
-/** Beginnings of candidates: UDP and TCP. Addresses are numbers, or names by which browsers hide them on a network. */
-const udpCandidate = /^candidate:\S+ \d+ udp \d+ ([\d.]+|[\da-f]*:[\da-f:.]*|[\w-]+\.local) \d+ typ /i;
-const tcpCandidate =
-  /^candidate:\S+ \d+ tcp \d+ ([\d.]+|[\da-f]*:[\da-f:.]*|[\w-]+\.local) \d+ typ \S+ (raddr \S+ rport \d+ )?tcptype active( |$)/i;
+/** The address of a candidate: a number, or a name by which a browser hides one on its own network. */
+const address = String.raw`(?:[\d.]+|[\da-f]*:[\da-f:.]*|[\w-]+\.local)`;
+const udpCandidate = new RegExp(String.raw`^candidate:\S+ \d+ udp \d+ ${address} \d+ typ `, 'i');
+const activeTcpCandidate = new RegExp(
+  String.raw`^candidate:\S+ \d+ tcp \d+ ${address} \d+ typ \S+ (?:raddr \S+ rport \d+ )?tcptype active(?: |$)`,
+  'i',
+);
 
 /**
  * Returns whether a page may pass an ICE candidate to another one. The other page connects to passive TCP ports, and
  * looks up names; browsers gather neither for themselves.
  */
 export const isPassableCandidate = (text: string): boolean =>
-  text === '' || udpCandidate.test(text) || tcpCandidate.test(text);
+  text === '' || udpCandidate.test(text) || activeTcpCandidate.test(text);
 
 /**
  * Returns whether a description has one audio section at most, no other media, no other candidates, and no identity
