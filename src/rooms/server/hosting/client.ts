@@ -14,8 +14,8 @@ import { closeConnection, type RelayTransport } from '../sockets/relay-transport
 export interface Client {
   readonly id: string;
   readonly socket: Socket;
-  /** Returns whether so much waits on the connection that it should miss poses. */
-  readonly isBusy: () => boolean;
+  /** Sends a frame of poses. Returns whether it was sent: a busy connection misses it. */
+  readonly sendFrame: (frame: Uint8Array) => boolean;
   readonly pass: PassClaims;
   /** Time of the connection [s]. */
   readonly connectedAt: number;
@@ -38,13 +38,13 @@ const signalsAtOnce = 80;
 /** Creates the client of a socket whose pass is verified. `now`: seconds, monotonic. */
 export const createClient = (
   socket: Socket,
-  isBusy: RelayTransport['isBusy'],
+  sendFrame: RelayTransport['sendFrame'],
   { posesPerSecond, eventsPerSecond }: RelayConfiguration,
   now: number,
 ): Client => ({
   id: socket.id,
   socket,
-  isBusy: () => isBusy(socket),
+  sendFrame: (frame) => sendFrame(socket, frame),
   pass: socket.data.pass,
   connectedAt: now,
   poses: new TokenBucket(posesPerSecond),
@@ -83,11 +83,9 @@ export function sendPoses(to: Iterable<Client>, poses: readonly FreshPose[], cou
     if (own === null) shared ??= encodeFrame(poses, null);
     const frame = own === null ? shared : encodeFrame(poses, own);
     if (!frame || frame.length === 0) continue;
-    if (client.isBusy()) counts.framesDropped += 1;
-    else {
-      client.socket.conn.send(frame);
+    if (client.sendFrame(frame)) {
       counts.framesOut += 1;
       counts.bytesOut += frame.length;
-    }
+    } else counts.framesDropped += 1;
   }
 }

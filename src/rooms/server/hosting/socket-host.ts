@@ -50,7 +50,7 @@ function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<S
  * with the reason 'stopping', and closes rooms and transport.
  */
 export function hostSockets(
-  { io, listen, isBusy, close }: RelayTransport,
+  { io, listen, sendFrame, close }: RelayTransport,
   rooms: RoomRegistry,
   context: RelayContext,
 ): () => Promise<void> {
@@ -60,7 +60,7 @@ export function hostSockets(
 
   io.use(createGate(context));
   io.on('connection', (socket) => {
-    const client = createClient(socket, isBusy, configuration, now());
+    const client = createClient(socket, sendFrame, configuration, now());
     clients.add(client);
     listen(socket, {
       onPose: (bytes) => messages.onPose(client, bytes),

@@ -6,12 +6,12 @@ import { HttpError } from 'threepoint-http/http-error';
 import { parseRequestTarget } from 'threepoint-http/request-target';
 import { errorResponse, sendRawResponse } from 'threepoint-http/response';
 import { handshakeTimeoutMs } from 'threepoint-http/web-server';
-import { WebSocketServer } from 'ws';
+import { WebSocket, WebSocketServer } from 'ws';
 import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
 import { TokenBucket } from '../../room/token-bucket';
 import type { RelayContext } from '../relay-context';
-import { SlowReaders } from './slow-readers';
+import { maxQueuedBytes, SlowReaders } from './slow-readers';
 import { createUpgradeAdmission } from './upgrade-admission';
 
 /** The path of the relay's WebSockets. */
@@ -51,26 +51,31 @@ export function closeConnection(socket: Socket): void {
   destroySoon(raw);
 }
 
-/**
- * Returns a WebSocket server for Engine.IO that counts the frames of each connection. Beyond the limit a connection is
- * read no further, and `onFlood` is called once. `now`: seconds, monotonic.
- */
-const limitedServer = (now: () => number, onFlood: (request: IncomingMessage) => void) =>
+/** Returns a WebSocket server for Engine.IO that passes each new connection to `onOpen` first. */
+const webSocketServer = (onOpen: (websocket: WebSocket, request: IncomingMessage) => void) =>
   class extends WebSocketServer {
     override handleUpgrade(...[request, socket, head, done]: Parameters<WebSocketServer['handleUpgrade']>): void {
       super.handleUpgrade(request, socket, head, (websocket, upgraded) => {
-        const bucket = new TokenBucket(framesPerSecond);
-        const count = () => {
-          if (websocket.isPaused || bucket.take(now())) return;
-          websocket.pause();
-          // Earlier packets are still on their way through socket.io, which takes a tick for each.
-          setImmediate(onFlood, request);
-        };
-        websocket.on('message', count).on('ping', count).on('pong', count);
+        onOpen(websocket, request);
         done(websocket, upgraded);
       });
     }
   };
+
+/**
+ * Counts the frames of a connection. Beyond the limit it is read no further, and `onFlood` is called once. `now`:
+ * seconds, monotonic.
+ */
+function limitFrames(websocket: WebSocket, now: () => number, onFlood: () => void): void {
+  const bucket = new TokenBucket(framesPerSecond);
+  const count = () => {
+    if (websocket.isPaused || bucket.take(now())) return;
+    websocket.pause();
+    // Earlier packets are still on their way through socket.io, which takes a tick for each.
+    setImmediate(onFlood);
+  };
+  websocket.on('message', count).on('ping', count).on('pong', count);
+}
 
 export type RelayTransport = ReturnType<typeof createRelayTransport>;
 
@@ -87,16 +92,13 @@ export function createRelayTransport(context: RelayContext) {
     allowUpgrades: false,
     perMessageDeflate: false,
     maxHttpBufferSize: maxMessageBytes,
-    wsEngine: limitedServer(now, (request) => {
-      const conn = connections.get(request);
-      if (conn) end(conn, 'flood');
-    }),
+    wsEngine: webSocketServer((websocket, request) => void websockets.set(request, websocket)),
     // A page that hangs, or reads nothing, is detected within seven seconds.
     pingInterval: 3000,
     pingTimeout: 4000,
   });
   const { engine } = io;
-  const connections = new WeakMap<IncomingMessage, Socket['conn']>();
+  const websockets = new WeakMap<IncomingMessage, WebSocket>();
   const listeners = new WeakMap<Socket['conn'], WireListener>();
   function end(conn: Socket['conn'], fault: WireFault): void {
     const listener = listeners.get(conn);
@@ -112,10 +114,11 @@ export function createRelayTransport(context: RelayContext) {
   const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
-    connections.set(conn.request, conn);
     slowReaders.watch(conn);
-    conn.on('message', (message: string | Uint8Array) => {
-      if (typeof message === 'string') return;
+    const websocket = websockets.get(conn.request);
+    if (websocket) limitFrames(websocket, now, () => end(conn, 'flood'));
+    websocket?.on('message', (message: Buffer, isBinary) => {
+      if (!isBinary) return;
       const listener = listeners.get(conn);
       if (listener) listener.onPose(message);
       else conn.close();
@@ -130,12 +133,20 @@ export function createRelayTransport(context: RelayContext) {
       return engine.clientsCount;
     },
     /**
-     * Registers the listener for a connection's poses. Binary messages are poses, which Engine.IO reports before
-     * socket.io reads them. A binary message on a connection without a listener closes it.
+     * Registers the listener for a connection's poses. Binary messages are poses, which socket.io's decoder ignores. A
+     * binary message on a connection without a listener closes it.
      */
     listen: (socket: Socket, listener: WireListener): void => void listeners.set(socket.conn, listener),
-    /** Returns whether so much waits on a connection that it should miss poses. */
-    isBusy: ({ conn }: Socket): boolean => slowReaders.isBusy(conn),
+    /**
+     * Sends a frame of poses past the queues of socket.io and Engine.IO, which cost as much as the system call. Returns
+     * whether it was sent: a connection on which bytes wait misses it.
+     */
+    sendFrame({ conn }: Socket, frame: Uint8Array): boolean {
+      const websocket = websockets.get(conn.request);
+      if (websocket?.readyState !== WebSocket.OPEN || websocket.bufferedAmount > maxQueuedBytes) return false;
+      websocket.send(frame);
+      return true;
+    },
     /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
     upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean {
       const target = parseRequestTarget(request.url);

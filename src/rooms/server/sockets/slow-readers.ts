@@ -3,9 +3,8 @@ import type { Socket } from 'socket.io';
 /** A connection is too slow if it accepts no frame for this long [s], or if more packets than this wait. */
 const slowSeconds = 5;
 const maxWaiting = 256;
-/** The most bytes and packets that may wait on a connection that still receives poses: TLS takes a moment to write. */
-const maxQueuedBytes = 4096;
-const maxQueuedPackets = 8;
+/** The most bytes that may wait on a connection that still receives poses: with TLS each write takes a moment. */
+export const maxQueuedBytes = 4096;
 /** Interval of the check [ms]. */
 const slowCheckMs = 1000;
 
@@ -39,12 +38,6 @@ export class SlowReaders {
       reader.waiting = 0;
     });
     conn.once('close', () => this.#readers.delete(conn));
-  }
-
-  /** Returns whether so much waits on a connection that it should miss poses. */
-  isBusy(conn: Socket['conn']): boolean {
-    const waiting = this.#readers.get(conn)?.waiting ?? 0;
-    return waiting >= maxQueuedPackets || conn.request.socket.writableLength > maxQueuedBytes;
   }
 
   stop(): void {
