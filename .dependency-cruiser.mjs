@@ -24,6 +24,21 @@ const packageRules = [...manifests].map(([folder, { name, dependencies = {} }]) 
   };
 });
 
+/** The modules of a package that its exports name: its entries. */
+const entriesOf = (folder, { exports = {} }) =>
+  Object.values(exports).flatMap(({ source }) =>
+    source ? [`${folder}/${source.slice(2)}`.replaceAll('.', '\\.')] : [],
+  );
+
+/** Tests of a package may import its modules, and those of no other package. */
+const entryRules = [...manifests].map(([folder, manifest]) => ({
+  name: `entries-of-${manifest.name}`,
+  comment: `Other packages, and their tests, import ${manifest.name} by the entries that the exports of its package.json name.`,
+  severity: 'error',
+  from: { path: '^(src|server|tests|e2e)/', pathNot: `^(${folder}|(tests|e2e)/${folder.replace('src/', '')})/` },
+  to: { path: `^${folder}/`, pathNot: `^(${entriesOf(folder, manifest).join('|') || '-'})$|\\.css$` },
+}));
+
 /** Returns the rules of a package's rooms: each room and the rooms of the package that it may import. */
 const roomRules = (folder, rooms, to = `^${folder}/`) =>
   Object.entries(rooms).map(([room, known]) => ({
@@ -106,12 +121,14 @@ const activities = 'archery|ball|mocap|studio';
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
 
-const pure = '^src/(threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/';
-const runsInNode = '^src/(http/(?!server-presence)|rooms/server/|study/(server|cli)/)';
+const pure =
+  '^src/((threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/|(rooms/room|study/index)\\.ts$)';
+const runsInNode = '^src/(http/|rooms/server/|study/(server|cli)/)';
 
 export default {
   forbidden: [
     ...packageRules,
+    ...entryRules,
     ...roomRules('src/threepoint/core', coreRooms),
     ...roomRules('src/threepoint', libraryRooms),
     ...roomRules('src/rooms', roomsRooms),
@@ -124,7 +141,7 @@ export default {
       comment: 'A new room of a package needs a line in this file that names the rooms it may import.',
       severity: 'error',
       from: {
-        path: '^src/(threepoint|rooms|study)/',
+        path: '^src/(threepoint|rooms|study)/.*/',
         pathNot: `^src/(threepoint/(${Object.keys(libraryRooms).join('|')})|rooms/(${Object.keys(roomsRooms).join('|')})|study/(${knownStudyRooms.join('|')}|cli))/`,
       },
       to: {},
@@ -148,11 +165,12 @@ export default {
       severity: 'error',
       from: {
         path: '^src/threepoint/api/',
-        pathNot: '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill)\\.ts$',
+        pathNot: '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill|webxr)\\.ts$',
       },
       to: {
         path: '^src/threepoint/(xr|avatar|onnx|api/(three|body-tracker|avatar-source|react|onnx|onnx-worker))',
-        pathNot: '^src/threepoint/onnx/(load-plain-regressor|model-files)\\.ts$',
+        pathNot:
+          '^src/threepoint/(onnx/(load-plain-regressor|model-files)|avatar/file/(avatar-limits|file-hash|limited-download))\\.ts$',
       },
     },
     {

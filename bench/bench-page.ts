@@ -1,7 +1,7 @@
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from '@playwright/test';
-import { serve } from 'threepoint-http/web-server';
 import { createPageHandler } from '../server/page-handler';
+import { serve } from '../src/http/web-server';
 
 /** Folders of built pages: the real one, and the bench's own. */
 export const builtPages = { real: builtIn('dist'), bench: builtIn('.cache/bench') } as const;

@@ -1,7 +1,7 @@
 import { writeFileSync } from 'node:fs';
 import { type Browser, chromium, type Page } from '@playwright/test';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { median } from 'threepoint/core/math/statistics';
+import { reasonOf } from 'threepoint/core';
+import { median } from 'threepoint/math';
 import { findChromium } from '../scripts/chromium.mjs';
 import { printFigures } from '../tests/print-figures';
 import { measureAllocations } from './allocations';

@@ -1,4 +1,4 @@
-import { meanSummary } from 'threepoint-study/statistics/summaries';
+import { meanSummary } from '../src/study/statistics/summaries';
 
 /** How many times as much the first of two costs as the second. */
 export interface PairedRatio {

@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import type { Probe } from 'threepoint-page/shell/probe';
+import type { Probe } from '../src/page/shell/probe';
 
 /** The default step of the page's clock per frame [ms]: a device at 40 Hz. */
 const usualStepMs = 25;

@@ -1,6 +1,6 @@
 // A room client without a page, as a separate process: Playwright's loader does not load what it imports.
 import { createHash } from 'node:crypto';
-import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
+import { createAvatarExchange } from '../src/rooms/client/avatar-exchange';
 import { arrive, until } from '../tests/rooms/server/running-relay';
 
 export interface GuestOrder {

@@ -1,11 +1,11 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { serve } from 'threepoint-http/web-server';
-import type { BallProbe } from 'threepoint-page/ball/match/ball-probe';
-import type { Probe } from 'threepoint-page/shell/probe';
+import type { EstimatorName } from 'threepoint/core';
 import { createPageHandler } from '../server/page-handler';
+import { serve } from '../src/http/web-server';
+import type { BallProbe } from '../src/page/ball/match/ball-probe';
+import type { Probe } from '../src/page/shell/probe';
 import { drawSeldom, screenshot } from './draw-seldom';
 import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';

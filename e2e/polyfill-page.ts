@@ -1,7 +1,7 @@
 // A page that uses WebXR directly, without three.js: it requests WebXR Body Tracking on an emulated headset that lacks
 // it.
 import { metaQuest3, XRDevice } from 'iwer';
-import { installBodyTracking } from 'threepoint/api/polyfill';
+import { installBodyTracking } from 'threepoint/polyfill';
 
 type FrameWithBody = XRFrame & {
   readonly body:

@@ -1,6 +1,6 @@
 import type { Page } from '@playwright/test';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import type { StudyProbe } from 'threepoint-study/participant/study-run';
+import type { StudyRecord } from '../src/study/model/records/study-record';
+import type { StudyProbe } from '../src/study/participant/study-run';
 import { type EmulatedHeadset, emulatedHeadset } from './emulated-headset';
 import { expect, freshTest as pageTest } from './page-fixture';
 import { experimenter, experimenterToken, serveStudies } from './study-server';

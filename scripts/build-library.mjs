@@ -11,9 +11,14 @@ import { sourceResolution } from './source-condition.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-library');
-const entries = ['index', 'motion', 'three', 'react', 'onnx', 'onnx-worker', 'polyfill', 'trackers'];
 /** The manifest of the workspace; the published one omits what only this repository can resolve. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
+/** The source file of each entry, by the name of its built file. */
+const entries = Object.fromEntries(
+  Object.values(own.exports).flatMap(({ source, default: built }) =>
+    source ? [[built.slice(2, -3), join(root, 'src/threepoint', source)]] : [],
+  ),
+);
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
 
 /** Files of the package other than code: path in the package to path in the repository. */
@@ -120,8 +125,6 @@ async function workerCode(module) {
   return Buffer.from(output[0].code);
 }
 
-const sourceOf = (name) => join(root, `src/threepoint/api/${name}.ts`);
-
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
 async function bundle(input, plugins) {
   return rolldown({
@@ -161,7 +164,7 @@ async function writeBundles() {
       handler: (id) => ({ id: `../${basename(id)}`, external: 'absolute' }),
     },
   };
-  for (const name of entries) {
+  for (const name of Object.keys(entries)) {
     const build = await rolldown({
       input: join(out, `${name}.js`),
       platform: 'browser',
@@ -181,7 +184,7 @@ const sourcesFolder = 'src/threepoint';
  * larger file.
  */
 async function writeCode() {
-  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [filesInModules]);
+  const build = await bundle(entries, [filesInModules]);
   await build.write({
     format: 'esm',
     dir: out,
@@ -318,9 +321,9 @@ export const buildLibrary = () =>
 /** The measured entries, by their names in the table of src/threepoint/README.md. */
 async function measureSizes() {
   const sizes = {};
-  for (const name of entries) {
+  for (const [name, source] of Object.entries(entries)) {
     const called = name === 'index' ? own.name : `${own.name}/${name}`;
-    sizes[`\`${called}\``] = await weigh(sourceOf(name));
+    sizes[`\`${called}\``] = await weigh(source);
   }
   const weights = readFileSync(join(out, 'models/learned.bin'));
   sizes["the learned network's weights"] = { min: weights.length, brotli: brotliCompressSync(weights).length };

@@ -9,8 +9,11 @@ import { sourceResolution } from './source-condition.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-rooms');
-/** The entries and their folders, by the platform that they are for. */
-const entries = { browser: { index: 'peers', three: 'drawing', react: 'react' }, node: { server: 'server' } };
+/** The entries and their modules, by the platform that they are for. */
+const entries = {
+  browser: { index: 'index', room: 'room', socket: 'socket', three: 'drawing/index', react: 'react/index' },
+  node: { server: 'server/index' },
+};
 const own = JSON.parse(readFileSync(join(root, 'src/rooms/package.json'), 'utf8'));
 
 /** The documents of the package: path in the package to path in the repository. */
@@ -26,10 +29,10 @@ const external = (id) =>
   id === 'threepoint/three' ||
   imported.some((name) => id === name || id.startsWith(`${name}/`));
 
-async function writeCode(platform, folders) {
+async function writeCode(platform, modules) {
   const build = await rolldown({
     input: Object.fromEntries(
-      Object.entries(folders).map(([name, folder]) => [name, join(root, `src/rooms/${folder}/index.ts`)]),
+      Object.entries(modules).map(([name, module]) => [name, join(root, `src/rooms/${module}.ts`)]),
     ),
     cwd: root,
     platform,
@@ -65,7 +68,7 @@ export const buildRooms = () =>
   buildPackage('dist-rooms', async () => {
     rmSync(out, { recursive: true, force: true });
     mkdirSync(out);
-    for (const [platform, folders] of Object.entries(entries)) await writeCode(platform, folders);
+    for (const [platform, modules] of Object.entries(entries)) await writeCode(platform, modules);
     await writeTypes();
     copyFileSync(join(root, documents.LICENSE), join(out, 'LICENSE'));
     const readme = readFileSync(join(root, documents['README.md']), 'utf8');

@@ -3,7 +3,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { hostname } from 'node:os';
 import { join } from 'node:path';
 import { generate } from 'selfsigned';
-import type { Credentials } from 'threepoint-http/web-server';
+import type { Credentials } from 'threepoint-http';
 
 const day = 24 * 3600 * 1000;
 

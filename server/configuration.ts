@@ -1,6 +1,5 @@
 import { parseArgs } from 'node:util';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { secretWeakness } from 'threepoint-http/secret-strength';
+import { ConfigurationError, secretWeakness } from 'threepoint-http';
 
 /** The settings of this process, from the command line and the environment. */
 export interface Configuration {

@@ -1,9 +1,8 @@
 import { resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server/settings/relay-configuration';
-import { loadOrCreateSecret } from 'threepoint-rooms/server/settings/stored-secret';
-import { loadStudyPlugins } from 'threepoint-study/server/plugins/load-plugins';
+import { ConfigurationError } from 'threepoint-http';
+import { relayConfigurationFrom, relayEnvironment, loadOrCreateSecret } from 'threepoint-rooms/server';
+import { loadStudyPlugins } from 'threepoint-study/server';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';

@@ -2,9 +2,14 @@ import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import type { IncomingMessage, RequestListener } from 'node:http';
 import { extname, join } from 'node:path';
-import { parseRequestTarget } from 'threepoint-http/request-target';
-import { type HttpResponse, sendResponse, textResponse } from 'threepoint-http/response';
-import { contentSecurityPolicy, permissionsPolicy } from 'threepoint-http/security-headers';
+import {
+  contentSecurityPolicy,
+  type HttpResponse,
+  parseRequestTarget,
+  permissionsPolicy,
+  sendResponse,
+  textResponse,
+} from 'threepoint-http';
 
 const contentTypes: Readonly<Record<string, string>> = {
   '.html': 'text/html; charset=utf-8',

@@ -1,7 +1,6 @@
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { ballRoomKind } from 'threepoint-games/ball/ball-room-kind';
-import type { RoomKinds } from 'threepoint-rooms/room/room-kind';
-import { type Environment, numberFrom } from 'threepoint-rooms/server/settings/environment';
+import { ballKind, ballRoomKind } from 'threepoint-games/ball';
+import type { RoomKinds } from 'threepoint-rooms/room';
+import { type Environment, numberFrom } from 'threepoint-rooms/server';
 
 /** Returns the games of this project. Throws a ConfigurationError. */
 export const shippedRoomKinds = (environment: Environment): RoomKinds =>

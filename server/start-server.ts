@@ -1,12 +1,7 @@
-import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { createRouter } from 'threepoint-http/router';
-import { createSitePolicy } from 'threepoint-http/site-policy';
-import { readSoftwareVersion } from 'threepoint-http/software-version';
-import { type Credentials, prepareServer } from 'threepoint-http/web-server';
-import type { RoomKinds } from 'threepoint-rooms/room/room-kind';
-import { attachRooms } from 'threepoint-rooms/server/attach-rooms';
-import type { RelayConfiguration } from 'threepoint-rooms/server/settings/relay-configuration';
-import { openStudyService } from 'threepoint-study/server/service';
+import { ConnectionLimiter, createRouter, createSitePolicy, readSoftwareVersion, type Credentials, prepareServer } from 'threepoint-http';
+import type { RoomKinds } from 'threepoint-rooms/room';
+import { attachRooms, type RelayConfiguration } from 'threepoint-rooms/server';
+import { openStudyService } from 'threepoint-study/server';
 import { createPageHandler } from './page-handler';
 
 export interface StartOptions {

@@ -1,7 +1,6 @@
 import { parentPort } from 'node:worker_threads';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
-import { loadStudyPlugins } from 'threepoint-study/server/plugins/load-plugins';
-import { serveStudies } from 'threepoint-study/server/thread';
+import { RoomTokens } from 'threepoint-rooms/server';
+import { loadStudyPlugins, serveStudies } from 'threepoint-study/server';
 
 // The thread of the studies: its seats are signed by the tokens that the rooms of this server accept.
 

@@ -1,13 +1,16 @@
-import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createJointPoses, forwardKinematics, type JointPoses } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { copyQuat, type MutableQuat, quat, slerp } from 'threepoint/core/math/quat';
-import { copyVec3, lerp, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
-import { recordOf } from 'threepoint/core/records';
-import { PoseSender, type PoseSource } from 'threepoint-rooms/peers/pose-sender';
-import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
+import {
+  createJointPoses,
+  defaultCalibration,
+  forwardKinematics,
+  type JointPoses,
+  jointNames,
+  recordOf,
+  skeletonFromCalibration,
+  type UpperBodyPose,
+} from 'threepoint/core';
+import { copyQuat, copyVec3, lerp, type MutableQuat, type MutableVec3, quat, slerp, vec3 } from 'threepoint/math';
+import { PoseSender, type PoseSource } from '../../src/rooms/peers/pose-sender';
+import { RemotePoses } from '../../src/rooms/peers/remote-poses';
 
 /** What one page draws of another, and by which time of the sender [ms]; null: nothing yet. */
 export interface Drawn {

@@ -2,14 +2,10 @@
 // which they are sent. One motion at 30 packets a second goes over the same simulated network in all formats.
 
 import { writeFileSync } from 'node:fs';
-import { BodySolver } from 'threepoint/api/body-solver';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createRandom } from 'threepoint/core/math/random';
-import { mean, median, quantile } from 'threepoint/core/math/statistics';
-import { distance, lerp, type Vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { BodySolver } from 'threepoint';
+import { actorFrame, defaultCalibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { createRandom, distance, lerp, median, type Vec3 } from 'threepoint/math';
+import { mean, quantile } from '../../src/threepoint/core/math/statistics';
 import { type BodyFormat, formats } from './formats';
 
 const displayMs = 1000 / 72;

@@ -1,6 +1,6 @@
 // npm run check:headset -- FILE …: validates the files of headset checks and prints their figures.
-import { ValidationError } from 'threepoint/core/validation/validation';
-import { reportSections } from 'threepoint-page/check/report-sections';
+import { ValidationError } from 'threepoint/core';
+import { reportSections } from '../../src/page/check/report-sections';
 import { readCheckFile } from './checked-headset';
 
 for (const file of process.argv.slice(2)) {

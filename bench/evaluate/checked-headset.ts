@@ -1,7 +1,7 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename } from 'node:path';
-import { ValidationError } from 'threepoint/core/validation/validation';
-import { type HeadsetReport, readHeadsetReport } from 'threepoint-page/check/headset-report';
+import { ValidationError } from 'threepoint/core';
+import { type HeadsetReport, readHeadsetReport } from '../../src/page/check/headset-report';
 import { type DeviceTracking, type LossQuantile, type TrackerNoise, usualTracking } from './disturbances';
 
 /** Fewer losses than this say little about their lengths. */

@@ -1,11 +1,21 @@
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply, rotate, slerp } from 'threepoint/core/math/quat';
-import { createNormalRandom, createRandom } from 'threepoint/core/math/random';
-import type { Side } from 'threepoint/core/math/side';
-import { add, length, lerp, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { trackers as simulated } from 'threepoint/core/mocap/mocap-rules.json';
-import { recordOf } from 'threepoint/core/records';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { recordOf, type TrackingFrame } from 'threepoint/core';
+import {
+  add,
+  createNormalRandom,
+  createRandom,
+  fromAxisAngle,
+  length,
+  lerp,
+  multiply,
+  normalise,
+  rotate,
+  type Side,
+  slerp,
+  type TrackedPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { trackers as simulated } from '../../src/threepoint/core/mocap/mocap-rules.json';
 import { rateHz as handTrackingHz, quantiles } from './hand-tracking-losses.json';
 import type { MeasuredFrame } from './measures';
 import { type RecordedFrame, truthJoints } from './recordings';

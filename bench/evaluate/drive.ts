@@ -1,12 +1,14 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimators';
-import { copyJoints, type JointPositions } from 'threepoint/core/estimation/joint-positions';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import {
+  type Calibration,
+  type EstimatorName,
+  forwardKinematics,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { Vec3 } from 'threepoint/math';
+import { createIk, createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
+import { copyJoints, type JointPositions } from '../../src/threepoint/core/estimation/joint-positions';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import type { MeasuredFrame } from './measures';
 import type { RecordedFrame } from './recordings';
 

@@ -1,18 +1,6 @@
-import { mean } from 'threepoint/core/math/statistics';
-import {
-  add,
-  cross,
-  distance,
-  dot,
-  length,
-  normalise,
-  scale,
-  subtract,
-  up,
-  type Vec3,
-  vec3,
-} from 'threepoint/core/math/vec3';
-import { recordOf } from 'threepoint/core/records';
+import { recordOf } from 'threepoint/core';
+import { add, cross, distance, dot, length, normalise, scale, subtract, up, type Vec3, vec3 } from 'threepoint/math';
+import { mean } from '../../src/threepoint/core/math/statistics';
 import { type MeasuredMethod, measuredMethods } from './drive';
 import { type MeasuredFrame, rounded } from './measures';
 import { type TruthJoint, truthJoints } from './recordings';

@@ -1,5 +1,5 @@
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { distance } from 'threepoint/core/math/vec3';
+import { estimatedJoints } from 'threepoint/core';
+import { distance } from 'threepoint/math';
 import { aftermathSeconds, type Loss } from './disturbances';
 import { type MeasuredFrame, rounded } from './measures';
 

@@ -1,7 +1,6 @@
 import { writeFileSync } from 'node:fs';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
-import { recordOf } from 'threepoint/core/records';
+import { reasonOf, recordOf } from 'threepoint/core';
+import { doubtOfErrors } from 'threepoint/motion';
 import { readCheckFile, trackingOf } from './checked-headset';
 import { type DeviceTracking, usualTracking } from './disturbances';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';

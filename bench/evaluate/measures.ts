@@ -1,9 +1,7 @@
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
-import { sides } from 'threepoint/core/math/side';
-import { mean } from 'threepoint/core/math/statistics';
-import { cross, distance, dot, normalise, reject, subtract, type Vec3 } from 'threepoint/core/math/vec3';
-import { recordOf } from 'threepoint/core/records';
+import { estimatedJoints, recordOf } from 'threepoint/core';
+import { cross, distance, dot, normalise, reject, sides, subtract, type Vec3 } from 'threepoint/math';
+import type { JointPositions } from '../../src/threepoint/core/estimation/joint-positions';
+import { mean } from '../../src/threepoint/core/math/statistics';
 import type { TruthJoint } from './recordings';
 
 /** Names of the six joints in every report. */

@@ -1,9 +1,9 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { needsRegressor } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { startRegressor } from 'threepoint/onnx/load-regressor';
-import { parseContract } from 'threepoint/onnx/model-contract';
+import { needsRegressor } from '../../src/threepoint/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { startRegressor } from '../../src/threepoint/onnx/load-regressor';
+import { parseContract } from '../../src/threepoint/onnx/model-contract';
 import { type MeasuredMethod, measuredMethods } from './drive';
 
 /** The networks of a folder with their contracts, started. */

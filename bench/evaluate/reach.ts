@@ -1,7 +1,5 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { sides } from 'threepoint/core/math/side';
-import { distance, length } from 'threepoint/core/math/vec3';
+import { type Calibration, skeletonFromCalibration } from 'threepoint/core';
+import { distance, length, sides } from 'threepoint/math';
 import { rounded } from './measures';
 import type { RecordedFrame } from './recordings';
 

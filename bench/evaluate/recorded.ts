@@ -1,12 +1,9 @@
 // npm run evaluate -- --recording FILE: every method against the body that the recording's device reported.
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename } from 'node:path';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { recordOf } from 'threepoint/core/records';
-import { deviceJoint } from 'threepoint/core/tracking/device-body';
-import { parseRecording, type Recording } from 'threepoint/core/tracking/recording';
+import { deviceJoint, parseRecording, type Recording, reasonOf, recordOf } from 'threepoint/core';
+import { vec3 } from 'threepoint/math';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addClip, emptyMeasures, type Report, report } from './measures';
 import { loadRegressors } from './networks';

@@ -1,11 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import type { Quat } from 'threepoint/core/math/quat';
-import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { type Calibration, estimatedJoints, type TrackingFrame } from 'threepoint/core';
+import { type Quat, type TrackedPose, type Vec3, vec3 } from 'threepoint/math';
 import * as v from 'valibot';
 
 const tilt = v.optional(v.object({ pitch: v.number(), yaw: v.number() }));

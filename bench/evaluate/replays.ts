@@ -4,11 +4,8 @@
 // dmarcos/aframe-motion-capture-components examples.
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
-import { backward, distance, right, up, type Vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { reasonOf, type TrackingFrame } from 'threepoint/core';
+import { backward, distance, fromAxisAngle, multiply, right, type TrackedPose, up, type Vec3 } from 'threepoint/math';
 import { createDriver, measuredMethods } from './drive';
 import { loadRegressors } from './networks';
 

@@ -1,9 +1,17 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { identity, type Quat } from 'threepoint/core/math/quat';
-import { createNormalRandom } from 'threepoint/core/math/random';
-import { add, dot, length, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Calibration, TrackingFrame } from 'threepoint/core';
+import {
+  add,
+  createNormalRandom,
+  dot,
+  identity,
+  length,
+  type Quat,
+  scale,
+  subtract,
+  type TrackedPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { addNoise, simulatedNoise, type TrackingNoise } from './disturbances';
 import type { Driver } from './drive';
 

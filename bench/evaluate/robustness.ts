@@ -1,7 +1,6 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { nextRandom } from 'threepoint/core/math/random';
-import { vec3 } from 'threepoint/core/math/vec3';
+import type { Calibration } from 'threepoint/core';
+import { nextRandom, vec3 } from 'threepoint/math';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import {
   type DeviceTracking,
   type LossLength,

@@ -1,15 +1,18 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
+import type { Calibration, TrackingFrame } from 'threepoint/core';
 import {
+  createRandom,
+  fromAxisAngle,
   invertTransform,
+  multiply,
+  right,
   type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
-} from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
-import { createRandom } from 'threepoint/core/math/random';
-import { right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import {
   type Loss,
   lasting,

@@ -1,9 +1,6 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { angleBetween } from 'threepoint/core/math/quat';
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { recordOf } from 'threepoint/core/records';
+import { type Calibration, estimatedJoints, recordOf } from 'threepoint/core';
+import { angleBetween, distance, type Vec3 } from 'threepoint/math';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { createDriver, type MeasuredMethod } from './drive';
 import { thirdDifference } from './measures';
 import type { RecordedFrame } from './recordings';

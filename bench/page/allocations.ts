@@ -1,8 +1,6 @@
-import { Mirror } from 'threepoint/avatar/mirror';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
+import { actorFrame, createEstimator, defaultCalibration } from 'threepoint/core';
+import { Mirror } from 'threepoint/three';
+import { TrackedSession } from 'threepoint/webxr';
 import { Court } from './court';
 import { reportOutcome } from './outcome';
 import { createSenders } from './senders';

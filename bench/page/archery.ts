@@ -1,7 +1,6 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
-import { createArcheryView } from 'threepoint-page/archery/archery-view';
+import { defaultCalibration, type EstimatorName, estimatorNames } from 'threepoint/core';
+import { ArcheryPlay } from '../../src/page/archery/archery-play';
+import { createArcheryView } from '../../src/page/archery/archery-view';
 import { type FrameTimes, frameTimes, timeFrame } from './frame-times';
 import type { BenchStage } from './stage';
 

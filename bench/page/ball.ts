@@ -1,8 +1,5 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { quantile } from 'threepoint/core/math/statistics';
-import { recordOf } from 'threepoint/core/records';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { actorFrame, defaultCalibration, type EstimatorName, estimatorNames, recordOf } from 'threepoint/core';
+import { quantile } from '../../src/threepoint/core/math/statistics';
 import { Court } from './court';
 import { type FrameTimes, frameTimes, timeFrame } from './frame-times';
 import { createSenders } from './senders';

@@ -9,9 +9,8 @@ import {
   Uint16BufferAttribute,
 } from 'three';
 import { CCDIKSolver } from 'three/addons/animation/CCDIKSolver.js';
-import { parentOf } from 'threepoint/core/body/joints';
-import type { Skeleton as Body } from 'threepoint/core/body/skeleton';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Skeleton as Body, TrackingFrame } from 'threepoint/core';
+import { parentOf } from '../../src/threepoint/core/body/joints';
 
 const chains = [
   { effector: 'head', links: ['neck', 'upperChest', 'chest', 'spine'], target: 'headTarget' },

@@ -1,21 +1,29 @@
-import { createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { RemoteAvatars, type SeenPerson } from 'threepoint/avatar/remote-avatars';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { composeTransforms, invertTransform, type TrackedPose, type Transform } from 'threepoint/core/math/pose';
-import { fromAxisAngle } from 'threepoint/core/math/quat';
-import { up, vec3 } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { BallView } from 'threepoint-page/ball/ball-view';
-import type { Quality } from 'threepoint-page/scene/renderer';
-import type { Studio } from 'threepoint-page/studio/studio';
-import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { decodePose } from 'threepoint-rooms/protocol/pose-codec';
+import {
+  defaultAvatar,
+  defaultCalibration,
+  type Mutable,
+  type Skeleton,
+  skeletonFromCalibration,
+  unknownFingers,
+} from 'threepoint/core';
+import {
+  composeTransforms,
+  fromAxisAngle,
+  invertTransform,
+  type TrackedPose,
+  type Transform,
+  up,
+  vec3,
+} from 'threepoint/math';
+import { createAvatarBetweenFrames, parseAvatar, RemoteAvatars } from 'threepoint/three';
+import { ballRules } from 'threepoint-games/ball';
+import { BallView } from '../../src/page/ball/ball-view';
+import type { Quality } from '../../src/page/scene/renderer';
+import type { Studio } from '../../src/page/studio/studio';
+import { RemotePlayers } from '../../src/rooms/client/remote-players';
+import { packetMs } from '../../src/rooms/protocol/packet-time';
+import { decodePose } from '../../src/rooms/protocol/pose-codec';
+import type { SeenPerson } from '../../src/threepoint/avatar/remote-avatars';
 
 /** What arrived of one seat. */
 export interface ArrivedBytes {

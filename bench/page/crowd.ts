@@ -1,6 +1,6 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { mean, median } from 'threepoint/core/math/statistics';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { actorFrame, defaultCalibration } from 'threepoint/core';
+import { median } from 'threepoint/math';
+import { mean } from '../../src/threepoint/core/math/statistics';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { createSenders } from './senders';

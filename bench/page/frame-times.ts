@@ -1,5 +1,6 @@
 import type { WebGLRenderer } from 'three';
-import { mean, median, quantile } from 'threepoint/core/math/statistics';
+import { median } from 'threepoint/math';
+import { mean, quantile } from '../../src/threepoint/core/math/statistics';
 
 /** Resolves in the next animation frame. */
 export const nextFrame = (): Promise<number> => new Promise((resolve) => requestAnimationFrame(resolve));

@@ -1,16 +1,19 @@
-import { Body } from 'threepoint/api/body';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { nextRandom } from 'threepoint/core/math/random';
-import { quantile } from 'threepoint/core/math/statistics';
-import { recordOf } from 'threepoint/core/records';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { parseContract, tensorsOf } from 'threepoint/onnx/model-contract';
-import { createSession } from 'threepoint/onnx/session';
-import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
-import { FrameTiming, stageNames } from 'threepoint-page/shell/frame-timing';
+import { Body } from 'threepoint';
+import {
+  type AvatarPose,
+  actorFrame,
+  defaultCalibration,
+  type EstimatorName,
+  estimatorNames,
+  recordOf,
+  skeletonFromCalibration,
+} from 'threepoint/core';
+import { nextRandom } from 'threepoint/math';
+import { createFrameLoop } from '../../src/page/shell/frame/frame-loop';
+import { FrameTiming, stageNames } from '../../src/page/shell/frame-timing';
+import { quantile } from '../../src/threepoint/core/math/statistics';
+import { parseContract, tensorsOf } from '../../src/threepoint/onnx/model-contract';
+import { createSession } from '../../src/threepoint/onnx/session';
 import { measureArchery } from './archery';
 import { measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';

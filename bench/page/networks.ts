@@ -1,11 +1,10 @@
 // The learned estimator alone, by one way to run its network (?way=…): what a page without graphics pays for it.
 
-import { createAfterFrame } from 'threepoint/api/after-frame';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createWithNetwork } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { quantile } from 'threepoint/core/math/statistics';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import { actorFrame, defaultCalibration } from 'threepoint/core';
+import { createAfterFrame } from '../../src/threepoint/api/after-frame';
+import { createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { quantile } from '../../src/threepoint/core/math/statistics';
 import type { NetworkCost, NetworkWay } from '../networks';
 import { reportOutcome } from './outcome';
 
@@ -16,12 +15,12 @@ const warmUp = 300;
 async function load(way: NetworkWay): Promise<PoseRegressor> {
   const contractUrl = '/models/learned.json';
   if (way === 'plain') {
-    const { loadPlainRegressor } = await import('threepoint/onnx/load-plain-regressor');
+    const { loadPlainRegressor } = await import('../../src/threepoint/onnx/load-plain-regressor');
     return loadPlainRegressor(contractUrl);
   }
   const [{ loadRegressor }, { createInferenceWorker }] = await Promise.all([
-    import('threepoint/onnx/load-regressor'),
-    import('threepoint/onnx/create-inference-worker'),
+    import('../../src/threepoint/onnx/load-regressor'),
+    import('../../src/threepoint/onnx/create-inference-worker'),
   ]);
   return loadRegressor(
     contractUrl,

@@ -1,4 +1,4 @@
-import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
+import { installTrustedTypesPolicy } from 'threepoint-ui';
 
 declare global {
   interface Window {

@@ -1,10 +1,7 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { relaxedHand } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { actorFrame, createEstimator, defaultCalibration, skeletonFromCalibration } from 'threepoint/core';
+import { packetMs } from '../../src/rooms/protocol/packet-time';
+import { encodePose } from '../../src/rooms/protocol/pose-codec';
+import { relaxedHand } from '../../src/threepoint/core/body/hand-shape';
 
 /** What others send: the actor's performance, each at another place of it, as packets. */
 export function createSenders(count: number) {

@@ -1,16 +1,13 @@
 import { PerspectiveCamera, type Scene } from 'three';
-import { createAvatar } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { Mirror } from 'threepoint/avatar/mirror';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator, type NetworkName, needsRegressor } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { recordOf } from 'threepoint/core/records';
-import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
-import { loadRegressor } from 'threepoint/onnx/load-regressor';
-import { createRenderer } from 'threepoint-page/scene/renderer';
-import { createStudio } from 'threepoint-page/studio/studio';
+import { createEstimator, defaultCalibration, type EstimatorName, estimatorNames, recordOf } from 'threepoint/core';
+import { createInferenceWorker } from 'threepoint/onnx';
+import { Mirror, parseAvatar } from 'threepoint/three';
+import { createRenderer } from '../../src/page/scene/renderer';
+import { createStudio } from '../../src/page/studio/studio';
+import { createAvatar } from '../../src/threepoint/avatar/avatar';
+import { type NetworkName, needsRegressor } from '../../src/threepoint/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { loadRegressor } from '../../src/threepoint/onnx/load-regressor';
 
 /** The studio in the page's canvas, as small as software rendering needs it. */
 export function openStudio() {

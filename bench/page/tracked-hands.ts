@@ -1,17 +1,18 @@
-import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from 'threepoint/core/body/hand-geometry';
+import { type FingerName, lerpHandShape, makeHandShape, type TrackingFrame } from 'threepoint/core';
 import {
-  closedHand,
-  type FingerName,
-  fingerNames,
-  lerpHandShape,
-  makeHandShape,
-  relaxedHand,
-} from 'threepoint/core/body/hand-shape';
-import { type Pose, transformPoint } from 'threepoint/core/math/pose';
-import { type Quat, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { backward, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+  backward,
+  type Pose,
+  type Quat,
+  right,
+  rotate,
+  type Side,
+  transformPoint,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from '../../src/threepoint/core/body/hand-geometry';
+import { closedHand, fingerNames, relaxedHand } from '../../src/threepoint/core/body/hand-shape';
 
 const ends = ['proximal', 'intermediate', 'distal'];
 const joints: readonly { readonly name: string; readonly finger: FingerName; readonly joint: number }[] =

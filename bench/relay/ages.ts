@@ -1,20 +1,29 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { clamp } from 'threepoint/core/math/damper';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { createNormalRandom, createRandom } from 'threepoint/core/math/random';
-import { median, quantile } from 'threepoint/core/math/statistics';
-import { distance, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
-import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
+import {
+  type AvatarPose,
+  actorFrame,
+  defaultCalibration,
+  forwardKinematics,
+  skeletonFromCalibration,
+  type TrackingFrame,
+  unknownFingers,
+} from 'threepoint/core';
+import {
+  clamp,
+  createNormalRandom,
+  createRandom,
+  distance,
+  lerp,
+  median,
+  type TrackedPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { RemotePlayers } from '../../src/rooms/client/remote-players';
+import { packetMs } from '../../src/rooms/protocol/packet-time';
+import { decodePose, encodePose } from '../../src/rooms/protocol/pose-codec';
+import type { PosePacket } from '../../src/rooms/protocol/pose-packet';
+import { createIk } from '../../src/threepoint/core/estimation/estimators';
+import { quantile } from '../../src/threepoint/core/math/statistics';
 import { thirdDifference } from '../evaluate/measures';
 
 /** A way from one page over the relay to another. */

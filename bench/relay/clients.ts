@@ -1,19 +1,16 @@
 // The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is
 // what is measured.
 
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { relaxedHand } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { actorFrame, defaultAvatar, defaultCalibration, skeletonFromCalibration } from 'threepoint/core';
+import { ballKind } from 'threepoint-games/ball';
+import { RoomTokens } from 'threepoint-rooms/server';
 import { WebSocket } from 'ws';
+import { protocolVersion } from '../../src/rooms/protocol/messages';
+import { packetMs } from '../../src/rooms/protocol/packet-time';
+import { encodePose } from '../../src/rooms/protocol/pose-codec';
+import { decodeFrame } from '../../src/rooms/protocol/pose-frame';
+import { relaxedHand } from '../../src/threepoint/core/body/hand-shape';
+import { createIk } from '../../src/threepoint/core/estimation/estimators';
 import { countingKind } from '../../tests/rooms/room/counting-game';
 import type { ClientAnswer, Farewell, Load, Meeting, PoseLatencies } from './conversation';
 

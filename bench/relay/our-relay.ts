@@ -1,11 +1,10 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
-import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { createRouter, noPage } from 'threepoint-http/router';
-import { serve } from 'threepoint-http/web-server';
-import { maxSeats } from 'threepoint-rooms/protocol/messages';
-import type { RoomKind } from 'threepoint-rooms/room/room-kind';
-import { createRelay } from 'threepoint-rooms/server/relay';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
+import { serve } from '../../src/http/web-server';
+import { maxSeats } from '../../src/rooms/protocol/messages';
+import type { RoomKind } from 'threepoint-rooms/room';
+import { createRelay } from '../../src/rooms/server/relay';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { countingKind, countingRoomKind } from '../../tests/rooms/room/counting-game';
 import { answerAsRelay } from './conversation';

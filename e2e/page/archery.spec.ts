@@ -1,4 +1,4 @@
-import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import { driveTime, holdAt } from '../driven-time';
 import type { EmulatedHeadset, Rotation } from '../emulated-headset';
 import { emulatedHeadset, frames } from '../emulated-headset';

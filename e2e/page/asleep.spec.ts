@@ -1,5 +1,5 @@
 import { chromium, type Page } from '@playwright/test';
-import type { BallProbe } from 'threepoint-page/ball/match/ball-probe';
+import type { BallProbe } from '../../src/page/ball/match/ball-probe';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { processesOf } from '../browser-processes';
 import { drawSeldom } from '../draw-seldom';

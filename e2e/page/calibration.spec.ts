@@ -1,4 +1,4 @@
-import { armSpanFromFingertipSpan } from 'threepoint/core/body/calibration';
+import { armSpanFromFingertipSpan } from 'threepoint/core';
 import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, test } from '../page-fixture';
 
 const withHeadset = 'emulate&actor=off&quality=low';

@@ -1,6 +1,6 @@
 import { fileURLToPath } from 'node:url';
-import { serve } from 'threepoint-http/web-server';
 import { createPageHandler } from '../../server/page-handler';
+import { serve } from '../../src/http/web-server';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { drawEveryFrame } from '../draw-seldom';
 import { emulatedHeadset, frames } from '../emulated-headset';

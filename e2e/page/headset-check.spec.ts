@@ -2,7 +2,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
-import { readHeadsetReport } from 'threepoint-page/check/headset-report';
+import { readHeadsetReport } from '../../src/page/check/headset-report';
 import { driveTime, endDrivenTime, pass } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { expect, keepPicture, freshTest as test } from '../page-fixture';

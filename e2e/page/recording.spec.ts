@@ -1,7 +1,7 @@
 import type { Page } from '@playwright/test';
 import { validateBytes } from 'gltf-validator';
-import { readBvh } from 'threepoint/core/motion/read-bvh';
-import { finishWork } from 'threepoint/core/motion/work';
+import { readBvh } from '../../src/threepoint/core/motion/read-bvh';
+import { finishWork } from '../../src/threepoint/core/motion/work';
 import { expect, joint, open, probe, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
 

@@ -1,6 +1,6 @@
 import AxeBuilder from '@axe-core/playwright';
 import { devices, type Page } from '@playwright/test';
-import type { ArcheryProbe } from 'threepoint-page/archery/archery-play';
+import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, endDrivenTime } from '../driven-time';
 import { collectErrors, expect, keepPicture, overlap, probe, freshTest as test } from '../page-fixture';

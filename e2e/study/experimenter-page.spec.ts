@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
-import { parsePlan } from 'threepoint-study/model/plan/plan';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { parsePlan } from '../../src/study/model/plan/plan';
+import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { expect } from '../page-fixture';
 import { openStudy, signIn, test } from '../study-participant';
 import { experimenter } from '../study-server';

@@ -1,6 +1,6 @@
 import type { Page } from '@playwright/test';
-import { parsePlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
+import { parsePlan, type StudyPlan } from '../../src/study/model/plan/plan';
+import { scheduleFor } from '../../src/study/model/plan/schedule';
 import type { Point } from '../emulated-headset';
 import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
 import { calibrate, consentAndFillIn, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import type { Locator, Page } from '@playwright/test';
-import { english } from 'threepoint-study/model/phrases/english';
+import { english } from '../../src/study/model/phrases/english';
 import { expect, keepPicture } from '../page-fixture';
 import { test } from '../study-participant';
 import { experimenter } from '../study-server';

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
-import { parsePlan } from 'threepoint-study/model/plan/plan';
+import { parsePlan } from '../../src/study/model/plan/plan';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,

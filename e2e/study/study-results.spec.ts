@@ -1,10 +1,10 @@
 import { readFileSync } from 'node:fs';
 import { strFromU8, unzipSync } from 'fflate';
-import { cohortsByParticipant } from 'threepoint-study/model/plan/allocation';
-import { checkedPlan } from 'threepoint-study/model/plan/plan';
-import { answerModelWith } from 'threepoint-study/simulation/answer-model';
-import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
-import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { cohortsByParticipant } from '../../src/study/model/plan/allocation';
+import { checkedPlan } from '../../src/study/model/plan/plan';
+import { answerModelWith } from '../../src/study/simulation/answer-model';
+import { statedPerformanceModel } from '../../src/study/simulation/performance-model';
+import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { expect, keepPicture } from '../page-fixture';
 import { openResults, test } from '../study-participant';
 import { experimenter } from '../study-server';

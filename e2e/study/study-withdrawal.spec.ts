@@ -1,5 +1,5 @@
 import type { Page } from '@playwright/test';
-import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
+import type { ParticipantState } from '../../src/study/model/progress/study-api';
 import { expect, keepPicture } from '../page-fixture';
 import { recordsOf, test } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';

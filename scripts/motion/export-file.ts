@@ -1,21 +1,24 @@
 import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
-import { type MotionFormat, type MotionWriter, motionFormats } from 'threepoint/api/motion-file';
-import type { WorkOptions } from 'threepoint/api/run-work';
-import { writeMotionFile } from 'threepoint/api/write-motion-file';
-import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { NetworkName } from 'threepoint/core/estimation/estimators';
-import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { type EstimatorName, estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
-import { parseRecording, type Replayable } from 'threepoint/core/tracking/recording';
-import { startRegressor } from 'threepoint/onnx/load-regressor';
-import { parseContract } from 'threepoint/onnx/model-contract';
+import { type EstimatorName, estimatorNames, parseRecording, type Replayable, reasonOf } from 'threepoint/core';
+import {
+  type MocapSource,
+  type MotionFormat,
+  type MotionWriter,
+  motionFormats,
+  prepareMocap,
+  type WorkOptions,
+} from 'threepoint/motion';
+import { isGltfMotion, readGltfMotion } from 'threepoint/three';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
+import { writeMotionFile } from '../../src/threepoint/api/write-motion-file';
+import { createAvatarMotionWriter } from '../../src/threepoint/avatar/avatar-motion-writer';
+import type { NetworkName } from '../../src/threepoint/core/estimation/estimators';
+import { createPlainRegressor } from '../../src/threepoint/core/estimation/networks/learned-network';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { finishWork } from '../../src/threepoint/core/motion/work';
+import { startRegressor } from '../../src/threepoint/onnx/load-regressor';
+import { parseContract } from '../../src/threepoint/onnx/model-contract';
 
 /** The options of the command line, with absolute paths. */
 export interface MotionRequest {

@@ -1,5 +1,5 @@
-import type { WorkProgress } from 'threepoint/api/run-work';
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
+import type { WorkProgress } from 'threepoint/motion';
 import { exportFile, type MotionRequest } from './export-file';
 
 const givenUp = new AbortController();

@@ -3,11 +3,12 @@
 // request.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { type MocapSource, readTruthMotion } from 'threepoint/core/mocap/prepare-mocap';
-import { readSkeletonMap } from 'threepoint/core/mocap/read-skeleton-map';
-import { finishWork } from 'threepoint/core/motion/work';
+import { reasonOf } from 'threepoint/core';
+import type { MocapSource } from 'threepoint/motion';
+import { isGltfMotion, readGltfMotion } from 'threepoint/three';
+import { readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
+import { readSkeletonMap } from '../../src/threepoint/core/mocap/read-skeleton-map';
+import { finishWork } from '../../src/threepoint/core/motion/work';
 
 /** A file of motion; `asf`: the skeleton of an AMC file; `rateHz`: its frame rate if a table beside it states one. */
 interface MotionPath {

@@ -1,4 +1,4 @@
-import { addScaled, type MutableVec3, normalise, setVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { addScaled, type MutableVec3, normalise, setVec3, subtract, type Vec3, vec3 } from 'threepoint/math';
 
 /** Gravity, downward [m/s²]; there is neither drag nor wind. */
 export const gravity = 9.81;

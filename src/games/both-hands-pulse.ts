@@ -1,4 +1,4 @@
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
+import type { HapticPulse } from 'threepoint/core';
 
 /** Returns the same pulse for both hands. */
 export const pulseBothHands = (strength: number, seconds: number): readonly HapticPulse[] => [

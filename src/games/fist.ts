@@ -1,18 +1,23 @@
-import { type Frame, type MutablePose, makePose, type Pose } from 'threepoint/core/math/pose';
-import { fromAxes, type Quat, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   cross,
+  type Frame,
+  fromAxes,
+  type MutablePose,
   type MutableVec3,
+  makePose,
   normalise,
+  type Pose,
+  type Quat,
   reject,
+  rotate,
+  type Side,
   scale,
   setVec3,
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 
 /** The centre of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
 export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);

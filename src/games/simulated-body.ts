@@ -1,5 +1,15 @@
-import { fromAxes, type MutableQuat } from 'threepoint/core/math/quat';
-import { cross, type MutableVec3, normalise, scale, setVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  cross,
+  fromAxes,
+  type MutableQuat,
+  type MutableVec3,
+  normalise,
+  scale,
+  setVec3,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 
 /**
  * Arm length (shoulder to wrist) and half the shoulder width, as shares of the standing eye height (averages of the

@@ -1,5 +1,4 @@
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Buttons, TrackingFrame } from 'threepoint/core';
 
 /** Head, hands and buttons of a simulated player at one moment: new objects in every frame. */
 export interface SimulatedInput {

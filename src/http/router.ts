@@ -1,5 +1,5 @@
 import type { IncomingMessage, RequestListener } from 'node:http';
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import { HttpError } from './http-error';
 import { readWholeBody } from './request-body';
 import { parseRequestTarget } from './request-target';

@@ -1,8 +1,12 @@
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { pageElement } from 'threepoint-ui/element';
-import { createEnterButton, type EnterButton } from 'threepoint-ui/enter-button';
-import { createNotices, type Notices } from 'threepoint-ui/notices';
-import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
+import { firstLine, reasonOf } from 'threepoint/core';
+import {
+  createEnterButton,
+  createNotices,
+  type EnterButton,
+  installTrustedTypesPolicy,
+  type Notices,
+  pageElement,
+} from 'threepoint-ui';
 import { createPage, type Page } from './shell/create-page';
 import { createFrameLoop } from './shell/frame/frame-loop';
 import type { Headset } from './shell/headset';

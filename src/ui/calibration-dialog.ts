@@ -1,4 +1,4 @@
-import type { CalibrationFault } from 'threepoint/core/tracking/calibration-faults';
+import type { CalibrationFault } from 'threepoint/core';
 import { button, element } from './element';
 
 /**

@@ -1,10 +1,10 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
 import {
+  type Calibration,
   type GuidedCalibration,
   initialGuidedCalibration,
   stepGuidedCalibration,
-} from 'threepoint/core/tracking/guided-calibration';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+  type TrackingFrame,
+} from 'threepoint/core';
 import type { CalibrationStep } from './calibration-dialog';
 
 /** Seconds to take the posture; seconds that the closing sentence stays in the headset. */

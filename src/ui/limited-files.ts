@@ -1,12 +1,7 @@
-import {
-  type DownloadOptions,
-  downloadLimited,
-  type FileKind,
-  fileTooLargeError,
-} from 'threepoint/avatar/file/limited-download';
-import { nameOfAddress } from 'threepoint/core/files';
+import { type DownloadOptions, downloadLimited, type FileKind, fileTooLargeError } from 'threepoint';
+import { nameOfAddress } from 'threepoint/core';
 
-export type { FileKind } from 'threepoint/avatar/file/limited-download';
+export type { FileKind } from 'threepoint';
 
 /** The name of a file for messages: its file name, or the last segment of an address. */
 export const fileNameOf = (source: string | File): string =>

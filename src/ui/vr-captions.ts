@@ -1,8 +1,5 @@
-import { showToEyesOnly } from 'threepoint/avatar/eye-layers';
-import { dampVec3 } from 'threepoint/core/math/damper';
-import type { Pose } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { addScaled, dampVec3, forward, type Pose, rotate, type Vec3, vec3 } from 'threepoint/math';
+import { showToEyesOnly } from 'threepoint/three';
 import { drawText, fillRoundedRect, textWidth, vrColors } from './canvas-drawing';
 import { createVrPanel } from './vr-panel';
 

@@ -7,8 +7,7 @@ import {
   SRGBColorSpace,
   Vector3,
 } from 'three';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { Ray, Vec3 } from 'threepoint/math';
 
 /** A place on a panel's canvas [pixels]. */
 export interface PanelPoint {

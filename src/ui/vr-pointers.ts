@@ -11,7 +11,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { Pointer } from 'threepoint/core/input/pointer';
+import type { Pointer } from 'threepoint/core';
 
 /** Two hands, a pinch of each and a gaze. */
 const maxPointers = 5;

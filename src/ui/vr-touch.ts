@@ -1,5 +1,4 @@
-import type { Pointer, PointerTarget } from 'threepoint/core/input/pointer';
-import type { Mutable } from 'threepoint/core/records';
+import type { Mutable, Pointer, PointerTarget } from 'threepoint/core';
 import type { PanelPoint, VrPanel } from './vr-panel';
 
 /** A finger tip that comes from this far before the sheet [m] to behind it touches. */

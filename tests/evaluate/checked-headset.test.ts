@@ -1,12 +1,12 @@
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import * as fc from 'fast-check';
-import { createRandom } from 'threepoint/core/math/random';
-import { type HeadsetReport, writeHeadsetReport } from 'threepoint-page/check/headset-report';
+import { createRandom } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { readCheckFile, trackingOf } from '../../bench/evaluate/checked-headset';
 import { lossLengthFrom, usualTracking } from '../../bench/evaluate/disturbances';
 import { measureRobustness, robustnessText } from '../../bench/evaluate/robustness';
+import { type HeadsetReport, writeHeadsetReport } from '../../src/page/check/headset-report';
 import { anyReport } from '../page/check/any-report';
 import { directoryWith } from '../temporary-directory';
 import { person, recordedMotion } from './recorded-motion';

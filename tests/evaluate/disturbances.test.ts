@@ -1,6 +1,5 @@
 import * as fc from 'fast-check';
-import { conjugate, rotate } from 'threepoint/core/math/quat';
-import { distance, subtract } from 'threepoint/core/math/vec3';
+import { conjugate, distance, rotate, subtract } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import {
   aftermathSeconds,

@@ -1,5 +1,4 @@
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
-import { add, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { add, fromAxisAngle, rotate, up, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../bench/evaluate/drive';
 import { addFigures, emptyCollection, figuresOf, motions, unlikeness } from '../../bench/evaluate/figures';

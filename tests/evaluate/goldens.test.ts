@@ -1,4 +1,4 @@
-import { distance } from 'threepoint/core/math/vec3';
+import { distance } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { createDriver } from '../../bench/evaluate/drive';
 import {

@@ -1,11 +1,10 @@
-import { type LegPose, LegPosture } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
-import { rotate } from 'threepoint/core/math/quat';
-import { add, vec3 } from 'threepoint/core/math/vec3';
+import { add, rotate, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { mannequinLegs } from '../../bench/evaluate/legs/leg-drivers';
 import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/legs/leg-measures';
 import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/legs/leg-truth';
+import { type LegPose, LegPosture } from '../../src/threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from '../../src/threepoint/core/estimation/gait/gait-features';
 import { eyeHeight, proportions, standing, walking } from '../threepoint/avatar/walking-person';
 
 const rateHz = 60;

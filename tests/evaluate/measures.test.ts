@@ -1,4 +1,4 @@
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { Vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../bench/evaluate/drive';
 import { addClip, emptyMeasures, type MeasuredFrame, merge, report } from '../../bench/evaluate/measures';

@@ -1,8 +1,8 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { armLength } from 'threepoint/core/body/skeleton';
-import { distance } from 'threepoint/core/math/vec3';
+import type { Calibration } from 'threepoint/core';
+import { distance } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { addReach, emptyReach, mergeReaches, reachReport, reachText } from '../../bench/evaluate/reach';
+import { armLength } from '../../src/threepoint/core/body/skeleton';
 import { person, recordedMotion } from './recorded-motion';
 
 const frames = recordedMotion(5, 120);

@@ -1,9 +1,7 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import { type Calibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import type { Vec3 } from 'threepoint/math';
 import { type RecordedFrame, type TruthJoint, truthJoints } from '../../bench/evaluate/recordings';
+import { createIk } from '../../src/threepoint/core/estimation/estimators';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { movingPerson } from '../threepoint/core/estimation/moving-person';
 

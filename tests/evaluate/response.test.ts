@@ -1,6 +1,5 @@
-import { dampVec3 } from 'threepoint/core/math/damper';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackingFrame } from 'threepoint/core';
+import { dampVec3, type Vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import type { Driver } from '../../bench/evaluate/drive';
 import { measureResponse, measureTremble } from '../../bench/evaluate/response';

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
-import type { GameRules } from 'threepoint-games/game-rules';
-import { createMatch } from 'threepoint-games/match';
 import { describe, expect, test } from 'vitest';
+import type { GameRules } from '../../src/games/game-rules';
+import { createMatch } from '../../src/games/match';
 import { number, seed } from '../threepoint/core/arbitraries';
 
 interface Tally {

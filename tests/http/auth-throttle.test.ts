@@ -1,6 +1,6 @@
-import { createAuthThrottle, type FailedAttempt, TooManyAttempts } from 'threepoint-http/auth-throttle';
-import { type ClientAddress, parseClientAddress } from 'threepoint-http/client-address';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { createAuthThrottle, type FailedAttempt, TooManyAttempts } from '../../src/http/auth-throttle';
+import { type ClientAddress, parseClientAddress } from '../../src/http/client-address';
 
 beforeEach(() => {
   vi.useFakeTimers();

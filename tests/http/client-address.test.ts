@@ -1,9 +1,9 @@
 import { once } from 'node:events';
 import { BlockList, connect, Socket } from 'node:net';
 import fc from 'fast-check';
-import { parseClientAddress } from 'threepoint-http/client-address';
-import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
 import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
+import { parseClientAddress } from '../../src/http/client-address';
+import { ConnectionLimiter } from '../../src/http/connection-limiter';
 import { reportFigures } from '../reliability/report-figures';
 import { relayOfTest } from '../rooms/server/until-finished';
 import { servedPaperStudy, servedStudies } from '../study/server/running-studies';

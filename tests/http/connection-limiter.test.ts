@@ -1,12 +1,12 @@
 import { once } from 'node:events';
 import { connect, type Socket } from 'node:net';
 import { connect as connectTls } from 'node:tls';
-import { ConnectionLimiter } from 'threepoint-http/connection-limiter';
-import { noPage } from 'threepoint-http/router';
-import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
 import { createPageHandler } from '../../server/page-handler';
+import { ConnectionLimiter } from '../../src/http/connection-limiter';
+import { noPage } from '../../src/http/router';
+import { serve } from '../../src/http/web-server';
 import { isNightly } from '../nightly';
 import { reportFigures } from '../reliability/report-figures';
 import { relayOfTest } from '../rooms/server/until-finished';

@@ -1,5 +1,5 @@
-import { GroupCommit } from 'threepoint-http/group-commit';
 import { describe, expect, test } from 'vitest';
+import { GroupCommit } from '../../src/http/group-commit';
 import { consentAt } from '../study/model/studies';
 import { now, servedPaperStudy } from '../study/server/running-studies';
 

@@ -1,6 +1,6 @@
 // A thread that hangs, fails and ends when it is called to.
 import { parentPort } from 'node:worker_threads';
-import { answerCalls } from 'threepoint-http/thread-calls';
+import { answerCalls } from '../../src/http/thread-calls';
 
 let counted = 0;
 

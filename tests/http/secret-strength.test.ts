@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
-import { secretEntropyBits, secretWeakness } from 'threepoint-http/secret-strength';
 import { describe, expect, test } from 'vitest';
+import { secretEntropyBits, secretWeakness } from '../../src/http/secret-strength';
 
 describe('a secret', () => {
   test.each([

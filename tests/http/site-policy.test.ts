@@ -1,7 +1,7 @@
 import type { IncomingMessage } from 'node:http';
 import { hostname } from 'node:os';
-import { createSitePolicy, type SitePolicyOptions } from 'threepoint-http/site-policy';
 import { describe, expect, test } from 'vitest';
+import { createSitePolicy, type SitePolicyOptions } from '../../src/http/site-policy';
 
 const request = (headers: Record<string, string>, encrypted = false) =>
   ({ headers, socket: encrypted ? { encrypted: true } : {} }) as unknown as IncomingMessage;

@@ -1,5 +1,5 @@
-import { startThread, ThreadCalls, type ThreadLimits } from 'threepoint-http/thread-calls';
 import { expect, onTestFinished, test } from 'vitest';
+import { startThread, ThreadCalls, type ThreadLimits } from '../../src/http/thread-calls';
 import type { ObedientApi } from './obedient-work';
 
 const roomy = { maxCalls: 10, maxBytes: 100, deadlineMs: 60_000 };

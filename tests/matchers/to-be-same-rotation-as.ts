@@ -1,4 +1,4 @@
-import { angleBetween, type Quat } from 'threepoint/core/math/quat';
+import { angleBetween, type Quat } from 'threepoint/math';
 import { expect } from 'vitest';
 
 declare module 'vitest' {

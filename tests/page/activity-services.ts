@@ -1,18 +1,15 @@
 import { Group, Scene } from 'three';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { MutablePointer } from 'threepoint/core/input/pointer';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import { ServerPresence } from 'threepoint-http/server-presence';
-import type { ActivityServices } from 'threepoint-page/activity/activity-context';
-import type { Surroundings } from 'threepoint-page/scene/surroundings';
-import { fetchBuiltInAvatar } from 'threepoint-page/shell/avatar-loader';
-import { createSettings, SettingsWriter, type StoredSettings } from 'threepoint-page/shell/settings';
-import type { PageStudy } from 'threepoint-page/shell/study/page-study';
-import { readSwitches } from 'threepoint-page/shell/switches';
-import type { StudyRun } from 'threepoint-study/participant/study-run';
-import type { Notice } from 'threepoint-ui/notices';
+import { createPageClock, defaultAvatar, defaultCalibration, MutablePointer } from 'threepoint/core';
+import { vec3 } from 'threepoint/math';
+import type { StudyRun } from 'threepoint-study/participant';
+import { ServerPresence } from 'threepoint-ui';
+import type { ActivityServices } from '../../src/page/activity/activity-context';
+import type { Surroundings } from '../../src/page/scene/surroundings';
+import { fetchBuiltInAvatar } from '../../src/page/shell/avatar-loader';
+import { createSettings, SettingsWriter, type StoredSettings } from '../../src/page/shell/settings';
+import type { PageStudy } from '../../src/page/shell/study/page-study';
+import { readSwitches } from '../../src/page/shell/switches';
+import type { Notice } from '../../src/ui/notices';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 

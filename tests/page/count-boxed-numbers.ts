@@ -1,16 +1,13 @@
 // Prints, as JSON, how many bytes on the heap each call of an operation leaves once it is compiled: a program of its
 // own, because the records of property tests have x, y and z too (see `Vec3`).
 import { Session } from 'node:inspector/promises';
-import 'threepoint-page/archery/archery-play';
-import 'threepoint-page/ball/match/ball-play';
-import 'threepoint-page/studio/recorder';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { fromAxisAngle, multiply, quat, rotate } from 'threepoint/core/math/quat';
-import { add, vec3 } from 'threepoint/core/math/vec3';
-import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import 'threepoint-study/model/progress/study-api';
-import 'threepoint-rooms/client/loopback-host';
+import '../../src/page/archery/archery-play';
+import '../../src/page/ball/match/ball-play';
+import '../../src/page/studio/recorder';
+import { createEstimator, defaultCalibration, TrackingDegradation } from 'threepoint/core';
+import { add, fromAxisAngle, multiply, quat, rotate, vec3 } from 'threepoint/math';
+import 'threepoint-study';
+import 'threepoint-rooms/room';
 
 const calls = 20_000;
 /** Until the operation is compiled: at most this often. */

@@ -1,12 +1,15 @@
-import { allReleased, type HandButtons } from 'threepoint/core/input/button-presses';
-import { invertTransform, type TrackedPose, transformPoint, transformPose } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { BallGestures } from 'threepoint-games/ball/gestures';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { rackPosition, stations } from 'threepoint-games/ball/stations';
-import { wristAround } from 'threepoint-games/fist';
+import { allReleased, type HandButtons, type TrackingFrame } from 'threepoint/core';
+import {
+  identity,
+  invertTransform,
+  type TrackedPose,
+  transformPoint,
+  transformPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { BallGestures, ballRules, rackPosition, stations } from 'threepoint-games/ball';
+import { wristAround } from '../../src/games/fist';
 import { leftThrower, told } from '../games/ball/playing';
 
 type Side = 'left' | 'right';

@@ -1,6 +1,7 @@
-import { allReleased } from 'threepoint/core/input/button-presses';
-import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
+import { allReleased } from 'threepoint/core';
+import { ArcheryGestures } from 'threepoint-games/archery';
 import { expect, test } from 'vitest';
+import { defaultArcheryGestureSettings } from '../../src/games/archery/gestures';
 import { bowman, posed } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
 import { reportFigures } from './report-figures';

@@ -1,21 +1,25 @@
-import { Body } from 'threepoint/api/body';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import { distance } from 'threepoint/core/math/vec3';
-import { actorFrame, actorLoopSeconds } from 'threepoint/core/tracking/actor-motion';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { ArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
-import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
-import { FrameTiming } from 'threepoint-page/shell/frame-timing';
-import { Recorder } from 'threepoint-page/studio/recorder';
-import type { PlayedStep } from 'threepoint-study/model/plan/schedule';
-import { PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
+import { Body } from 'threepoint';
+import {
+  type AvatarPose,
+  actorFrame,
+  type Buttons,
+  createPageClock,
+  defaultCalibration,
+  nothingPressed,
+  type TrackingFrame,
+  unknownFingers,
+} from 'threepoint/core';
+import { distance } from 'threepoint/math';
+import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import { ArcheryPlay, probeOf } from '../../src/page/archery/archery-play';
+import { BallPlay } from '../../src/page/ball/match/ball-play';
+import { createFrameLoop } from '../../src/page/shell/frame/frame-loop';
+import { FrameTiming } from '../../src/page/shell/frame-timing';
+import { Recorder } from '../../src/page/studio/recorder';
+import type { PlayedStep } from '../../src/study/model/plan/schedule';
+import { PlayedTrial } from '../../src/study/participant/trial/study-trial';
+import { actorLoopSeconds } from '../../src/threepoint/core/tracking/actor-motion';
 import { studiedArcher } from '../study/participant/played-round';
 import { reportFigures } from './report-figures';
 

@@ -1,9 +1,8 @@
 import { PerspectiveCamera } from 'three';
-import { Mirror } from 'threepoint/avatar/mirror';
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { createVignette } from 'threepoint-page/scene/vignette';
+import { identity, vec3 } from 'threepoint/math';
+import { Mirror } from 'threepoint/three';
 import { expect, test } from 'vitest';
+import { createVignette } from '../../src/page/scene/vignette';
 
 test('the edges are dark at a turn and clear again in under half a second, round the eyes wherever they are', () => {
   const vignette = createVignette();

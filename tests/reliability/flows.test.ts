@@ -1,12 +1,15 @@
-import { allReleased } from 'threepoint/core/input/button-presses';
-import { otherSide, type Side } from 'threepoint/core/math/side';
-import { archeryRules } from 'threepoint-games/archery/rules';
-import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { BallGestures } from 'threepoint-games/ball/gestures';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
-import { stations } from 'threepoint-games/ball/stations';
+import { allReleased } from 'threepoint/core';
+import { otherSide, type Side } from 'threepoint/math';
+import { archeryRules } from 'threepoint-games/archery';
+import {
+  BallGestures,
+  type BallInput,
+  type BallState,
+  ballRules,
+  createSimulatedHolder,
+  createSimulatedThrower,
+  stations,
+} from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
 import { shotWithOneHand } from '../games/archery/one-handed-round';
 import { playRound, steady } from '../games/archery/playing';

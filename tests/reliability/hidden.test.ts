@@ -1,10 +1,7 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { allReleased } from 'threepoint/core/input/button-presses';
-import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
+import { allReleased, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
+import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
+import { BallPlay } from '../../src/page/ball/match/ball-play';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';
 

@@ -1,7 +1,6 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
+import { createEstimator, defaultCalibration } from 'threepoint/core';
 import { expect, test } from 'vitest';
+import { ArcheryPlay } from '../../src/page/archery/archery-play';
 import { collectGarbage } from '../collect-garbage';
 import { isNightly } from '../nightly';
 import { poseOf } from '../threepoint/core/estimation/drawn';

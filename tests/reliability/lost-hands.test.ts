@@ -1,13 +1,15 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import {
+  actorFrame,
+  createEstimator,
+  defaultCalibration,
+  forwardKinematics,
+  skeletonFromCalibration,
+  type TrackingFrame,
+  unknownFingers,
+} from 'threepoint/core';
+import { distance, type Vec3, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { decodePose, encodePose } from '../../src/rooms/protocol/pose-codec';
 import { isNightly } from '../nightly';
 import { poseOf, show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';

@@ -1,11 +1,13 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
+import {
+  actorFrame,
+  createEstimator,
+  defaultCalibration,
+  forwardKinematics,
+  jointNames,
+  skeletonFromCalibration,
+} from 'threepoint/core';
 import { expect, test } from 'vitest';
+import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { reportFigures } from './report-figures';

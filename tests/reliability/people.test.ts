@@ -1,21 +1,21 @@
 import {
+  actorFrame,
   armSpanFromFingertipSpan,
   type Calibration,
-  calibrationFromHeadHeight,
+  createEstimator,
   defaultCalibration,
   eyeHeightFromStature,
-} from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import { add, distance, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { initialGuidedCalibration, stepGuidedCalibration } from 'threepoint/core/tracking/guided-calibration';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+  forwardKinematics,
+  initialGuidedCalibration,
+  jointNames,
+  skeletonFromCalibration,
+  stepGuidedCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { add, distance, identity, subtract, type TrackedPose, type Vec3, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { calibrationFromHeadHeight } from '../../src/threepoint/core/body/calibration';
+import { armLength } from '../../src/threepoint/core/body/skeleton';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';
 

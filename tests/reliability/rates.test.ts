@@ -1,19 +1,17 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { add, addScaled, distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { arrowLength } from 'threepoint-games/archery/bow';
-import { releaseDirection } from 'threepoint-games/archery/flight';
-import { archeryRules, delayed } from 'threepoint-games/archery/rules';
-import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { rackPosition } from 'threepoint-games/ball/stations';
-import { createMatch } from 'threepoint-games/match';
+import {
+  actorFrame,
+  createEstimator,
+  defaultCalibration,
+  forwardKinematics,
+  jointNames,
+  skeletonFromCalibration,
+} from 'threepoint/core';
+import { add, addScaled, distance, type Vec3, vec3 } from 'threepoint/math';
+import { createMatch } from 'threepoint-games';
+import { type ArcheryState, archeryRules, arrowLength, delayed } from 'threepoint-games/archery';
+import { type BallInput, type BallState, ballRules, rackPosition } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
+import { releaseDirection } from '../../src/games/archery/flight';
 import { hold, inFront, leftThrower, stand, velocityTo } from '../games/ball/playing';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';

@@ -1,17 +1,28 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { Pipeline } from 'threepoint/core/estimation/pipeline';
-import { estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import { type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
-import { copyQuat, fromAxisAngle } from 'threepoint/core/math/quat';
-import { sides } from 'threepoint/core/math/side';
-import { copyVec3, distance, up, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import {
+  actorFrame,
+  createEstimator,
+  defaultCalibration,
+  estimatorNames,
+  forwardKinematics,
+  jointNames,
+  type PoseEstimator,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
+import {
+  copyQuat,
+  copyVec3,
+  distance,
+  fromAxisAngle,
+  sides,
+  type TrackedPose,
+  type Transform,
+  transformPose,
+  up,
+  vec3,
+} from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { reportFigures } from './report-figures';

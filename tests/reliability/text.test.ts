@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
-import { cleanName } from 'threepoint-rooms/protocol/player-name';
-import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { expect, test } from 'vitest';
+import { cleanName } from '../../src/rooms/protocol/player-name';
+import { tidyCsv } from '../../src/study/model/tables/tidy-csv';
 import { reportFigures } from './report-figures';
 
 const source = new URL('../../src/', import.meta.url);

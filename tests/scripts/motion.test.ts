@@ -1,13 +1,11 @@
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { readBvh } from 'threepoint/core/motion/read-bvh';
-import { finishWork } from 'threepoint/core/motion/work';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { writeRecording } from 'threepoint/core/tracking/recording';
+import { actorFrame, defaultCalibration, writeRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { exportFile, writeWhole } from '../../scripts/motion/export-file';
+import { readBvh } from '../../src/threepoint/core/motion/read-bvh';
+import { finishWork } from '../../src/threepoint/core/motion/work';
 import { directoryWith } from '../temporary-directory';
 import { builtFbx } from '../threepoint/avatar/built-fbx';
 import { fbxBinary, fbxText } from '../threepoint/avatar/fbx-file';

@@ -1,4 +1,4 @@
-import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
+import type { ClientMessage } from '../../src/rooms/protocol/messages';
 
 /** Who sends a request. */
 export const httpRoles = {

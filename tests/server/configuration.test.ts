@@ -1,4 +1,4 @@
-import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { ConfigurationError } from 'threepoint-http';
 import { describe, expect, test } from 'vitest';
 import { configurationFrom } from '../../server/configuration';
 import { startupMessage } from '../../server/startup-message';

@@ -1,9 +1,9 @@
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { brotliCompressSync, brotliDecompressSync, gunzipSync, gzipSync } from 'node:zlib';
-import { serve } from 'threepoint-http/web-server';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { createPageHandler, type PageOptions } from '../../server/page-handler';
+import { serve } from '../../src/http/web-server';
 import { directoryWith } from '../temporary-directory';
 import { ask } from './running-server';
 

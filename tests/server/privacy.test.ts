@@ -1,9 +1,9 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test } from 'vitest';
+import { scheduleFor } from '../../src/study/model/plan/schedule';
+import { openStudyStore } from '../../src/study/server/storage/study-store';
 import { reportFigures } from '../reliability/report-figures';
 import { fists, releaseOf } from '../rooms/client/people';
 import { createTestRoom } from '../rooms/room/test-room';

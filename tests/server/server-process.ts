@@ -3,8 +3,8 @@
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { ConfigurationError } from 'threepoint-http';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer } from '../../server/start-server';
 import type { ServerHello, ServerState } from './server-child';

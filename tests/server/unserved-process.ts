@@ -4,8 +4,8 @@ import { once } from 'node:events';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { ConfigurationError } from 'threepoint-http';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer } from '../../server/start-server';
 

@@ -1,8 +1,7 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import { createCalibrationGuide } from 'threepoint-ui/calibration-guide';
+import type { Calibration, TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import type { CalibrationStep } from '../../src/ui/calibration-dialog';
+import { createCalibrationGuide } from '../../src/ui/calibration-guide';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 

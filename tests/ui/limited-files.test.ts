@@ -1,8 +1,8 @@
 import type { RequestListener } from 'node:http';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { fileNameOf, readLimited } from 'threepoint-ui/limited-files';
 import { afterEach, describe, expect, test } from 'vitest';
+import { fileNameOf, readLimited } from '../../src/ui/limited-files';
 import { reportFigures } from '../reliability/report-figures';
 
 const recording = { what: 'a recording', megabytes: 1 };

@@ -1,5 +1,5 @@
-import { listenToShortcuts } from 'threepoint-ui/shortcuts';
 import { beforeEach, expect, test, vi } from 'vitest';
+import { listenToShortcuts } from '../../src/ui/shortcuts';
 
 let page = new EventTarget();
 let openDialog: object | null = null;

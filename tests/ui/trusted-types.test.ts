@@ -1,5 +1,5 @@
-import { ownScriptAddress } from 'threepoint-ui/trusted-types';
 import { expect, test } from 'vitest';
+import { ownScriptAddress } from '../../src/ui/trusted-types';
 
 const folder = 'https://example.org/threepoint';
 

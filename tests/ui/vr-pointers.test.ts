@@ -1,7 +1,8 @@
 import type { Mesh } from 'three';
-import { MutablePointer, type PointerSource } from 'threepoint/core/input/pointer';
-import { createVrPointers } from 'threepoint-ui/vr-pointers';
+import { MutablePointer } from 'threepoint/core';
 import { expect, test } from 'vitest';
+import type { PointerSource } from '../../src/threepoint/core/input/pointer';
+import { createVrPointers } from '../../src/ui/vr-pointers';
 
 /** A pointer of this source that has met something 2 m away. */
 function pointing(source: PointerSource, progress = 0): MutablePointer {

@@ -1,10 +1,8 @@
-import { GazePointer } from 'threepoint/core/input/gaze-pointer';
-import { MutablePointer } from 'threepoint/core/input/pointer';
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { createVrPanel } from 'threepoint-ui/vr-panel';
-import { createPanelTouch, type PanelTarget } from 'threepoint-ui/vr-touch';
+import { GazePointer, MutablePointer } from 'threepoint/core';
+import { identity, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { createVrPanel } from '../../src/ui/vr-panel';
+import { createPanelTouch, type PanelTarget } from '../../src/ui/vr-touch';
 import { allocatedPerFrame } from '../allocated-bytes';
 import { drawNowhere } from '../page/shell/drawing-in-node';
 

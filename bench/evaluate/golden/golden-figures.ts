@@ -1,4 +1,4 @@
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
+import { distance, type Vec3 } from 'threepoint/math';
 import type { Loss } from '../disturbances';
 import { addLosses, emptyLossTally, type LossTally, reportLosses } from '../losses';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, reportNames, rounded } from '../measures';

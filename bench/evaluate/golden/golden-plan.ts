@@ -1,4 +1,4 @@
-import { nextRandom } from 'threepoint/core/math/random';
+import { nextRandom } from 'threepoint/math';
 import { seedOf } from '../disturbances';
 import { type MeasuredMethod, measuredMethods } from '../drive';
 import { calibrationOf, type RecordingIndex, readClip } from '../recordings';

@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import { createDriver, type MeasuredMethod } from '../drive';
 import type { MeasuredFrame } from '../measures';
 import { loadRegressors } from '../networks';

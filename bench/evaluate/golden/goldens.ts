@@ -3,7 +3,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import * as v from 'valibot';
 import { tableRow } from '../../table-row';
 import { readIndex } from '../recordings';

@@ -3,11 +3,10 @@
 
 import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { gaitOutputCount } from 'threepoint/core/estimation/gait/gait';
-import { GaitFeatures, gaitFeatureCount, yawOfHips } from 'threepoint/core/estimation/gait/gait-features';
-import { sides } from 'threepoint/core/math/side';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import { reasonOf } from 'threepoint/core';
+import { sides, type Vec3 } from 'threepoint/math';
+import { gaitOutputCount } from '../../../src/threepoint/core/estimation/gait/gait';
+import { GaitFeatures, gaitFeatureCount, yawOfHips } from '../../../src/threepoint/core/estimation/gait/gait-features';
 import { loadRegressors } from '../networks';
 import { peopleOf, readIndex } from '../recordings';
 import { type DrivenLegs, driveLegs } from './leg-drivers';

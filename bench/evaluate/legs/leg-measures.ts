@@ -1,10 +1,8 @@
-import type { LegPose, LegPosture, LegProportions } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
-import { rotate } from 'threepoint/core/math/quat';
-import { type Side, sides } from 'threepoint/core/math/side';
-import { mean } from 'threepoint/core/math/statistics';
-import { add, copyVec3, distance, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { recordOf } from 'threepoint/core/records';
+import { recordOf } from 'threepoint/core';
+import { add, copyVec3, distance, type MutableVec3, rotate, type Side, sides, type Vec3, vec3 } from 'threepoint/math';
+import type { LegPose, LegPosture, LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
+import { mean } from '../../../src/threepoint/core/math/statistics';
 import { rounded } from '../measures';
 import type { Contact, TrueLeg, TrueLegs } from './leg-truth';
 

@@ -1,7 +1,15 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { fromAxes, quat } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { cross, normalise, reject, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  cross,
+  fromAxes,
+  normalise,
+  type Pose,
+  quat,
+  reject,
+  type Side,
+  subtract,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { openClip, type RecordingIndex } from '../recordings';
 
 const legJointNames = ['UpperLeg', 'LowerLeg', 'Foot', 'Toes'] as const;

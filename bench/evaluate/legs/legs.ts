@@ -1,9 +1,8 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { Gait, type GaitNetwork, shippedGait } from 'threepoint/core/estimation/gait/gait';
-import { recordOf } from 'threepoint/core/records';
+import { reasonOf, recordOf } from 'threepoint/core';
+import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
+import { Gait, type GaitNetwork, shippedGait } from '../../../src/threepoint/core/estimation/gait/gait';
 import { tableRow } from '../../table-row';
 import { loadRegressors } from '../networks';
 import { peopleOf, readIndex } from '../recordings';

@@ -1,4 +1,4 @@
-import { addScaled, distance, dot, subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { addScaled, distance, dot, subtract, type Vec3 } from 'threepoint/math';
 import type { Target } from './archery-state';
 
 /** Distance of the aim point for a ray into the sky [m]. */

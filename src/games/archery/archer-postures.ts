@@ -1,24 +1,30 @@
-import { allReleased, type HandButtons } from 'threepoint/core/input/button-presses';
-import { clamp } from 'threepoint/core/math/damper';
-import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply, type Quat, rotate, slerp } from 'threepoint/core/math/quat';
-import { otherSide, type Side } from 'threepoint/core/math/side';
+import { allReleased, type HandButtons } from 'threepoint/core';
 import {
   add,
   addScaled,
+  clamp,
   dot,
   forward,
+  fromAxisAngle,
   lerp,
+  multiply,
   normalise,
+  otherSide,
+  type Pose,
+  type Quat,
   reject,
   right,
+  rotate,
+  type Side,
   scale,
+  slerp,
   subtract,
+  type TrackedPose,
   up,
   type Vec3,
   vec3,
   zero,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { wristAround } from '../fist';
 import {
   armRatio,

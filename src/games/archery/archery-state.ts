@@ -1,5 +1,4 @@
-import type { Quat } from 'threepoint/core/math/quat';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { Quat, Vec3 } from 'threepoint/math';
 
 /** What may differ between matches. */
 export interface ArcheryOptions {

@@ -1,20 +1,23 @@
-import { type MutablePose, makePose, type Pose } from 'threepoint/core/math/pose';
-import { fromAxes, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   backward,
   cross,
   forward,
+  fromAxes,
+  type MutablePose,
   type MutableVec3,
+  makePose,
   normalise,
+  type Pose,
   reject,
   right,
+  rotate,
+  type Side,
   scale,
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { fistOf, thumbOf } from '../fist';
 import { arrowRestHeight, braceHeight } from './bow';
 

@@ -1,4 +1,4 @@
-import { clamp } from 'threepoint/core/math/damper';
+import { clamp } from 'threepoint/math';
 
 /** Distance from the arrow rest to the middle of the string at rest [m]. */
 export const braceHeight = 0.16;

@@ -1,4 +1,4 @@
-import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from 'threepoint/math';
 import { fallTime, gravity, type Launch, launchDirection, positionAt } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';

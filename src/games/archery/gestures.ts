@@ -3,17 +3,27 @@ import {
   type Button,
   type Buttons,
   createButtonPresses,
+  type HapticPulse,
+  maxStepSeconds,
   nothingPressed,
   playingHand,
   pressureOf,
   releasedBelow,
-} from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import { copyPose, makePose, type TrackedPose } from 'threepoint/core/math/pose';
-import { otherSide, type Side, sides } from 'threepoint/core/math/side';
-import { addScaled, copyVec3, distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { maxStepSeconds } from 'threepoint/core/tracking/page-clock';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+  type TrackingFrame,
+} from 'threepoint/core';
+import {
+  addScaled,
+  copyPose,
+  copyVec3,
+  distance,
+  makePose,
+  otherSide,
+  type Side,
+  sides,
+  type TrackedPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { fistOf } from '../fist';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, maximumDraw, minimumDraw } from './bow';

@@ -1,7 +1,14 @@
-import { smoothingFactor } from 'threepoint/core/math/damper';
-import { makePose, type Pose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import { distance, dot, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  distance,
+  dot,
+  type MutableVec3,
+  makePose,
+  type Pose,
+  type Side,
+  smoothingFactor,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { bowDirection, bowInHand, nockingPointOf, turnBow } from './bow-pose';
 import { slerpDirection } from './slerp-direction';
 

@@ -1,18 +1,22 @@
-import type { Button } from 'threepoint/core/input/button-presses';
-import { clamp, damp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper';
-import { makePose, type Pose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
+import type { Button } from 'threepoint/core';
 import {
   addScaled,
+  clamp,
   copyVec3,
+  damp,
   dot,
   length,
   type MutableVec3,
+  makePose,
   normalise,
+  type Pose,
+  type Side,
+  smoothingFactor,
+  smoothstep,
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import type { BowView } from './archery-state';
 import { braceHeight, maximumDraw } from './bow';
 import { arrowRestOf, bowDirection, turnBow } from './bow-pose';

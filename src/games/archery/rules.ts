@@ -1,7 +1,7 @@
-import { clamp } from 'threepoint/core/math/damper';
-import { createRandom } from 'threepoint/core/math/random';
 import {
   addScaled,
+  clamp,
+  createRandom,
   distance,
   isFiniteVec3,
   length,
@@ -10,7 +10,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { positionAt, velocityAt } from '../ballistics';
 import type { GameRules } from '../game-rules';
 import type {

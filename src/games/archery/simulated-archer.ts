@@ -1,5 +1,4 @@
-import { clamp } from 'threepoint/core/math/damper';
-import { addScaled, subtract } from 'threepoint/core/math/vec3';
+import { addScaled, clamp, subtract } from 'threepoint/math';
 import { minimumJerk, yawOf } from '../simulated-body';
 import type { SimulatedInput } from '../simulated-input';
 import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';

@@ -1,5 +1,14 @@
-import { identity, quat, rotate, rotationBetween, slerp } from 'threepoint/core/math/quat';
-import { type MutableVec3, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  identity,
+  type MutableVec3,
+  normalise,
+  quat,
+  rotate,
+  rotationBetween,
+  slerp,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 
 const arc = quat(0, 0, 0, 1);
 const turned = vec3(0, 0, 0);

@@ -1,5 +1,4 @@
-import { clamp, dampVec3 } from 'threepoint/core/math/damper';
-import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { clamp, dampVec3, subtract, type Vec3 } from 'threepoint/math';
 import { minimumJerk, yawOf } from '../simulated-body';
 import type { SimulatedInput } from '../simulated-input';
 import { type ArcherBody, ArcherPostures, mixPostures, type Posture } from './archer-postures';

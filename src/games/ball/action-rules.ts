@@ -1,4 +1,4 @@
-import { distance, isFiniteVec3, length } from 'threepoint/core/math/vec3';
+import { distance, isFiniteVec3, length } from 'threepoint/math';
 import type { BallAction, BallPlayer, BallState, Refusal } from './ball-state';
 import { ballRadius } from './flight';
 import { roundedLaunch, type Step, withBall } from './state-changes';

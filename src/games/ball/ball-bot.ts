@@ -1,4 +1,4 @@
-import { distance, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { distance, setVec3, type Vec3, vec3 } from 'threepoint/math';
 import type { SimulatedInput } from '../simulated-input';
 import type { BallState } from './ball-state';
 import { rackPosition, stations } from './stations';

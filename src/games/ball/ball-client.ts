@@ -1,6 +1,11 @@
-import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
-import type { Connection, ConnectionUpdate, RoomView } from 'threepoint-rooms/client/connection';
-import { LoopbackHost, type LoopbackOptions } from 'threepoint-rooms/client/loopback-host';
+import {
+  type ClientPolicy,
+  type Connection,
+  type ConnectionUpdate,
+  LoopbackHost,
+  type LoopbackOptions,
+  type RoomView,
+} from 'threepoint-rooms/room';
 import { ballKind, ballRoomMessageFrom } from './ball-messages';
 import { type BallGame, BallPolicy } from './ball-policy';
 import { unpackBall } from './ball-snapshot';

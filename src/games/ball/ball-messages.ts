@@ -1,10 +1,4 @@
-import {
-  finiteWithin,
-  integerWithin,
-  type RoomMessage,
-  roomMessageReader,
-  seconds,
-} from 'threepoint-rooms/protocol/messages';
+import { finiteWithin, integerWithin, type RoomMessage, roomMessageReader, seconds } from 'threepoint-rooms/room';
 import * as v from 'valibot';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
 import { type BallAction, type BallEvent, refusals } from './ball-state';

@@ -1,5 +1,5 @@
-import type { Transform } from 'threepoint/core/math/pose';
-import type { HostedMatch, MatchPolicy } from 'threepoint-rooms/room/match-policy';
+import type { Transform } from 'threepoint/math';
+import type { HostedMatch, MatchPolicy } from 'threepoint-rooms/room';
 import { createMatch } from '../match';
 import { ballActionFrom, ballKind, type SentBallGame } from './ball-messages';
 import { type PackedBall, packBall } from './ball-snapshot';

@@ -1,5 +1,4 @@
-import { integerWithin } from 'threepoint-rooms/protocol/messages';
-import type { RoomKind } from 'threepoint-rooms/room/room-kind';
+import { integerWithin, type RoomKind } from 'threepoint-rooms/room';
 import * as v from 'valibot';
 import { BallPolicy } from './ball-policy';
 

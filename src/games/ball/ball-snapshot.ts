@@ -1,4 +1,4 @@
-import { vec3 } from 'threepoint/core/math/vec3';
+import { vec3 } from 'threepoint/math';
 import * as v from 'valibot';
 import type { BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
 import { ballRules } from './rules';

@@ -1,6 +1,5 @@
-import type { Side } from 'threepoint/core/math/side';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { SeatAction } from 'threepoint/core/tracking/seat-action';
+import type { SeatAction } from 'threepoint/core';
+import type { Side, Vec3 } from 'threepoint/math';
 import type { Launch } from '../ballistics';
 
 /** What may differ between matches. */

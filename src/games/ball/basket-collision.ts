@@ -1,7 +1,7 @@
-import { clamp } from 'threepoint/core/math/damper';
 import {
   add,
   addScaled,
+  clamp,
   copyVec3,
   distance,
   dot,
@@ -15,7 +15,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { velocityAt } from '../ballistics';
 import type { Basket, TimedLaunch } from './ball-state';
 import { basketDepth, basketRadius, type MutableOpening, makeOpening } from './basket';

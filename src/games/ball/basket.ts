@@ -1,22 +1,23 @@
-import type { Frame, Pose } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
   down,
+  type Frame,
   forward,
   length,
   lerp,
   type MutableVec3,
   normalise,
+  type Pose,
   reject,
   right as rightward,
+  rotate,
+  type Side,
   subtract,
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { fallTime, type Launch, positionAt } from '../ballistics';
 import { fistOf, thumbOf } from '../fist';
 import { ballRadius } from './flight';

@@ -1,4 +1,4 @@
-import { addScaled, type MutableVec3, setVec3 } from 'threepoint/core/math/vec3';
+import { addScaled, type MutableVec3, setVec3 } from 'threepoint/math';
 import { fallTime, positionAt, velocityAt } from '../ballistics';
 import type { TimedLaunch } from './ball-state';
 

@@ -4,24 +4,30 @@ import {
   type ButtonPresses,
   type Buttons,
   createButtonPresses,
+  type HapticPulse,
+  type Mutable,
   playingHand,
   pressureOf,
   releasedBelow,
-} from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
+  type TrackingFrame,
+} from 'threepoint/core';
 import {
+  copyVec3,
+  distance,
+  length,
   type MutablePose,
+  type MutableVec3,
   makePose,
   makeTransform,
+  type Side,
+  sides,
   type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
-} from 'threepoint/core/math/pose';
-import { type Side, sides } from 'threepoint/core/math/side';
-import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { ballInPalm, fistOf } from '../fist';
 import { slowestThrow } from './action-rules';
 import type { BallAction, BallEvent, BallInput, BallState } from './ball-state';

@@ -1,14 +1,4 @@
-import {
-  addScaled,
-  copyVec3,
-  lerp,
-  type MutableVec3,
-  scale,
-  subtract,
-  type Vec3,
-  vec3,
-  zero,
-} from 'threepoint/core/math/vec3';
+import { addScaled, copyVec3, lerp, type MutableVec3, scale, subtract, type Vec3, vec3, zero } from 'threepoint/math';
 
 /** A throw has the hand's average velocity over this time [s]. */
 export const throwWindow = 0.08;

@@ -1,26 +1,30 @@
-import { allReleased, type HandButtons } from 'threepoint/core/input/button-presses';
-import { clamp } from 'threepoint/core/math/damper';
+import { allReleased, type HandButtons } from 'threepoint/core';
 import {
+  add,
+  clamp,
+  copyQuat,
+  copyVec3,
+  fromAxisAngle,
   invertTransform,
+  lerp,
+  type MutableQuat,
+  type MutableVec3,
   makeTrackedPose,
+  multiply,
+  normalise,
+  type Quat,
+  quat,
+  right,
+  type Side,
+  slerp,
+  subtract,
   type TrackedPose,
   type Transform,
   transformPoint,
-} from 'threepoint/core/math/pose';
-import { copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, slerp } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import {
-  add,
-  copyVec3,
-  lerp,
-  type MutableVec3,
-  normalise,
-  right,
-  subtract,
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { wristAround } from '../fist';
 import { armRatio, halfShoulderRatio, shoulderBehindRatio, shoulderDropRatio, swayAt, yawOf } from '../simulated-body';
 import type { SimulatedInput } from '../simulated-input';

@@ -1,4 +1,4 @@
-import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from 'threepoint/math';
 import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
 import { applyAction, armReach, maxDelay, recordSequence } from './action-rules';

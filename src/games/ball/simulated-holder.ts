@@ -1,8 +1,9 @@
-import { clamp, dampVec3 } from 'threepoint/core/math/damper';
 import {
   add,
   addScaled,
+  clamp,
   copyVec3,
+  dampVec3,
   distance,
   type MutableVec3,
   normalise,
@@ -14,7 +15,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { fallTime, velocityAt } from '../ballistics';
 import type { SimulatedInput } from '../simulated-input';
 import type { BallBot, BotView } from './ball-bot';

@@ -1,18 +1,18 @@
-import { clamp } from 'threepoint/core/math/damper';
-import { createRandom } from 'threepoint/core/math/random';
-import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
+  clamp,
   copyVec3,
+  createRandom,
   lerp,
   normalise,
+  type Side,
   scale,
   subtract,
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { gravity } from '../ballistics';
 import { minimumJerk } from '../simulated-body';
 import type { SimulatedInput } from '../simulated-input';

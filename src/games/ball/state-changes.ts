@@ -1,4 +1,4 @@
-import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { type Vec3, vec3 } from 'threepoint/math';
 import type { BallEvent, BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
 
 /** A state and the events that led to it. */

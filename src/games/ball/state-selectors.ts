@@ -1,5 +1,4 @@
-import type { Side } from 'threepoint/core/math/side';
-import { addScaled, type MutableVec3, vec3 } from 'threepoint/core/math/vec3';
+import { addScaled, type MutableVec3, type Side, vec3 } from 'threepoint/math';
 import type { BallPlace, BallState } from './ball-state';
 import { basketRadius } from './basket';
 import { ballInAir, ballOnFloor, ballRadius } from './flight';

@@ -1,6 +1,13 @@
-import type { Transform } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { type MutableVec3, setVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  fromAxisAngle,
+  identity,
+  type MutableVec3,
+  setVec3,
+  type Transform,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import type { BallState } from './ball-state';
 import { ballRadius } from './flight';
 

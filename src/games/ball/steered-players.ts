@@ -1,20 +1,22 @@
-import { clamp, smoothingFactor } from 'threepoint/core/math/damper';
-import { type Transform, transformPoint } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Side } from 'threepoint/core/math/side';
 import {
   addScaled,
+  clamp,
   distance,
   forward,
   type MutableVec3,
   normalise,
+  type Ray,
+  rotate,
+  type Side,
   scale,
   setVec3,
+  smoothingFactor,
   subtract,
+  type Transform,
+  transformPoint,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import type { Launch } from '../ballistics';
 import { minimumJerk } from '../simulated-body';
 import type { SimulatedInput } from '../simulated-input';

@@ -1,17 +1,17 @@
-import { makePose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
   copyVec3,
   distance,
   type MutableVec3,
+  makePose,
   normalise,
+  type Side,
   setVec3,
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { ballInPalm, wristAround } from '../fist';
 import { ballRadius } from './flight';
 import { type MutablePosture, makePosture, type PlayerPostures } from './player-postures';

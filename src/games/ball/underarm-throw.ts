@@ -1,18 +1,19 @@
-import { clamp } from 'threepoint/core/math/damper';
-import { otherSide, type Side } from 'threepoint/core/math/side';
 import {
   add,
   addScaled,
+  clamp,
   copyVec3,
   length,
   type MutableVec3,
   normalise,
+  otherSide,
+  type Side,
   scale,
   setVec3,
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';
 import { outwardOf, setPalmAhead, type ThrowPostures } from './throw-postures';
 

@@ -1,15 +1,8 @@
-import type { BuiltInBody } from 'threepoint/core/body/built-in-bodies';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Side } from 'threepoint/core/math/side';
-import type { PageClock } from 'threepoint/core/tracking/page-clock';
-import type { ServerPresence } from 'threepoint-http/server-presence';
-import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
-import type { StudyRun } from 'threepoint-study/participant/study-run';
-import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BuiltInBody, Calibration, PageClock, Pointer } from 'threepoint/core';
+import type { Pose, Ray, Side } from 'threepoint/math';
+import type { OwnAvatar } from 'threepoint-rooms';
+import type { StudyRun, TaskPlace } from 'threepoint-study/participant';
+import type { Notices, ServerPresence } from 'threepoint-ui';
 import type { Quality } from '../scene/renderer';
 import type { SurroundingsHost } from '../scene/surroundings';
 

@@ -1,18 +1,18 @@
-import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { PointerTarget } from 'threepoint/core/input/pointer';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Side } from 'threepoint/core/math/side';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
-import type { TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
+import type {
+  AvatarPose,
+  AvatarRef,
+  Buttons,
+  Calibration,
+  Fingers,
+  HapticPulse,
+  MutableHandShape,
+  PointerTarget,
+  TrackingFrame,
+} from 'threepoint/core';
+import type { Pose, Ray, Side, Vec3 } from 'threepoint/math';
+import type { ObjectHolds } from 'threepoint/three';
+import type { SimulatedInput } from 'threepoint-games';
+import type { TaskPlace, TaskRunner } from 'threepoint-study/participant';
 import type { CameraScene } from '../scene/desktop-view';
 import type { ActivityContext, ActivitySettings, ActivitySettingsWriter } from './activity-context';
 import type { ActivityMenu } from './activity-menu';

@@ -1,15 +1,14 @@
-import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
-import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { PointerTarget } from 'threepoint/core/input/pointer';
-import type { Pose } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Side } from 'threepoint/core/math/side';
-import { copyVec3, up, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
+import {
+  type Buttons,
+  type HapticPulse,
+  type MutableHandShape,
+  nothingPressed,
+  type PointerTarget,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { copyVec3, type Pose, type Ray, rotate, type Side, up, vec3 } from 'threepoint/math';
+import type { ObjectHolds } from 'threepoint/three';
+import type { SimulatedInput } from 'threepoint-games';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../activity/activity-menu';

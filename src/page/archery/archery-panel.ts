@@ -1,7 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { archeryRulesText, rulesList } from 'threepoint-ui/game-rules-text';
-import { isTouchFirst } from 'threepoint-ui/mouse-aim';
-import { toggle } from 'threepoint-ui/toggle';
+import { archeryRulesText, button, element, isTouchFirst, rulesList, toggle } from 'threepoint-ui';
 import type { ActivityPanel } from '../activity/activity';
 import type { ActivityContext, StoredActivitySettings } from '../activity/activity-context';
 import type { roundOf } from './archery-play';

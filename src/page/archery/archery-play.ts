@@ -1,19 +1,32 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { chestSpaceBody } from 'threepoint/core/body/skeleton';
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { add, subtract, type Vec3, zero } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { aimOf } from 'threepoint-games/archery/aim-point';
-import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
-import { ArcheryGestures, type BowCue } from 'threepoint-games/archery/gestures';
-import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from 'threepoint-games/archery/rules';
-import { createSimulatedArcher, type SimulatedArcher } from 'threepoint-games/archery/simulated-archer';
-import { createSteeredArcher, type SteeredArcher } from 'threepoint-games/archery/steered-archer';
-import { createMatch, type Match } from 'threepoint-games/match';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
+import {
+  type Buttons,
+  type Calibration,
+  chestSpaceBody,
+  type HapticPulse,
+  type Pointer,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { add, subtract, type TrackedPose, type Vec3, zero } from 'threepoint/math';
+import { createMatch, type Match, type SimulatedInput } from 'threepoint-games';
+import {
+  type ArcheryAction,
+  type ArcheryEvent,
+  ArcheryGestures,
+  type ArcheryState,
+  aimOf,
+  archeryRules,
+  type BowCue,
+  type BowView,
+  createSimulatedArcher,
+  createSteeredArcher,
+  delayed,
+  fullScore,
+  isArmed,
+  matchTime,
+  type SimulatedArcher,
+  type SteeredArcher,
+  secondsLeft,
+} from 'threepoint-games/archery';
 import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */

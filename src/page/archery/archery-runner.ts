@@ -1,6 +1,6 @@
-import { fullScore, matchTime } from 'threepoint-games/archery/rules';
-import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
-import type { TaskEnd, TaskEvent } from 'threepoint-study/participant/trial/task-runner';
+import { fullScore, matchTime } from 'threepoint-games/archery';
+import { PhrasedError } from 'threepoint-study';
+import type { TaskEnd, TaskEvent } from 'threepoint-study/participant';
 import type { ActivityRunner, RunnerServices } from '../activity/activity';
 import type { ArcheryFrame } from './archery-play';
 

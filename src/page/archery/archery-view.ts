@@ -1,8 +1,12 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { addScaled, copyVec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryEvent, ArcheryState, BowView } from 'threepoint-games/archery/archery-state';
-import { arrowLength, braceHeight } from 'threepoint-games/archery/bow';
-import type { BowCue } from 'threepoint-games/archery/gestures';
+import { addScaled, copyVec3, type Pose } from 'threepoint/math';
+import {
+  type ArcheryEvent,
+  type ArcheryState,
+  arrowLength,
+  type BowCue,
+  type BowView,
+  braceHeight,
+} from 'threepoint-games/archery';
 import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import { createResultPanel } from './boards/result-panel';

@@ -1,19 +1,21 @@
-import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Fingers, MutableHandShape } from 'threepoint/core/body/hand-shape';
-import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { PointerTarget } from 'threepoint/core/input/pointer';
-import type { Pose, Transform } from 'threepoint/core/math/pose';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Side } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { defaultBallOptions } from 'threepoint-games/ball/rules';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
-import { bannerText } from 'threepoint-rooms/client/connection-text';
-import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
+import {
+  type AvatarPose,
+  type Buttons,
+  type Calibration,
+  defaultAvatar,
+  type Fingers,
+  type HapticPulse,
+  type MutableHandShape,
+  nothingPressed,
+  type PointerTarget,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { Pose, Ray, Side, Transform } from 'threepoint/math';
+import type { ObjectHolds } from 'threepoint/three';
+import type { SimulatedInput } from 'threepoint-games';
+import { defaultBallOptions } from 'threepoint-games/ball';
+import { bannerText } from 'threepoint-rooms';
+import type { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { ActivityMenu } from '../activity/activity-menu';

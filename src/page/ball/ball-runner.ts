@@ -1,5 +1,5 @@
-import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
-import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant/trial/task-runner';
+import { PhrasedError } from 'threepoint-study';
+import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant';
 import type { ActivityRunner, RunnerServices } from '../activity/activity';
 import type { BallFrame } from './match/ball-frame';
 import type { BallPlay } from './match/ball-play';

@@ -1,8 +1,6 @@
 import type { Group } from 'three';
-import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/core/math/pose';
-import type { BallEvent, BallState } from 'threepoint-games/ball/ball-state';
-import type { BallCue } from 'threepoint-games/ball/gestures';
-import { stations } from 'threepoint-games/ball/stations';
+import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/math';
+import { type BallEvent, type BallState, type BallCue, stations } from 'threepoint-games/ball';
 import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';

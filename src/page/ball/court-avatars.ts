@@ -1,11 +1,14 @@
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { decoders } from 'threepoint/avatar/decoders/decoders';
-import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { loadUntrustedAvatar } from 'threepoint/avatar/load-untrusted-avatar';
-import { type BuiltInBody, defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
+import { type BuiltInBody, defaultAvatar } from 'threepoint/core';
+import {
+  type Avatar,
+  checkInWorker,
+  createAvatarBetweenFrames,
+  decoders,
+  loadUntrustedAvatar,
+  parseAvatar,
+} from 'threepoint/three';
+import type { AvatarExchange } from 'threepoint-rooms';
+import { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityContext } from '../activity/activity-context';
 import type { BallPlay } from './match/ball-play';
 import type { Voices } from './voices/voices';

@@ -1,5 +1,4 @@
-import { transformPose } from 'threepoint/core/math/pose';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import { transformPose, type Vec3 } from 'threepoint/math';
 import type { Watched } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { CameraScene } from '../scene/desktop-view';

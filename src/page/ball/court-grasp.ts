@@ -1,12 +1,8 @@
-import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
-import { type Pose, transformPoint } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { basketRadius, rimTube } from 'threepoint-games/ball/basket';
-import { ballRadius } from 'threepoint-games/ball/flight';
-import { ballInPalm } from 'threepoint-games/fist';
+import type { MutableHandShape } from 'threepoint/core';
+import { type Pose, rotate, type Side, transformPoint, vec3 } from 'threepoint/math';
+import type { ObjectHolds } from 'threepoint/three';
+import { ballInPalm } from 'threepoint-games';
+import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball';
 import type { BallPlay } from './match/ball-play';
 
 /** The basket's rim, floor frame. */

@@ -1,10 +1,17 @@
-import type { Pointer } from 'threepoint/core/input/pointer';
-import { transformPoint } from 'threepoint/core/math/pose';
-import type { Ray } from 'threepoint/core/math/ray';
-import { addScaled, distance, dot, forward, subtract, type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
-import { landsIn } from 'threepoint-games/ball/basket';
-import type { BallSteering } from 'threepoint-games/ball/steered-players';
+import type { Mutable, Pointer } from 'threepoint/core';
+import {
+  addScaled,
+  distance,
+  dot,
+  forward,
+  type Ray,
+  subtract,
+  transformPoint,
+  type Vec3,
+  vec3,
+  zero,
+} from 'threepoint/math';
+import { type BallSteering, landsIn } from 'threepoint-games/ball';
 import type { ActivityContext } from '../activity/activity-context';
 import type { BallFrame } from './match/ball-frame';
 import type { BallPlay } from './match/ball-play';

@@ -1,4 +1,4 @@
-import { drawText } from 'threepoint-ui/canvas-drawing';
+import { drawText } from 'threepoint-ui/vr';
 
 /** The look of a seat in paint and words. Two throwers and the holder differ in hue, brightness and mark. */
 interface SeatLook {

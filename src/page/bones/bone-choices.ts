@@ -1,6 +1,12 @@
-import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
-import { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from 'threepoint/core/humanoid/bones';
-import { sides } from 'threepoint/core/math/side';
+import {
+  type BoneMap,
+  type BoneName,
+  boneNames,
+  fingerBoneSuffixes,
+  neededBones,
+  vrmFingerNames,
+} from 'threepoint/core';
+import { sides } from 'threepoint/math';
 import type { SkeletonToMap } from './skeleton-to-map';
 
 const trunk = {

@@ -1,5 +1,5 @@
-import type { BoneMap, BoneName } from 'threepoint/core/humanoid/bones';
-import { button, element } from 'threepoint-ui/element';
+import type { BoneMap, BoneName } from 'threepoint/core';
+import { button, element } from 'threepoint-ui';
 import { BoneChoices, isNeeded, labelOfPart, partGroups } from './bone-choices';
 import { createSkeletonPicture } from './skeleton-picture';
 import type { SkeletonToMap } from './skeleton-to-map';

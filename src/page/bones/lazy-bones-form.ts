@@ -1,5 +1,5 @@
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { element } from 'threepoint-ui/element';
+import { firstLine, reasonOf } from 'threepoint/core';
+import { element } from 'threepoint-ui';
 import type { BonesActions, createBonesForm } from './bones-form';
 import type { SkeletonToMap } from './skeleton-to-map';
 

@@ -1,5 +1,5 @@
-import { childrenOf } from 'threepoint/core/math/tree';
-import { button, element } from 'threepoint-ui/element';
+import { childrenOf } from 'threepoint/math';
+import { button, element } from 'threepoint-ui';
 import { type BoneChoices, isNeeded, labelOfPart } from './bone-choices';
 import { type Point, pictureSize, SkeletonView } from './skeleton-view';
 

@@ -1,5 +1,4 @@
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { FileBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import type { BoneMap, FileBones } from 'threepoint/core';
 
 /** The skeleton of an avatar or a motion whose bones the user maps: the match failed or is wrong. */
 export interface SkeletonToMap extends Pick<FileBones, 'joints' | 'confidence'> {

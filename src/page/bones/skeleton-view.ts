@@ -1,4 +1,4 @@
-import type { SkeletonJoint } from 'threepoint/core/humanoid/joint-tree';
+import type { SkeletonJoint } from 'threepoint/core';
 
 /** A place on the picture [px], from its upper left corner. */
 export interface Point {

@@ -1,9 +1,7 @@
-import { BodySolver } from 'threepoint/api/body-solver';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { describeXrSupport } from 'threepoint/xr/session-support';
-import { element, pageElement } from 'threepoint-ui/element';
-import { createEnterButton } from 'threepoint-ui/enter-button';
-import { installTrustedTypesPolicy } from 'threepoint-ui/trusted-types';
+import { BodySolver } from 'threepoint';
+import { firstLine, reasonOf } from 'threepoint/core';
+import { describeXrSupport } from 'threepoint/webxr';
+import { createEnterButton, element, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
 import { installEmulator } from '../emulator/emulator';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { fetchBuiltInAvatar } from '../shell/avatar-loader';

@@ -1,9 +1,13 @@
 import type { WebGLRenderer } from 'three';
-import { bodyFeature, DeviceBodyReader } from 'threepoint/xr/device-body-reader';
-import { drawSession } from 'threepoint/xr/draw-session';
-import { defaultFeatures, requestSession } from 'threepoint/xr/request-session';
-import { isSessionOffered } from 'threepoint/xr/session-support';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
+import {
+  bodyFeature,
+  DeviceBodyReader,
+  defaultFeatures,
+  drawSession,
+  isSessionOffered,
+  requestSession,
+  TrackedSession,
+} from 'threepoint/webxr';
 import type { HeadsetReport } from './headset-report';
 
 /** The optional features that are requested in addition to the defaults. None of them reveals the user's room. */

@@ -1,4 +1,4 @@
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { EstimatorName } from 'threepoint/core';
 import { type WorldName, worldNames } from './headset-report';
 
 /** The quantity that the frames of a step measure. */

@@ -1,16 +1,15 @@
 import { type Camera, Group, type WebGLRenderer } from 'three';
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { Mirror } from 'threepoint/avatar/mirror';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import { nothingPressed } from 'threepoint/core/input/button-presses';
-import { composeTransforms, invertTransform } from 'threepoint/core/math/pose';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
-import { stations } from 'threepoint-games/ball/stations';
+import {
+  actorFrame,
+  createEstimator,
+  defaultCalibration,
+  nothingPressed,
+  type PoseEstimator,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { composeTransforms, invertTransform } from 'threepoint/math';
+import { type Avatar, createAvatarBetweenFrames, Mirror, parseAvatar } from 'threepoint/three';
+import { ballRules, defaultBallOptions, stations } from 'threepoint-games/ball';
 import { ArcheryPlay } from '../archery/archery-play';
 import { type ArcheryView, createArcheryView } from '../archery/archery-view';
 import { type BallScene, BallView } from '../ball/ball-view';

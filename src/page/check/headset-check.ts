@@ -1,5 +1,5 @@
 import type { WebGLRenderer } from 'three';
-import type { BodySolver } from 'threepoint/api/body-solver';
+import type { BodySolver } from 'threepoint';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import type { FrameTiming } from '../shell/frame-timing';
 import { type CheckSession, enterSession } from './check-session';

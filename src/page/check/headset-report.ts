@@ -1,7 +1,13 @@
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { checked, integerBetween, numberBetween, text, ValidationError } from 'threepoint/core/validation/validation';
+import {
+  checked,
+  estimatedJoints,
+  estimatorNames,
+  integerBetween,
+  numberBetween,
+  reasonOf,
+  text,
+  ValidationError,
+} from 'threepoint/core';
 import * as v from 'valibot';
 
 /** The first field of each file. */

@@ -1,11 +1,7 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { isTracked } from 'threepoint/core/math/pose';
-import { type Side, sides } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { InputKind } from 'threepoint/xr/input-reader';
+import type { BodySolver } from 'threepoint';
+import { type AvatarPose, type EstimatorName, estimatedJoints, type TrackingFrame } from 'threepoint/core';
+import { isTracked, type Side, sides } from 'threepoint/math';
+import type { InputKind } from 'threepoint/webxr';
 import { DeviceDifference } from '../shell/frame/device-difference';
 import { type FrameSummary, quantilesIn } from '../shell/frame-timing';
 import type { MeasuredQuantity } from './check-steps';

@@ -1,4 +1,4 @@
-import { estimatedJoints } from 'threepoint/core/body/joints';
+import { estimatedJoints } from 'threepoint/core';
 import { jointLabels } from '../shell/frame/device-difference';
 import type { HeadsetReport } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './tracking-losses';

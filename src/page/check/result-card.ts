@@ -1,5 +1,4 @@
-import { offerDownload } from 'threepoint-ui/downloads';
-import { button, element } from 'threepoint-ui/element';
+import { button, element, offerDownload } from 'threepoint-ui';
 import { type HeadsetReport, writeHeadsetReport } from './headset-report';
 import { reportSections } from './report-sections';
 

@@ -1,12 +1,8 @@
 import type { Mesh } from 'three';
-import { showToEyesOnly } from 'threepoint/avatar/eye-layers';
-import { dampVec3 } from 'threepoint/core/math/damper';
-import type { Pose } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import { addScaled, forward, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { headingOf } from 'threepoint/core/tracking/heading';
-import { fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/canvas-drawing';
-import { createVrPanel } from 'threepoint-ui/vr-panel';
+import { headingOf } from 'threepoint/core';
+import { addScaled, dampVec3, forward, type Pose, rotate, type Vec3, vec3 } from 'threepoint/math';
+import { showToEyesOnly } from 'threepoint/three';
+import { createVrPanel, fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr';
 import { disposeTree } from '../scene/dispose-tree';
 
 const [width, height] = [900, 300];

@@ -1,7 +1,13 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { conjugate, multiply, type Quat, toRotationVector } from 'threepoint/core/math/quat';
-import { median } from 'threepoint/core/math/statistics';
-import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import {
+  conjugate,
+  median,
+  multiply,
+  type Pose,
+  type Quat,
+  subtract,
+  toRotationVector,
+  type Vec3,
+} from 'threepoint/math';
 
 /** The second time scale [s]; the first is one frame. */
 export const slowLag = 0.1;

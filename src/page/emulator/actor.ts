@@ -1,6 +1,4 @@
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { actorFrame, type Calibration, defaultCalibration, type TrackingFrame } from 'threepoint/core';
 
 /** Creates the actor, which moves the body while no headset is worn. Its performance starts with its first frame. */
 export function createActor() {

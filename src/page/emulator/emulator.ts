@@ -1,11 +1,16 @@
 import type { XRDevice, XRDeviceConfig } from 'iwer';
-import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
-import { composeTransforms, invertTransform, type Pose, type TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxes } from 'threepoint/core/math/quat';
-import { type Side, sides } from 'threepoint/core/math/side';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
+import { allReleased, type Buttons, type TrackingFrame } from 'threepoint/core';
+import {
+  composeTransforms,
+  fromAxes,
+  invertTransform,
+  type Pose,
+  type Side,
+  sides,
+  type TrackedPose,
+  vec3,
+} from 'threepoint/math';
+import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
 
 /** The initial head and hands of a person of 1.70 m [m]. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };

@@ -1,9 +1,6 @@
-import type { BodySolverOptions } from 'threepoint/api/body-solver';
-import { runWork, type WorkProgress } from 'threepoint/api/run-work';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { Replayable } from 'threepoint/core/tracking/recording';
+import type { BodySolverOptions } from 'threepoint';
+import { createEstimator, type EstimatorName, firstLine, networkOf, type Replayable, reasonOf } from 'threepoint/core';
+import { runWork, type WorkProgress } from 'threepoint/motion';
 import { type JointErrors, meanErrors } from './joint-errors';
 import type { Truth } from './truth';
 

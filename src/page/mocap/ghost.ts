@@ -11,9 +11,8 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { Quat } from 'threepoint/core/math/quat';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { TruthJoint } from 'threepoint/core/mocap/skeleton-map';
+import type { Quat, Vec3 } from 'threepoint/math';
+import type { TruthJoint } from 'threepoint/motion';
 
 type Places = Readonly<Partial<Record<TruthJoint, Vec3>>>;
 

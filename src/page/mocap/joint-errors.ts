@@ -1,13 +1,16 @@
-import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { estimateRecording } from 'threepoint/core/estimation/estimate-recording';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import type { TruthJoint } from 'threepoint/core/mocap/skeleton-map';
-import type { Replayable } from 'threepoint/core/tracking/recording';
+import {
+  type Calibration,
+  createJointPoses,
+  estimatedJoints,
+  estimateRecording,
+  forwardKinematics,
+  type PoseEstimator,
+  type Replayable,
+  skeletonFromCalibration,
+  type UpperBodyPose,
+} from 'threepoint/core';
+import { distance, type Vec3 } from 'threepoint/math';
+import type { TruthJoint } from 'threepoint/motion';
 import type { Truth } from './truth';
 
 /** The distances between estimated and true joints [cm], in the order of `estimatedJoints`. */

@@ -1,11 +1,12 @@
-import type { WorkProgress } from 'threepoint/api/run-work';
-import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
-import { type EstimatorName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { doubtOfErrors } from 'threepoint/core/mocap/doubts';
-import { button, element } from 'threepoint-ui/element';
-import { labelled } from 'threepoint-ui/fields';
-import { createStatusLine } from 'threepoint-ui/status-line';
+import {
+  type BoneMap,
+  type EstimatedJoint,
+  type EstimatorName,
+  estimatedJoints,
+  threePointNames,
+} from 'threepoint/core';
+import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
+import { button, createStatusLine, element, labelled } from 'threepoint-ui';
 import { createLazyBonesForm } from '../bones/lazy-bones-form';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { ClipMean } from './clip-means';

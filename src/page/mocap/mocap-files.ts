@@ -1,5 +1,5 @@
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { fileNameOf } from 'threepoint-ui/limited-files';
+import type { BoneMap } from 'threepoint/core';
+import { fileNameOf } from 'threepoint-ui';
 
 /** A file of this device, or the address of a file. */
 export type MocapFile = File | string;

@@ -1,15 +1,16 @@
 import type { Object3D } from 'three';
-import type { BodySolverOptions } from 'threepoint/api/body-solver';
-import type { ReplayState } from 'threepoint/api/replayed-body';
-import type { Avatar } from 'threepoint/avatar/avatar';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { Replayable } from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { fileNameOf } from 'threepoint-ui/limited-files';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BodySolverOptions, ReplayState } from 'threepoint';
+import {
+  type AvatarPose,
+  type BoneMap,
+  type EstimatorName,
+  firstLine,
+  type Replayable,
+  reasonOf,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { Avatar } from 'threepoint/three';
+import { fileNameOf, type Notices } from 'threepoint-ui';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';

@@ -1,9 +1,8 @@
-import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
-import { isGltfMotion, readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { type FileBones, UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
-import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
+import { sha256Base64Url } from 'threepoint';
+import { type FileBones, firstLine, reasonOf, UnknownBonesError } from 'threepoint/core';
+import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/motion';
+import { isGltfMotion, readGltfMotion } from 'threepoint/three';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
 
 /** A request to the worker: the files to read. */

@@ -1,6 +1,4 @@
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { FileBones } from 'threepoint/core/humanoid/unknown-bones-error';
+import type { BoneMap, EstimatorName, FileBones } from 'threepoint/core';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { MocapFile } from './mocap-files';
 import type { TruthPlace } from './truth-places';

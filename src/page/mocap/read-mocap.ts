@@ -1,8 +1,6 @@
-import type { WorkOptions } from 'threepoint/api/run-work';
-import { type FileBones, UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
-import type { PreparedMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { secondsLeft } from 'threepoint/core/motion/work';
-import { fileNameOf } from 'threepoint-ui/limited-files';
+import { type FileBones, UnknownBonesError } from 'threepoint/core';
+import { type PreparedMocap, secondsLeft, type WorkOptions } from 'threepoint/motion';
+import { fileNameOf } from 'threepoint-ui';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
 import type { MocapRequest, MocapResponse, MotionMap } from './mocap-worker';
 

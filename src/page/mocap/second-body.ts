@@ -1,11 +1,7 @@
 import { Group, type Object3D } from 'three';
-import { BodySolver, type BodySolverOptions } from 'threepoint/api/body-solver';
-import { ReplayedBody, type ReplayState } from 'threepoint/api/replayed-body';
-import type { Avatar } from 'threepoint/avatar/avatar';
-import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { BodySolver, type BodySolverOptions, ReplayedBody, type ReplayState } from 'threepoint';
+import type { Calibration, EstimatorName, TrackingFrame, UpperBodyPose } from 'threepoint/core';
+import type { Avatar } from 'threepoint/three';
 
 export interface SecondBodyOptions {
   readonly scene: Object3D;

@@ -1,10 +1,6 @@
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { normaliseQuat, quat } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { type MocapClip, mocapRateHz } from 'threepoint/core/mocap/prepare-mocap';
-import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
-import type { Replayable, TrackingFrames } from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Replayable, TrackingFrame, TrackingFrames } from 'threepoint/core';
+import { normaliseQuat, quat, type TrackedPose, vec3 } from 'threepoint/math';
+import { type MocapClip, mocapRateHz, trackedWidth } from 'threepoint/motion';
 
 /** The tracking of a clip. Frames are computed on request and not kept: half an hour of them would block the page. */
 class SimulatedFrames implements TrackingFrames {

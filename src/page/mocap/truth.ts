@@ -1,6 +1,5 @@
-import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { type MocapClip, mocapRateHz } from 'threepoint/core/mocap/prepare-mocap';
-import { type TruthJoint, truthJoints } from 'threepoint/core/mocap/skeleton-map';
+import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/math';
+import { type MocapClip, mocapRateHz, type TruthJoint, truthJoints } from 'threepoint/motion';
 
 const width = 3 * truthJoints.length;
 

@@ -1,5 +1,5 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { reasonOf } from 'threepoint/core';
+import { pageFolder } from 'threepoint-ui';
 
 /**
  * This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none.

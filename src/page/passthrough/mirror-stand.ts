@@ -1,5 +1,4 @@
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
-import { forward, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { forward, fromAxisAngle, rotate, up, type Vec3, vec3 } from 'threepoint/math';
 
 /** The foot of the mirror [m], floor frame, and its turn [rad]; turned by 0 it faces +Z. */
 export interface MirrorPlace {

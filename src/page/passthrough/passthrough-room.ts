@@ -1,7 +1,7 @@
 import { Fog, Mesh, type Object3D, PlaneGeometry, ShadowMaterial } from 'three';
-import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
-import type { BoundarySize } from 'threepoint/xr/boundary';
-import type { Notices } from 'threepoint-ui/notices';
+import { thirdPersonOnlyLayer } from 'threepoint/three';
+import type { BoundarySize } from 'threepoint/webxr';
+import type { Notices } from 'threepoint-ui';
 import type { Activity, FloorNeeds } from '../activity/activity';
 import type { Quality } from '../scene/renderer';
 import type { Surroundings } from '../scene/surroundings';

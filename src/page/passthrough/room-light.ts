@@ -1,4 +1,4 @@
-import { rotate } from 'threepoint/core/math/quat';
+import { rotate } from 'threepoint/math';
 import type { EstimatedLight } from '../scene/surroundings';
 
 /** WebXR's light estimation, which the types leave out in part. */

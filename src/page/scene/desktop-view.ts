@@ -1,9 +1,6 @@
 import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { smoothingFactor } from 'threepoint/core/math/damper';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { Ray } from 'threepoint/core/math/ray';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import { type Pose, type Ray, smoothingFactor, type Vec3 } from 'threepoint/math';
 
 export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */

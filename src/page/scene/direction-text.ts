@@ -1,6 +1,4 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { conjugate, rotate } from 'threepoint/core/math/quat';
-import { subtract, type Vec3 } from 'threepoint/core/math/vec3';
+import { conjugate, type Pose, rotate, subtract, type Vec3 } from 'threepoint/math';
 
 /** Describes the direction from a head to a point in words; height is ignored. */
 export function directionText(head: Pose<'arena'>, point: Vec3): string {

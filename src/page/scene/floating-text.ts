@@ -1,6 +1,6 @@
 import { Sprite, SpriteMaterial } from 'three';
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { vrFont } from 'threepoint-ui/canvas-drawing';
+import { distance, type Vec3 } from 'threepoint/math';
+import { vrFont } from 'threepoint-ui/vr';
 import { ink } from './boards/board-style';
 import { createCanvasTexture } from './canvas-texture';
 import type { Quality } from './renderer';

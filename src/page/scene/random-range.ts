@@ -1,4 +1,4 @@
-import { createRandom } from 'threepoint/core/math/random';
+import { createRandom } from 'threepoint/math';
 
 /** A stream of numbers in [0, 1), the same for the same seed, for placing what only decorates. */
 export function createRandomRange(seed: number): (low?: number, high?: number) => number {

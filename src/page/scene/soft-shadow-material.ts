@@ -1,5 +1,5 @@
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, MeshBasicMaterial } from 'three';
-import { smoothstep } from 'threepoint/core/math/damper';
+import { smoothstep } from 'threepoint/math';
 
 const side = 64;
 

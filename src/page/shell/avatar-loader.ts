@@ -1,18 +1,20 @@
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/avatar/avatar';
-import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
-import { decoders } from 'threepoint/avatar/decoders/decoders';
-import { avatarLimits } from 'threepoint/avatar/file/avatar-limits';
-import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
-import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
-import type { ReadBones } from 'threepoint/avatar/humanoid/read-file-bones';
-import { withNamedBones } from 'threepoint/avatar/humanoid/write-bone-names';
-import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
-import { type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core/body/built-in-bodies';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
-import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { avatarLimits, sha256Base64Url } from 'threepoint';
+import { type BoneMap, type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core';
+import {
+  type Avatar,
+  bodyLabelOf,
+  type CheckedAvatar,
+  checkInWorker,
+  createAvatarBetweenFrames,
+  decoders,
+  parseAvatar,
+  parseChecked,
+  type ReadBones,
+  readFileBones,
+  withNamedBones,
+} from 'threepoint/three';
+import type { OwnAvatar } from 'threepoint-rooms';
+import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
 import type { BoneMapStore } from './bone-map-store';
 
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
@@ -113,7 +115,6 @@ export class AvatarLoader {
 
   /** Reads the bones of a checked file, and what they are without a map. */
   async bonesOf(checked: AvatarFile, name: string): Promise<ReadBones> {
-    const { readFileBones } = await import('threepoint/avatar/humanoid/read-file-bones');
     return readFileBones(await withBytes(checked), name, decoders);
   }
 

@@ -1,4 +1,4 @@
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
+import type { BoneMap } from 'threepoint/core';
 import * as v from 'valibot';
 import { boneMap, type PreferenceStore } from './preferences';
 

@@ -1,10 +1,7 @@
 import type { Object3D } from 'three';
-import { sides } from 'threepoint/core/math/side';
-import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import { ServerPresence } from 'threepoint-http/server-presence';
-import { pageElement } from 'threepoint-ui/element';
-import { createMouseAim } from 'threepoint-ui/mouse-aim';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { TrackingDegradation } from 'threepoint/core';
+import { sides } from 'threepoint/math';
+import { createMouseAim, pageElement, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createActor } from '../emulator/actor';
 import { OfflineCopy } from '../offline/offline-copy';
 import { uploadToGpu } from '../scene/gpu-upload';

@@ -1,4 +1,4 @@
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
+import type { EstimatorName } from 'threepoint/core';
 
 /** How each estimator is called on the page and what it does, in one line. */
 export const estimatorTexts: Readonly<Record<EstimatorName, { readonly label: string; readonly text: string }>> = {

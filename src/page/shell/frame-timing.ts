@@ -1,4 +1,4 @@
-import { recordOf } from 'threepoint/core/records';
+import { recordOf } from 'threepoint/core';
 
 /** The stages of a frame, in the order in which they run. */
 export const stageNames = ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render'] as const;

@@ -1,16 +1,24 @@
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import { type BoundarySize, readBoundary } from 'threepoint/xr/boundary';
-import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
-import type { DeviceCommands } from 'threepoint/xr/device-commands';
-import { drawSession, endSession } from 'threepoint/xr/draw-session';
-import { defaultSavings, FrameRateControl, type Savings } from 'threepoint/xr/frame-rate';
-import { playPulses } from 'threepoint/xr/haptics';
-import { Pointing } from 'threepoint/xr/pointing';
-import { requestPassthroughSession, requestVrSession } from 'threepoint/xr/request-session';
-import { describeXrSupport, isSessionOffered, type XrFault } from 'threepoint/xr/session-support';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
-import type { Notices } from 'threepoint-ui/notices';
+import { firstLine, type HapticPulse, reasonOf } from 'threepoint/core';
+import {
+  type BoundarySize,
+  DeviceBodyReader,
+  type DeviceCommands,
+  defaultSavings,
+  describeXrSupport,
+  drawSession,
+  endSession,
+  FrameRateControl,
+  isSessionOffered,
+  Pointing,
+  playPulses,
+  readBoundary,
+  requestPassthroughSession,
+  requestVrSession,
+  type Savings,
+  TrackedSession,
+  type XrFault,
+} from 'threepoint/webxr';
+import type { Notices } from 'threepoint-ui';
 import { type Emulator, installEmulator } from '../emulator/emulator';
 import { type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import type { Settings } from './settings';

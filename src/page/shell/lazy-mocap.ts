@@ -1,14 +1,8 @@
 import type { Object3D } from 'three';
-import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
-import type { Avatar } from 'threepoint/avatar/avatar';
-import { palettes } from 'threepoint/avatar/palettes';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { recordOf } from 'threepoint/core/records';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { pageElement } from 'threepoint-ui/element';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BodySolver, BodySolverOptions } from 'threepoint';
+import { type AvatarPose, estimatorNames, firstLine, reasonOf, recordOf, type TrackingFrame } from 'threepoint/core';
+import { type Avatar, palettes } from 'threepoint/three';
+import { type Notices, pageElement } from 'threepoint-ui';
 import type { MocapView } from '../mocap/mocap-view';
 import type { ClipView } from '../mocap/motion-bones';
 import type { Recorder } from '../studio/recorder';

@@ -1,7 +1,6 @@
-import type { BodySolverOptions } from 'threepoint/api/body-solver';
-import { createInferenceWorker } from 'threepoint/onnx/create-inference-worker';
-import type { Notices } from 'threepoint-ui/notices';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import type { BodySolverOptions } from 'threepoint';
+import { createInferenceWorker } from 'threepoint/onnx';
+import { type Notices, pageFolder } from 'threepoint-ui';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
 
@@ -19,7 +18,7 @@ export interface NetworkLoadingOptions {
 /** Loads networks by name. The download of the runtime starts at once. */
 export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverOptions['networks'] {
   const { provider, notices, loading } = options;
-  const networksArrive = import('threepoint/api/onnx').then(({ onnxNetworks }) =>
+  const networksArrive = import('threepoint/onnx').then(({ onnxNetworks }) =>
     onnxNetworks({
       modelUrl: contractAt,
       provider,

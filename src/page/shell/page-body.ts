@@ -1,7 +1,5 @@
-import { BodySolver, type CalibrationSource } from 'threepoint/api/body-solver';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { firstLine } from 'threepoint/core/errors/reasons';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
+import { BodySolver, type CalibrationSource } from 'threepoint';
+import { type Calibration, createPageClock, firstLine } from 'threepoint/core';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
 import type { FrameTiming } from './frame-timing';

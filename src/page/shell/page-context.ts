@@ -1,4 +1,4 @@
-import type { Notices } from 'threepoint-ui/notices';
+import type { Notices } from 'threepoint-ui';
 import { Emitter } from './emitter';
 import { browserStorage, createPreferenceStore, type PreferenceStore } from './preferences';
 import { createSettings, type Settings, SettingsWriter } from './settings';

@@ -1,4 +1,4 @@
-import { pageElement } from 'threepoint-ui/element';
+import { pageElement } from 'threepoint-ui';
 
 /** What must load before the first body is drawn, and its share of the progress. */
 const steps = [

@@ -1,6 +1,6 @@
-import type { BodySolver, BodySolverOptions } from 'threepoint/api/body-solver';
-import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import type { ServerPresence } from 'threepoint-http/server-presence';
+import type { BodySolver, BodySolverOptions } from 'threepoint';
+import type { TrackingDegradation } from 'threepoint/core';
+import type { ServerPresence } from 'threepoint-ui';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities/activities';
 import type { DeviceDifference } from './frame/device-difference';

@@ -1,9 +1,13 @@
-import { avatarHashPattern } from 'threepoint/core/body/avatar-ref';
-import { builtInBodies, skinTones } from 'threepoint/core/body/built-in-bodies';
-import { calibrationProblem } from 'threepoint/core/body/calibration';
-import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { type BoneName, boneNames } from 'threepoint/core/humanoid/bones';
-import { handTiltsSchema } from 'threepoint/core/validation/validation';
+import {
+  avatarHashPattern,
+  type BoneName,
+  boneNames,
+  builtInBodies,
+  calibrationProblem,
+  estimatorNames,
+  handTiltsSchema,
+  skinTones,
+} from 'threepoint/core';
 import * as v from 'valibot';
 
 const calibration = v.pipe(

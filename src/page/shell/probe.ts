@@ -1,6 +1,5 @@
-import type { Side } from 'threepoint/core/math/side';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackingFrame } from 'threepoint/core';
+import type { Side, Vec3 } from 'threepoint/math';
 import type { PlayerProbe } from '../activity/activity';
 import type { OfflineCopy } from '../offline/offline-copy';
 import type { GameProbe } from './activity-registry';

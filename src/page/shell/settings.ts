@@ -1,4 +1,4 @@
-import { type BuiltInBody, defaultAvatar, type SkinTone } from 'threepoint/core/body/built-in-bodies';
+import { type BuiltInBody, defaultAvatar, type SkinTone } from 'threepoint/core';
 import type { ActivitySettings } from '../activity/activity-context';
 import type { PreferenceStore, Preferences } from './preferences';
 import type { Switches } from './switches';

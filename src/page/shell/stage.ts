@@ -1,11 +1,8 @@
-import type { Avatar } from 'threepoint/avatar/avatar';
-import { createDebugSkeleton } from 'threepoint/avatar/debug-skeleton';
-import { createHeadLossFade } from 'threepoint/avatar/head-loss-fade';
-import { Mirror } from 'threepoint/avatar/mirror';
-import type { Side } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { defaultSavings, type Savings } from 'threepoint/xr/frame-rate';
-import { createVrCaptions } from 'threepoint-ui/vr-captions';
+import type { TrackingFrame } from 'threepoint/core';
+import type { Side } from 'threepoint/math';
+import { type Avatar, createDebugSkeleton, createHeadLossFade, Mirror } from 'threepoint/three';
+import { defaultSavings, type Savings } from 'threepoint/webxr';
+import { createVrCaptions } from 'threepoint-ui/vr';
 import type { Watched } from '../activity/activity';
 import { DesktopView, type Insets } from '../scene/desktop-view';
 import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../scene/renderer';

@@ -1,4 +1,4 @@
-import { estimatorNames, threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { estimatorNames, threePointNames } from 'threepoint/core';
 import * as v from 'valibot';
 import { truthPlaces } from '../mocap/truth-places';
 import { viewNames } from '../scene/desktop-view';

@@ -1,15 +1,17 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { Avatar } from 'threepoint/avatar/avatar';
-import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
-import type { CheckedAvatar } from 'threepoint/avatar/file/check-avatar';
-import { MotionOnlyError } from 'threepoint/avatar/file/motion-only-error';
-import { type BuiltInBody, bodyOf, defaultAvatar, skinToneOf } from 'threepoint/core/body/built-in-bodies';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
-import type { OwnAvatar } from 'threepoint-rooms/client/shared-avatar';
-import { fileNameOf } from 'threepoint-ui/limited-files';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BodySolver } from 'threepoint';
+import {
+  type BoneMap,
+  type BuiltInBody,
+  bodyOf,
+  defaultAvatar,
+  firstLine,
+  reasonOf,
+  skinToneOf,
+  UnknownBonesError,
+} from 'threepoint/core';
+import { type Avatar, bodyLabelOf, type CheckedAvatar, MotionOnlyError } from 'threepoint/three';
+import type { OwnAvatar } from 'threepoint-rooms';
+import { fileNameOf, type Notices } from 'threepoint-ui';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { Studio } from '../studio/studio';
 import {

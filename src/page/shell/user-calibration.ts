@@ -1,6 +1,6 @@
-import type { BodySolver, CalibrationSource } from 'threepoint/api/body-solver';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BodySolver, CalibrationSource } from 'threepoint';
+import type { Calibration } from 'threepoint/core';
+import type { Notices } from 'threepoint-ui';
 import type { Headset } from './headset';
 import type { PreferenceStore } from './preferences';
 import type { SettingsWriter } from './settings';

@@ -9,7 +9,7 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { createBlobShadow } from 'threepoint/avatar/blob-shadow';
+import { createBlobShadow } from 'threepoint/three';
 import type { Quality } from '../scene/renderer';
 import type { DistantLight, EstimatedLight, Lighting } from '../scene/surroundings';
 

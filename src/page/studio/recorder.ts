@@ -1,13 +1,14 @@
-import { type Calibration, calibrationProblem } from 'threepoint/core/body/calibration';
-import { copyFingers } from 'threepoint/core/body/hand-shape';
 import {
+  type Calibration,
+  calibrationProblem,
+  copyFingers,
   parseRecording,
   type Replayable,
   recordingDuration,
   sampleRecording,
+  type TrackingFrame,
   writeRecording,
-} from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+} from 'threepoint/core';
 
 /**
  * Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by

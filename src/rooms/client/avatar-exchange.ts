@@ -1,4 +1,4 @@
-import { type AvatarHash, avatarHashPattern } from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, avatarHashPattern } from 'threepoint/core';
 import * as v from 'valibot';
 import { fetchWithPass, type RoomPass } from './room-pass';
 

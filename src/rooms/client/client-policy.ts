@@ -1,4 +1,4 @@
-import type { Transform } from 'threepoint/core/math/pose';
+import type { Transform } from 'threepoint/math';
 import type { RoomMessage } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 

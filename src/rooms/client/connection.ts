@@ -1,6 +1,5 @@
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Transform } from 'threepoint/core/math/pose';
+import type { AvatarRef, Calibration } from 'threepoint/core';
+import type { Transform } from 'threepoint/math';
 import type { DisconnectReason, SeatInfo } from '../protocol/messages';
 import type { PosePacket } from '../protocol/pose-packet';
 import type { SignalBody, Voice } from '../protocol/voice-messages';

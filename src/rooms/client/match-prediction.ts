@@ -1,4 +1,4 @@
-import type { Transform } from 'threepoint/core/math/pose';
+import type { Transform } from 'threepoint/math';
 import type { HostedGame } from '../room/match-policy';
 import type { ClientPolicy } from './client-policy';
 

@@ -1,4 +1,4 @@
-import { smoothstep } from 'threepoint/core/math/damper';
+import { smoothstep } from 'threepoint/math';
 import type { PosePacket } from '../protocol/pose-packet';
 
 /** A packet on a path: its time by the sender's clock, unwrapped [s], and its arrival by the page's clock [s]. */

@@ -1,4 +1,4 @@
-import { clamp, smoothingFactor, smoothstep } from 'threepoint/core/math/damper';
+import { clamp, smoothingFactor, smoothstep } from 'threepoint/math';
 import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PosePacket } from '../protocol/pose-packet';
 import { PathFit, type PathSample } from './path-fit';

@@ -1,30 +1,36 @@
 import {
   type AvatarPose,
+  type Fingers,
+  type HandShape,
+  jointNames,
+  lerpHandShape,
+  type MutableHandShape,
   type MutableUpperBodyPose,
+  makeHandShape,
   makeUpperBodyPose,
   type TrackedFeet,
   type UpperBodyPose,
-} from 'threepoint/core/body/avatar-pose';
+} from 'threepoint/core';
 import {
-  type Fingers,
-  type HandShape,
-  lerpHandShape,
-  type MutableHandShape,
-  makeHandShape,
-} from 'threepoint/core/body/hand-shape';
-import { jointNames } from 'threepoint/core/body/joints';
-import {
+  addScaled,
   copyPose,
+  lerp,
   type MutablePose,
   type MutableTrackedPose,
+  type MutableVec3,
   makePose,
   makeTrackedPose,
+  normaliseQuat,
   type Pose,
+  type Quat,
+  quat,
+  type Side,
+  setQuat,
+  setVec3,
+  slerp,
   type TrackedPose,
-} from 'threepoint/core/math/pose';
-import { normaliseQuat, type Quat, quat, setQuat, slerp } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { addScaled, lerp, type MutableVec3, setVec3, vec3 } from 'threepoint/core/math/vec3';
+  vec3,
+} from 'threepoint/math';
 import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 

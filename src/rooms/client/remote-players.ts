@@ -1,4 +1,4 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
+import type { AvatarPose } from 'threepoint/core';
 import type { PosePacket } from '../protocol/pose-packet';
 import type { ReceivedPose } from './connection';
 import { Playback, type PlaybackReport } from './playback';

@@ -1,17 +1,13 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Fingers } from 'threepoint/core/body/hand-shape';
+import type { AvatarPose, AvatarRef, Calibration, Fingers, Mutable } from 'threepoint/core';
 import {
   composeTransforms,
+  identity,
   invertTransform,
   type MutableTransform,
   makeTransform,
   type Transform,
-} from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import { zero } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
+  zero,
+} from 'threepoint/math';
 import type { SeatInfo } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from './connection';

@@ -1,8 +1,12 @@
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
-import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import type { Transform } from 'threepoint/core/math/pose';
+import {
+  type AvatarRef,
+  type Calibration,
+  defaultAvatar,
+  type Skeleton,
+  sameMeasures,
+  skeletonFromCalibration,
+} from 'threepoint/core';
+import type { Transform } from 'threepoint/math';
 import {
   type ClientMessage,
   type JoinRequest,

@@ -1,6 +1,11 @@
-import { type AvatarHash, type AvatarRef, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
-import { type BuiltInAvatar, defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import {
+  type AvatarHash,
+  type AvatarRef,
+  type BuiltInAvatar,
+  defaultAvatar,
+  maxAvatarBytes,
+  reasonOf,
+} from 'threepoint/core';
 import type { HostedGame } from '../room/match-policy';
 import type { AvatarExchange } from './avatar-exchange';
 import type { RoomView } from './connection';

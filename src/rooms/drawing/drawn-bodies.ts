@@ -1,7 +1,5 @@
 import { Group, type Object3D } from 'three';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { sameMeasures } from 'threepoint/core/body/calibration';
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { type Calibration, reasonOf, sameMeasures } from 'threepoint/core';
 import { type Avatar, loadMannequin } from 'threepoint/three';
 import type { RemotePose } from '../peers/remote-poses';
 

@@ -1,10 +1,6 @@
 import type { Object3D } from 'three';
-import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { sha256Base64Url } from 'threepoint';
+import { type AvatarRef, defaultAvatar, type Calibration, sameMeasures, unknownFingers, reasonOf } from 'threepoint/core';
 import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
 import type { ClientPolicy } from '../client/client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from '../client/connection';

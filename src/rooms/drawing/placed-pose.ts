@@ -1,18 +1,18 @@
-import { type AvatarPose, makeUpperBodyPose, type TrackedFeet } from 'threepoint/core/body/avatar-pose';
-import { jointNames } from 'threepoint/core/body/joints';
+import { type AvatarPose, jointNames, makeUpperBodyPose, type TrackedFeet } from 'threepoint/core';
 import {
+  copyQuat,
   type MutablePose,
   type MutableTrackedPose,
   makePose,
   makeTrackedPose,
+  multiply,
   type Pose,
+  type Side,
   type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
-} from 'threepoint/core/math/pose';
-import { copyQuat, multiply } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
+} from 'threepoint/math';
 
 /** A buffer for a pose that is transformed from the user's floor to the scene's. */
 export class PlacedPose implements AvatarPose {

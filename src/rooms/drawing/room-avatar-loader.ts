@@ -1,10 +1,13 @@
-import { untrustedAvatarLimits } from 'threepoint/avatar/file/avatar-limits';
-import { sha256Base64Url } from 'threepoint/avatar/file/file-hash';
-import { downloadLimited, type FileKind } from 'threepoint/avatar/file/limited-download';
-import type { AvatarHash, AvatarRef } from 'threepoint/core/body/avatar-ref';
-import { type BuiltInBody, bodyOf, isBuiltInAvatar } from 'threepoint/core/body/built-in-bodies';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { TransientError } from 'threepoint/core/errors/transient-error';
+import { downloadLimited, type FileKind, sha256Base64Url, untrustedAvatarLimits } from 'threepoint';
+import {
+  type AvatarHash,
+  type AvatarRef,
+  type BuiltInBody,
+  bodyOf,
+  isBuiltInAvatar,
+  reasonOf,
+  TransientError,
+} from 'threepoint/core';
 import type { Avatar } from 'threepoint/three';
 import type { AvatarExchange } from '../client/avatar-exchange';
 

@@ -1,9 +1,7 @@
 import type { Object3D } from 'three';
-import { RemoteAvatars } from 'threepoint/avatar/remote-avatars';
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { Avatar } from 'threepoint/three';
+import { type AvatarRef, firstLine, reasonOf } from 'threepoint/core';
+import type { Vec3 } from 'threepoint/math';
+import { type Avatar, RemoteAvatars } from 'threepoint/three';
 import type { RoomView } from '../client/connection';
 import type { RemotePerson } from '../client/room-client';
 import { type OwnAvatar, SharedAvatar } from '../client/shared-avatar';

@@ -1,4 +1,4 @@
-import { type Calibration, calibrationProblem } from 'threepoint/core/body/calibration';
+import { type Calibration, calibrationProblem } from 'threepoint/core';
 import * as v from 'valibot';
 import { toMillimetres } from '../protocol/messages';
 import { cleanName } from '../protocol/player-name';

@@ -1,7 +1,12 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { assertCalibration, type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import {
+  type AvatarPose,
+  assertCalibration,
+  type Calibration,
+  type Skeleton,
+  sameMeasures,
+  skeletonFromCalibration,
+  unknownFingers,
+} from 'threepoint/core';
 import { toMillimetres } from '../protocol/messages';
 import { encodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';

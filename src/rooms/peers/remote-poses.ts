@@ -1,7 +1,13 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type Calibration, sameMeasures } from 'threepoint/core/body/calibration';
-import { createJointPoses, forwardKinematics, type JointPoses } from 'threepoint/core/body/forward-kinematics';
-import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import {
+  type AvatarPose,
+  type Calibration,
+  createJointPoses,
+  forwardKinematics,
+  type JointPoses,
+  type Skeleton,
+  sameMeasures,
+  skeletonFromCalibration,
+} from 'threepoint/core';
 import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';

@@ -1,36 +1,40 @@
-import { alongArm, clavicleRest, handBoneRotation, hingeAtRest } from 'threepoint/core/body/arm-rotations';
-import type { UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import type { JointPoses } from 'threepoint/core/body/forward-kinematics';
-import { armBonesOf, type Skeleton } from 'threepoint/core/body/skeleton';
-import { elbowFlexion } from 'threepoint/core/body/two-bone-ik';
-import { clamp } from 'threepoint/core/math/damper';
-import type { Pose } from 'threepoint/core/math/pose';
 import {
-  angleBetween,
-  conjugate,
-  fromAxisAngle,
-  multiply,
-  type Quat,
-  quat,
-  rotate,
-  twistAngle,
-  twistOf,
-} from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
+  alongArm,
+  armBonesOf,
+  clavicleRest,
+  elbowFlexion,
+  handBoneRotation,
+  hingeAtRest,
+  type JointPoses,
+  type Skeleton,
+  type UpperBodyPose,
+} from 'threepoint/core';
 import {
   add,
   addScaled,
+  angleBetween,
+  clamp,
+  conjugate,
   cross,
   distance,
   dot,
+  fromAxisAngle,
   length,
+  multiply,
   normalise,
+  type Pose,
+  type Quat,
+  quat,
   reject,
+  rotate,
+  type Side,
   scale,
   subtract,
+  twistAngle,
+  twistOf,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import {
   type ArmSteps,
   type BodyBits,

@@ -1,5 +1,5 @@
-import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
-import { clamp } from 'threepoint/core/math/damper';
+import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from 'threepoint/core';
+import { clamp } from 'threepoint/math';
 
 /** One number of a hand in a packet: uniform steps from `low` to `high`. */
 interface FingerField {

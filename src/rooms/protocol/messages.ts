@@ -1,6 +1,4 @@
-import { type AvatarRef, avatarHashPattern } from 'threepoint/core/body/avatar-ref';
-import { type BuiltInAvatar, isBuiltInAvatar } from 'threepoint/core/body/built-in-bodies';
-import type { Calibration } from 'threepoint/core/body/calibration';
+import { type AvatarRef, avatarHashPattern, type BuiltInAvatar, isBuiltInAvatar, type Calibration } from 'threepoint/core';
 import * as v from 'valibot';
 import { cleanName } from './player-name';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';

@@ -1,18 +1,29 @@
-import type { AvatarPose, TrackedFeet, UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { isFiniteHand } from 'threepoint/core/body/hand-shape';
-import { jointNames } from 'threepoint/core/body/joints';
-import { type Skeleton, wristFromHandBone } from 'threepoint/core/body/skeleton';
 import {
+  type AvatarPose,
+  createJointPoses,
+  forwardKinematics,
+  isFiniteHand,
+  jointNames,
+  type Skeleton,
+  type TrackedFeet,
+  type UpperBodyPose,
+  wristFromHandBone,
+} from 'threepoint/core';
+import {
+  conjugate,
+  copyVec3,
+  isFiniteVec3,
   type MutableTrackedPose,
   makePose,
   makeTrackedPose,
+  multiply,
   type Pose,
+  type Quat,
+  quat,
+  type Side,
   type TrackedPose,
-} from 'threepoint/core/math/pose';
-import { conjugate, multiply, type Quat, quat } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { copyVec3, isFiniteVec3, type Vec3 } from 'threepoint/core/math/vec3';
+  type Vec3,
+} from 'threepoint/math';
 import { writeBodySteps } from './body-steps';
 import { handShapeOf, toFingerSteps } from './finger-steps';
 import { packetMs } from './packet-time';

@@ -1,4 +1,4 @@
-import { type Side, sides } from 'threepoint/core/math/side';
+import { type Side, sides } from 'threepoint/math';
 import { BitReader, BitWriter } from './bit-stream';
 import { fingerFields } from './finger-steps';
 import { maxPosePacketBytes, poseVersion } from './pose-packet';

@@ -1,6 +1,5 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { Fingers } from 'threepoint/core/body/hand-shape';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import type { AvatarPose, Fingers } from 'threepoint/core';
+import type { Vec3 } from 'threepoint/math';
 
 /**
  * Rises with every change of the layout, or of the body proportions that packets are relative to. Other versions are

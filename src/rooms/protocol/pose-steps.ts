@@ -1,7 +1,14 @@
-import { clamp } from 'threepoint/core/math/damper';
-import type { MutablePose, Pose, TrackedPose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  clamp,
+  type MutablePose,
+  type MutableVec3,
+  type Pose,
+  type Side,
+  setVec3,
+  type TrackedPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { type FingerSteps, makeFingerSteps } from './finger-steps';
 import {
   type DirectionSteps,

@@ -1,6 +1,17 @@
-import { clamp } from 'threepoint/core/math/damper';
-import { type MutableQuat, normaliseQuat, type Quat, quat, setQuat } from 'threepoint/core/math/quat';
-import { cross, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import {
+  clamp,
+  cross,
+  type MutableQuat,
+  type MutableVec3,
+  normalise,
+  normaliseQuat,
+  type Quat,
+  quat,
+  setQuat,
+  setVec3,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import type { BitReader, BitWriter } from './bit-stream';
 
 /** Positions in a packet are multiples of this [m]. */

@@ -1,18 +1,20 @@
 import {
   alongArm,
   armBoneRotation,
+  armBonesOf,
   clavicleRest,
+  elbowCircle,
   elbowHinge,
+  elbowOnCircle,
   handBoneRotation,
-} from 'threepoint/core/body/arm-rotations';
-import { makeUpperBodyPose, type UpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import { headJointOf } from 'threepoint/core/body/head-joint';
-import { writeLocalRotations } from 'threepoint/core/body/local-rotations';
-import { armBonesOf, type Skeleton } from 'threepoint/core/body/skeleton';
-import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from 'threepoint/core/body/two-bone-ik';
-import { makePose, type Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from 'threepoint/core/math/quat';
-import { type Side, sides } from 'threepoint/core/math/side';
+  headJointOf,
+  makeElbowCircle,
+  makeUpperBodyPose,
+  poleAcross,
+  type Skeleton,
+  type UpperBodyPose,
+  writeLocalRotations,
+} from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -20,15 +22,25 @@ import {
   cross,
   down,
   forward,
+  fromAxisAngle,
   length,
+  type MutableQuat,
   type MutableVec3,
+  makePose,
+  multiply,
   normalise,
+  type Pose,
+  type Quat,
+  quat,
   reject,
+  rotate,
+  type Side,
   scale,
+  sides,
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
+} from 'threepoint/math';
 import {
   type ArmSteps,
   type BodyBits,

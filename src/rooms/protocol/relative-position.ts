@@ -1,4 +1,4 @@
-import { add, type MutableVec3, setVec3, type Vec3 } from 'threepoint/core/math/vec3';
+import { add, type MutableVec3, setVec3, type Vec3 } from 'threepoint/math';
 import type { BitReader, BitWriter } from './bit-stream';
 import { placeUnit } from './quantise';
 

@@ -1,4 +1,4 @@
-import { isObject } from 'threepoint/core/json';
+import { isObject } from 'threepoint/core';
 
 /**
  * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are sent as

@@ -1,5 +1,5 @@
-import type { Transform } from 'threepoint/core/math/pose';
-import type { SeatAction } from 'threepoint/core/tracking/seat-action';
+import type { SeatAction } from 'threepoint/core';
+import type { Transform } from 'threepoint/math';
 
 /** The part of a game's state that a Room reads. */
 export interface MatchState {

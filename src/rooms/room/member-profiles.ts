@@ -1,4 +1,4 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
+import { defaultAvatar } from 'threepoint/core';
 import type { ClientMessage, JoinRequest } from '../protocol/messages';
 import { maxVoiceSeats, type Voice } from '../protocol/voice-messages';
 import type { HostedGame } from './match-policy';

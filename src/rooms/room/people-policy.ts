@@ -1,5 +1,4 @@
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
+import { identity, vec3 } from 'threepoint/math';
 import * as v from 'valibot';
 import { maxSeats } from '../protocol/messages';
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy, MatchState } from './match-policy';

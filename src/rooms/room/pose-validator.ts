@@ -1,4 +1,4 @@
-import { copyVec3, distance, setVec3, vec3 } from 'threepoint/core/math/vec3';
+import { copyVec3, distance, setVec3, vec3 } from 'threepoint/math';
 import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PointsPacket } from '../protocol/pose-packet';
 import { TokenBucket } from './token-bucket';

@@ -1,4 +1,4 @@
-import { transformPoint, transformTracked } from 'threepoint/core/math/pose';
+import { transformPoint, transformTracked } from 'threepoint/math';
 import type { PointsPacket } from '../protocol/pose-packet';
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-policy';
 import type { RoomHost } from './room-host';

@@ -1,4 +1,4 @@
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
+import type { AvatarRef } from 'threepoint/core';
 import { type ClientMessage, type JoinRequest, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { HostedGame, MatchPolicy } from './match-policy';

@@ -1,6 +1,4 @@
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { SeatAction } from 'threepoint/core/tracking/seat-action';
+import type { AvatarRef, Calibration, SeatAction } from 'threepoint/core';
 import type { SeatInfo } from '../protocol/messages';
 import type { Voice } from '../protocol/voice-messages';
 import { PoseValidator } from './pose-validator';

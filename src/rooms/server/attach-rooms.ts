@@ -1,11 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, Server, ServerResponse } from 'node:http';
 import type { Duplex } from 'node:stream';
-import { parseRequestTarget } from 'threepoint-http/request-target';
-import { sendResponse } from 'threepoint-http/response';
-import { createRouter, noPage } from 'threepoint-http/router';
-import { createSitePolicy, type SitePolicy } from 'threepoint-http/site-policy';
-import { refusesUpgrade, withHostCheck } from 'threepoint-http/web-server';
+import { parseRequestTarget, sendResponse, createRouter, noPage, createSitePolicy, type SitePolicy, refusesUpgrade, withHostCheck } from 'threepoint-http';
 import { peopleKind, peopleRoomKind } from '../room/people-policy';
 import type { RoomKind, RoomKinds } from '../room/room-kind';
 import { createRelay } from './relay';

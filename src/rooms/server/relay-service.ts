@@ -1,12 +1,8 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
-import { checked } from 'threepoint/core/validation/validation';
-import { AdminGuard } from 'threepoint-http/admin-guard';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/http-error';
-import { type HttpResponse, jsonResponse } from 'threepoint-http/response';
-import { type Call, jsonOf, type Route, type Service } from 'threepoint-http/router';
+import { checked } from 'threepoint/core';
+import { AdminGuard, clientAddressOf, HttpError, type HttpResponse, jsonResponse, type Call, jsonOf, type Route, type Service } from 'threepoint-http';
 import * as v from 'valibot';
 import type { RoomKind, RoomKinds } from '../room/room-kind';
 import { createJoinLimit } from './access/join-limit';

@@ -1,8 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { type Logger, pino } from 'pino';
 import type { Server } from 'socket.io';
-import type { Service } from 'threepoint-http/router';
-import type { UpgradeListener } from 'threepoint-http/web-server';
+import type { Service, UpgradeListener } from 'threepoint-http';
 import type { RoomKinds } from '../room/room-kind';
 import { RoomTokens } from './access/room-tokens';
 import { avatarRoutes } from './avatars/avatar-routes';

@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import type { Progress } from '../model/progress/progress';
 import type {
   Claim,

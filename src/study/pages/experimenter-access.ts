@@ -1,8 +1,5 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { ServerPresence } from 'threepoint-http/server-presence';
-import { button, element } from 'threepoint-ui/element';
-import { chooser } from 'threepoint-ui/fields';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { reasonOf } from 'threepoint/core';
+import { button, chooser, element, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../client/study-client';
 import type { RecordedStudy, StudyListing } from '../model/progress/study-api';
 

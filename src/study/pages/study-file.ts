@@ -1,5 +1,5 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import { type StudyPlan, storedPlan } from '../model/plan/plan';
 import { checkedRecord, type StudyRecord } from '../model/records/study-record';
 

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 
 /** A cell: text or a node. */
 export type TableCell = string | Node;

@@ -1,6 +1,5 @@
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
+import type { TrackingFrame } from 'threepoint/core';
+import { type CalibrationGuide, type CalibrationStep, createCalibrationGuide } from 'threepoint-ui';
 import { setupFaults } from '../model/plan/remote-setup';
 import type { ParticipantSession } from './session/participant-session';
 import type { StudyHost } from './trial/study-host';

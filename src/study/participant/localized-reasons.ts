@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import { PhrasedError, type Phrases } from '../model/phrases/phrases';
 import { refusals } from '../model/progress/apply-event';
 

@@ -1,4 +1,4 @@
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackingFrame } from 'threepoint/core';
 
 /** The height above the eyes [m] and the duration [s] of the gesture. */
 const raisedBy = 0.1;

@@ -1,5 +1,5 @@
-import { otherSide } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackingFrame } from 'threepoint/core';
+import { otherSide } from 'threepoint/math';
 import type { ProgressEvent } from '../model/progress/apply-event';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';

@@ -1,10 +1,7 @@
 import 'threepoint-ui/styles/study.css';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import { rotate } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { monotonic } from 'threepoint/core/tracking/page-clock';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { monotonic, type Pointer, type TrackingFrame } from 'threepoint/core';
+import { rotate, vec3 } from 'threepoint/math';
+import { pageFolder } from 'threepoint-ui';
 import { createParticipantClient } from '../client/study-client';
 import { invitationIn, studyLink, withdrawalLink } from '../client/study-link';
 import { createStudyCard, type StudyCard } from './forms/study-card';

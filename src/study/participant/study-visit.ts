@@ -1,4 +1,4 @@
-import { formatSentence } from 'threepoint-ui/text-format';
+import { formatSentence } from 'threepoint-ui';
 import { NoStudyServer, type ParticipantClient, ServerRefusal } from '../client/study-client';
 import { inLanguage } from '../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';

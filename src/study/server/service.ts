@@ -1,13 +1,19 @@
 import type { IncomingMessage } from 'node:http';
 import type { Worker } from 'node:worker_threads';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { findClientAddress } from 'threepoint-http/client-address';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { HttpError } from 'threepoint-http/http-error';
-import { shortageOf } from 'threepoint-http/resource-shortage';
-import type { HttpResponse } from 'threepoint-http/response';
-import type { Call, Route, Service } from 'threepoint-http/router';
-import { startThread, ThreadCalls, ThreadUnavailable } from 'threepoint-http/thread-calls';
+import { reasonOf } from 'threepoint/core';
+import {
+  type Call,
+  ConfigurationError,
+  findClientAddress,
+  HttpError,
+  type HttpResponse,
+  type Route,
+  type Service,
+  shortageOf,
+  startThread,
+  ThreadCalls,
+  ThreadUnavailable,
+} from 'threepoint-http';
 import { retryAfterSeconds, type StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
 import type { RouteAccess } from './routes/guard';
 import type { StudyRequest, StudyRoute } from './routes/route';

@@ -1,9 +1,7 @@
 import { join } from 'node:path';
 import type { MessagePort } from 'node:worker_threads';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { FailedAttempt } from 'threepoint-http/auth-throttle';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { answerCalls, logFrom } from 'threepoint-http/thread-calls';
+import { reasonOf } from 'threepoint/core';
+import { answerCalls, ConfigurationError, type FailedAttempt, logFrom } from 'threepoint-http';
 import { createExporter } from './export/exporter';
 import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
 import type { StudyRequest, StudyRoute } from './routes/route';

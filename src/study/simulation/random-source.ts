@@ -1,4 +1,4 @@
-import { nextRandom, type RandomState } from 'threepoint/core/math/random';
+import { nextRandom, type RandomState } from 'threepoint/math';
 import { randomFor } from '../model/plan/shuffle';
 
 /** A seeded source of random numbers, whose state advances with every number. */

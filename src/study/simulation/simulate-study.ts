@@ -1,4 +1,4 @@
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import type { LocalizedText } from '../model/phrases/localized-text';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';

@@ -1,4 +1,4 @@
-import { createNormalRandom } from 'threepoint/core/math/random';
+import { createNormalRandom } from 'threepoint/math';
 import { rankSumPs, standardError } from './between-tests';
 import { cached } from './distributions';
 import { signedRankP } from './paired-tests';

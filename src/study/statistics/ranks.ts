@@ -1,4 +1,4 @@
-import { bisect } from 'threepoint/core/math/bisection';
+import { bisect } from 'threepoint/math';
 import { normalCdf } from './distributions';
 import { confidence, type Interval, roundingOf } from './summaries';
 

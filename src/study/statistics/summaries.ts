@@ -1,4 +1,4 @@
-import { bisect } from 'threepoint/core/math/bisection';
+import { bisect } from 'threepoint/math';
 import { incompleteBeta } from './distributions';
 
 /** The confidence of the intervals of means, differences, d and rank-biserial correlations. */

@@ -1,6 +1,6 @@
 import { type Avatar, createAvatar } from '../avatar/avatar';
 import { createWorkerCheck } from '../avatar/file/avatar-check-client';
-import { parseAvatar } from '../avatar/load-avatar';
+import { type Decoders, parseAvatar } from '../avatar/load-avatar';
 import { loadUntrustedAvatar } from '../avatar/load-untrusted-avatar';
 import { reasonOf } from '../core/errors/reasons';
 import { nameOfAddress } from '../core/files';
@@ -21,6 +21,12 @@ export interface LoadAvatarOptions {
    * 20 MB, 100,000 triangles, 64 million pixels. Default: false.
    */
   readonly untrusted?: boolean;
+}
+
+/** Options of `avatarMotionWriter`. */
+export interface AvatarMotionOptions extends Pick<LoadAvatarOptions, 'bones'> {
+  /** The decoders of compressed meshes and textures. Default: none, so that a compressed file is rejected. */
+  readonly decoders?: Decoders;
 }
 
 /** The URL of an avatar's file, the file, or its bytes. */
@@ -67,15 +73,14 @@ export async function loadMannequin(): Promise<Avatar> {
  */
 export async function avatarMotionWriter(
   source: AvatarSource,
-  options: Pick<LoadAvatarOptions, 'bones'> = {},
+  options: AvatarMotionOptions = {},
 ): Promise<MotionWriter> {
-  assertOptions('avatarMotionWriter', options, ['bones']);
-  const { bones } = options;
+  assertOptions('avatarMotionWriter', options, ['bones', 'decoders']);
   const [{ createAvatarMotionWriter }, { name, bytes }] = await Promise.all([
     import('../avatar/avatar-motion-writer'),
     read(source),
   ]);
-  return createAvatarMotionWriter(bytes, name, { bones });
+  return createAvatarMotionWriter(bytes, name, options);
 }
 
 async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayBuffer }> {

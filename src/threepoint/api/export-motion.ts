@@ -1,4 +1,4 @@
-import type { Recording } from '../core/tracking/recording';
+import type { Replayable } from '../core/tracking/recording';
 import { assertOptions, optionNames } from './assert-options';
 import { loadWithoutRuntime } from './load-learned';
 import type { MotionFile, MotionFileOptions } from './motion-file';
@@ -25,7 +25,7 @@ const exportOptions = optionNames<ExportMotionOptions>({
  * const { parts, type, extension } = await exportMotion(recording, { format: 'bvh' });
  * const file = new File(parts, `motion.${extension}`, { type });
  */
-export async function exportMotion(recording: Recording, options: ExportMotionOptions): Promise<MotionFile> {
+export async function exportMotion(recording: Replayable, options: ExportMotionOptions): Promise<MotionFile> {
   assertOptions('exportMotion', options, exportOptions);
   // Loaded on demand: pages that export nothing do not load the writers.
   const { writeMotionFile } = await import('./write-motion-file');

@@ -1,4 +1,9 @@
 // "threepoint": a body from three tracked points, without three.js and without a DOM.
+
+export { avatarLimits, untrustedAvatarLimits } from '../avatar/file/avatar-limits';
+export { sha256Base64Url } from '../avatar/file/file-hash';
+export type { DownloadOptions, FileKind } from '../avatar/file/limited-download';
+export { downloadLimited, fileTooLargeError } from '../avatar/file/limited-download';
 export type { AvatarPose, TrackedFeet, UpperBodyPose } from '../core/body/avatar-pose';
 export { copyAvatarPose } from '../core/body/avatar-pose';
 export type { Calibration } from '../core/body/calibration';
@@ -41,3 +46,5 @@ export { createEstimator, skeletonFromCalibration } from './checked-calibration'
 export type { InferenceProfiler } from './inference-profiler';
 export type { LoadLearnedOptions } from './load-learned';
 export { loadLearned } from './load-learned';
+export type { ReplayState } from './replayed-body';
+export { ReplayedBody } from './replayed-body';

@@ -59,3 +59,4 @@ export function onnxNetworks(options: OnnxNetworksOptions): (name: NetworkName) 
   }
   return (name) => loadRegressor(String(modelUrl(name)), others);
 }
+export { createInferenceWorker } from '../onnx/create-inference-worker';

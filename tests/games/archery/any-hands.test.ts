@@ -1,9 +1,8 @@
 import fc from 'fast-check';
-import type { Side } from 'threepoint/core/math/side';
-import { length } from 'threepoint/core/math/vec3';
-import { maximumDraw } from 'threepoint-games/archery/bow';
-import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
+import { length, type Side } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { maximumDraw } from '../../../src/games/archery/bow';
+import { ArcheryGestures, defaultArcheryGestureSettings } from '../../../src/games/archery/gestures';
 import { evenly, rotation, seed } from '../../threepoint/core/arbitraries';
 import { posed } from './bowman';
 

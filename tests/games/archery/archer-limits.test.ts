@@ -1,9 +1,9 @@
 import fc from 'fast-check';
-import { addScaled, length, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryAction, ArcheryState } from 'threepoint-games/archery/archery-state';
-import { arrowLength, maximumDraw, minimumDraw } from 'threepoint-games/archery/bow';
-import { archeryRules, releaseInterval } from 'threepoint-games/archery/rules';
+import { addScaled, length, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { ArcheryAction, ArcheryState } from '../../../src/games/archery/archery-state';
+import { arrowLength, maximumDraw, minimumDraw } from '../../../src/games/archery/bow';
+import { archeryRules, releaseInterval } from '../../../src/games/archery/rules';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { highShot, shotAt, start, tickSeconds, told } from './shots';

@@ -1,18 +1,27 @@
-import { allReleased, type Button, type Buttons, type HandButtons } from 'threepoint/core/input/button-presses';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import { otherSide, type Side } from 'threepoint/core/math/side';
-import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BowView } from 'threepoint-games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
+import { allReleased, type Button, type Buttons, type HandButtons, type TrackingFrame } from 'threepoint/core';
+import {
+  add,
+  addScaled,
+  cross,
+  identity,
+  normalise,
+  otherSide,
+  reject,
+  type Side,
+  type TrackedPose,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import type { BowView } from '../../../src/games/archery/archery-state';
+import { arrowRestHeight, braceHeight } from '../../../src/games/archery/bow';
 import {
   type ArcheryGestureSettings,
   ArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
-} from 'threepoint-games/archery/gestures';
-import { wristAround } from 'threepoint-games/fist';
+} from '../../../src/games/archery/gestures';
+import { wristAround } from '../../../src/games/fist';
 
 /** What an archer does in one frame who holds the bow out and has the other hand on the line of the arrow. */
 export interface Posed {

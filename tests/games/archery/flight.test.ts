@@ -1,6 +1,7 @@
 import fc from 'fast-check';
-import { addScaled, distance, dot, length, normalise, scale, subtract, vec3 } from 'threepoint/core/math/vec3';
-import type { Target } from 'threepoint-games/archery/archery-state';
+import { addScaled, distance, dot, length, normalise, scale, subtract, vec3 } from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import type { Target } from '../../../src/games/archery/archery-state';
 import {
   arrowLength,
   arrowMass,
@@ -9,11 +10,10 @@ import {
   maximumDraw,
   minimumDraw,
   stiffness,
-} from 'threepoint-games/archery/bow';
-import { firstHit, releaseDirection, timeToGround, timeToTarget, timeToWall } from 'threepoint-games/archery/flight';
-import { walls } from 'threepoint-games/archery/rules';
-import { gravity, type Launch, launchDirection, positionAt, velocityAt } from 'threepoint-games/ballistics';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/games/archery/bow';
+import { firstHit, releaseDirection, timeToGround, timeToTarget, timeToWall } from '../../../src/games/archery/flight';
+import { walls } from '../../../src/games/archery/rules';
+import { gravity, type Launch, launchDirection, positionAt, velocityAt } from '../../../src/games/ballistics';
 import { direction, evenly, seed } from '../../threepoint/core/arbitraries';
 
 const launch: fc.Arbitrary<Launch> = fc

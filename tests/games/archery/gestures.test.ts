@@ -1,12 +1,10 @@
-import { allReleased, type Button, createButtonPresses } from 'threepoint/core/input/button-presses';
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { add, addScaled, distance, dot, normalise, up, vec3 } from 'threepoint/core/math/vec3';
-import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from 'threepoint-games/archery/bow';
-import { holdSeconds } from 'threepoint-games/archery/held-bow';
-import { archeryRules } from 'threepoint-games/archery/rules';
-import { fistOf } from 'threepoint-games/fist';
+import { allReleased, type Button, createButtonPresses } from 'threepoint/core';
+import { add, addScaled, distance, dot, fromAxisAngle, normalise, rotate, type Side, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../src/games/archery/bow';
+import { holdSeconds } from '../../../src/games/archery/held-bow';
+import { archeryRules } from '../../../src/games/archery/rules';
+import { fistOf } from '../../../src/games/fist';
 import { reportFigures } from '../../reliability/report-figures';
 import { bowAt, bowman, posed } from './bowman';
 

@@ -1,12 +1,10 @@
 import fc from 'fast-check';
-import { rotate } from 'threepoint/core/math/quat';
-import { otherSide, type Side } from 'threepoint/core/math/side';
-import { add, cross, distance, length, normalise, up, vec3 } from 'threepoint/core/math/vec3';
-import { braceHeight } from 'threepoint-games/archery/bow';
-import { oneHandedDraw, oneHandedDrawSpeed } from 'threepoint-games/archery/nocked-arrow';
-import { archeryRules } from 'threepoint-games/archery/rules';
-import { wristAround } from 'threepoint-games/fist';
+import { add, cross, distance, length, normalise, otherSide, rotate, type Side, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { braceHeight } from '../../../src/games/archery/bow';
+import { oneHandedDraw, oneHandedDrawSpeed } from '../../../src/games/archery/nocked-arrow';
+import { archeryRules } from '../../../src/games/archery/rules';
+import { wristAround } from '../../../src/games/fist';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import { bowAt, bowman } from './bowman';
 import { shotWithOneHand } from './one-handed-round';

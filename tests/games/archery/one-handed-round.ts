@@ -1,10 +1,9 @@
-import { otherSide, type Side } from 'threepoint/core/math/side';
-import { addScaled, normalise, reject, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
-import { releaseDirection } from 'threepoint-games/archery/flight';
-import { oneHandedDraw } from 'threepoint-games/archery/nocked-arrow';
-import { archeryRules } from 'threepoint-games/archery/rules';
+import { addScaled, normalise, otherSide, reject, type Side, up, type Vec3, vec3 } from 'threepoint/math';
+import type { ArcheryState } from '../../../src/games/archery/archery-state';
+import { arrowRestHeight, braceHeight } from '../../../src/games/archery/bow';
+import { releaseDirection } from '../../../src/games/archery/flight';
+import { oneHandedDraw } from '../../../src/games/archery/nocked-arrow';
+import { archeryRules } from '../../../src/games/archery/rules';
 import { bowman } from './bowman';
 
 /** Returns the direction of the knuckles of a hand with the bow at `bowAt` for its arrow to hit the target. */

@@ -1,16 +1,20 @@
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { ArcherBody } from 'threepoint-games/archery/archer-postures';
-import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
+import type { Buttons, TrackingFrame } from 'threepoint/core';
+import type { ArcherBody } from '../../../src/games/archery/archer-postures';
+import type {
+  ArcheryAction,
+  ArcheryEvent,
+  ArcheryOptions,
+  ArcheryState,
+} from '../../../src/games/archery/archery-state';
 import {
   ArcheryGestures,
   type BowCue,
   defaultArcheryGestureSettings,
   type GestureFrame,
-} from 'threepoint-games/archery/gestures';
-import { archeryRules, delayed, isArmed } from 'threepoint-games/archery/rules';
-import { createSimulatedArcher } from 'threepoint-games/archery/simulated-archer';
-import { createMatch } from 'threepoint-games/match';
+} from '../../../src/games/archery/gestures';
+import { archeryRules, delayed, isArmed } from '../../../src/games/archery/rules';
+import { createSimulatedArcher } from '../../../src/games/archery/simulated-archer';
+import { createMatch } from '../../../src/games/match';
 
 /** What happened in a round that was played. */
 export interface Round {

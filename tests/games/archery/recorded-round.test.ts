@@ -1,10 +1,10 @@
 import fc from 'fast-check';
-import { distance, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryAction, ArcheryState } from 'threepoint-games/archery/archery-state';
-import { maximumDraw } from 'threepoint-games/archery/bow';
-import { archeryRules, delayed } from 'threepoint-games/archery/rules';
-import { createMatch } from 'threepoint-games/match';
+import { distance, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { ArcheryAction, ArcheryState } from '../../../src/games/archery/archery-state';
+import { maximumDraw } from '../../../src/games/archery/bow';
+import { archeryRules, delayed } from '../../../src/games/archery/rules';
+import { createMatch } from '../../../src/games/match';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { shotAt, start, tickSeconds } from './shots';
 

@@ -1,10 +1,10 @@
 import fc from 'fast-check';
-import { dot, length, normalise, scale, subtract, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryAction } from 'threepoint-games/archery/archery-state';
-import { arrowSpeed } from 'threepoint-games/archery/bow';
-import { firstHit } from 'threepoint-games/archery/flight';
-import { delayed, matchTime, secondsLeft, walls, zone } from 'threepoint-games/archery/rules';
+import { dot, length, normalise, scale, subtract, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { ArcheryAction } from '../../../src/games/archery/archery-state';
+import { arrowSpeed } from '../../../src/games/archery/bow';
+import { firstHit } from '../../../src/games/archery/flight';
+import { delayed, matchTime, secondsLeft, walls, zone } from '../../../src/games/archery/rules';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { highShot, shotAt, start, tickSeconds, told, wideOf } from './shots';
 

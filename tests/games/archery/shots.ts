@@ -1,8 +1,13 @@
-import { add, addScaled, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryAction, ArcheryEvent, ArcheryOptions, ArcheryState } from 'threepoint-games/archery/archery-state';
-import { arrowLength } from 'threepoint-games/archery/bow';
-import { releaseDirection } from 'threepoint-games/archery/flight';
-import { archeryRules } from 'threepoint-games/archery/rules';
+import { add, addScaled, normalise, type Vec3, vec3 } from 'threepoint/math';
+import type {
+  ArcheryAction,
+  ArcheryEvent,
+  ArcheryOptions,
+  ArcheryState,
+} from '../../../src/games/archery/archery-state';
+import { arrowLength } from '../../../src/games/archery/bow';
+import { releaseDirection } from '../../../src/games/archery/flight';
+import { archeryRules } from '../../../src/games/archery/rules';
 
 export const { tickSeconds } = archeryRules;
 

@@ -1,16 +1,26 @@
 import fc from 'fast-check';
-import type { Button } from 'threepoint/core/input/button-presses';
-import { angleBetween, rotate } from 'threepoint/core/math/quat';
-import { nextRandom, type RandomState } from 'threepoint/core/math/random';
-import type { Side } from 'threepoint/core/math/side';
-import { add, distance, length, scale, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcherBody } from 'threepoint-games/archery/archer-postures';
-import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { arrowSpeed } from 'threepoint-games/archery/bow';
-import { archeryRules } from 'threepoint-games/archery/rules';
-import { createSimulatedArcher } from 'threepoint-games/archery/simulated-archer';
-import { fistOf } from 'threepoint-games/fist';
+import type { Button } from 'threepoint/core';
+import {
+  add,
+  angleBetween,
+  distance,
+  length,
+  nextRandom,
+  type RandomState,
+  rotate,
+  type Side,
+  scale,
+  subtract,
+  up,
+  vec3,
+} from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { ArcherBody } from '../../../src/games/archery/archer-postures';
+import type { ArcheryState } from '../../../src/games/archery/archery-state';
+import { arrowSpeed } from '../../../src/games/archery/bow';
+import { archeryRules } from '../../../src/games/archery/rules';
+import { createSimulatedArcher } from '../../../src/games/archery/simulated-archer';
+import { fistOf } from '../../../src/games/fist';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { playRound, steady } from './playing';
 

@@ -1,8 +1,8 @@
-import { ArcheryGestures, defaultArcheryGestureSettings } from 'threepoint-games/archery/gestures';
-import { archeryRules, delayed } from 'threepoint-games/archery/rules';
-import { createSteeredArcher, type Steering } from 'threepoint-games/archery/steered-archer';
-import { createMatch } from 'threepoint-games/match';
 import { describe, expect, test } from 'vitest';
+import { ArcheryGestures, defaultArcheryGestureSettings } from '../../../src/games/archery/gestures';
+import { archeryRules, delayed } from '../../../src/games/archery/rules';
+import { createSteeredArcher, type Steering } from '../../../src/games/archery/steered-archer';
+import { createMatch } from '../../../src/games/match';
 
 /** A person with a mouse: what is held when, at 60 frames a second. */
 function play(

@@ -1,16 +1,15 @@
 import fc from 'fast-check';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { rotate } from 'threepoint/core/math/quat';
-import { distance, length, subtract, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallBot } from 'threepoint-games/ball/ball-bot';
-import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { BallGestures } from 'threepoint-games/ball/gestures';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
-import { stations, zoneRadius } from 'threepoint-games/ball/stations';
+import type { TrackingFrame } from 'threepoint/core';
+import { distance, length, rotate, subtract, vec3 } from 'threepoint/math';
 import { describe, expect, it } from 'vitest';
+import type { BallBot } from '../../../src/games/ball/ball-bot';
+import type { BallEvent, BallInput, BallState } from '../../../src/games/ball/ball-state';
+import { BallGestures } from '../../../src/games/ball/gestures';
+import { ballRules } from '../../../src/games/ball/rules';
+import { createSimulatedHolder } from '../../../src/games/ball/simulated-holder';
+import { createSimulatedThrower } from '../../../src/games/ball/simulated-thrower';
+import { stations, zoneRadius } from '../../../src/games/ball/stations';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
 
 interface Match {
   readonly state: BallState;

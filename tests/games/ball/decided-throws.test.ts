@@ -1,11 +1,10 @@
 import fc from 'fast-check';
-import { nextRandom } from 'threepoint/core/math/random';
-import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallInput } from 'threepoint-games/ball/ball-state';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { ballMatchTime } from 'threepoint-games/ball/state-selectors';
-import { rackPosition } from 'threepoint-games/ball/stations';
+import { add, nextRandom, type Vec3, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import type { BallInput } from '../../../src/games/ball/ball-state';
+import { ballRules } from '../../../src/games/ball/rules';
+import { ballMatchTime } from '../../../src/games/ball/state-selectors';
+import { rackPosition } from '../../../src/games/ball/stations';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { headOf, hold, inFront, leftThrower, stand, tickSeconds, told, velocityTo } from './playing';
 

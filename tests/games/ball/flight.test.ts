@@ -12,13 +12,13 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import type { Basket, TimedLaunch } from 'threepoint-games/ball/ball-state';
-import { basketDepth, basketRadius } from 'threepoint-games/ball/basket';
-import { firstBasketContact } from 'threepoint-games/ball/basket-collision';
-import { ballInAir, ballOnFloor, ballRadius, floorBounceOf, floorContactTime } from 'threepoint-games/ball/flight';
-import { gravity, positionAt, velocityAt } from 'threepoint-games/ballistics';
+} from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { Basket, TimedLaunch } from '../../../src/games/ball/ball-state';
+import { basketDepth, basketRadius } from '../../../src/games/ball/basket';
+import { firstBasketContact } from '../../../src/games/ball/basket-collision';
+import { ballInAir, ballOnFloor, ballRadius, floorBounceOf, floorContactTime } from '../../../src/games/ball/flight';
+import { gravity, positionAt, velocityAt } from '../../../src/games/ballistics';
 import { direction, evenly, seed, vector } from '../../threepoint/core/arbitraries';
 
 const still = (position: Vec3, normal = vec3(0, 1, 0), seconds = 5): [Basket, Basket] => [

@@ -1,17 +1,28 @@
 import fc from 'fast-check';
-import { allReleased, type Button, type HandButtons } from 'threepoint/core/input/button-presses';
-import { invertTransform, type TrackedPose, transformPoint, transformPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { add, addScaled, distance, scale, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { ballRadius } from 'threepoint-games/ball/flight';
-import { BallGestures, holdSeconds } from 'threepoint-games/ball/gestures';
-import { HandVelocity, throwWindow } from 'threepoint-games/ball/hand-velocity';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { rackPosition, stations } from 'threepoint-games/ball/stations';
-import { ballInPalm, fistOf, wristAround } from 'threepoint-games/fist';
+import { allReleased, type Button, type HandButtons, type TrackingFrame } from 'threepoint/core';
+import {
+  add,
+  addScaled,
+  distance,
+  fromAxisAngle,
+  identity,
+  invertTransform,
+  scale,
+  type TrackedPose,
+  transformPoint,
+  transformPose,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { BallInput, BallState } from '../../../src/games/ball/ball-state';
+import { ballRadius } from '../../../src/games/ball/flight';
+import { BallGestures, holdSeconds } from '../../../src/games/ball/gestures';
+import { HandVelocity, throwWindow } from '../../../src/games/ball/hand-velocity';
+import { ballRules } from '../../../src/games/ball/rules';
+import { rackPosition, stations } from '../../../src/games/ball/stations';
+import { ballInPalm, fistOf, wristAround } from '../../../src/games/fist';
 import { reportFigures } from '../../reliability/report-figures';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import { holder, leftThrower, told } from './playing';

@@ -1,10 +1,9 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { add, addScaled, normalise, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { rackPosition, stations } from 'threepoint-games/ball/stations';
-import { gravity } from 'threepoint-games/ballistics';
-import { wristAround } from 'threepoint-games/fist';
+import { add, addScaled, normalise, type Pose, scale, subtract, type Vec3, vec3 } from 'threepoint/math';
+import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from '../../../src/games/ball/ball-state';
+import { ballRules } from '../../../src/games/ball/rules';
+import { rackPosition, stations } from '../../../src/games/ball/stations';
+import { gravity } from '../../../src/games/ballistics';
+import { wristAround } from '../../../src/games/fist';
 
 export const { tickSeconds } = ballRules;
 

@@ -1,9 +1,8 @@
-import { nextRandom } from 'threepoint/core/math/random';
-import { add, vec3 } from 'threepoint/core/math/vec3';
-import type { BallEvent, BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { rackPosition } from 'threepoint-games/ball/stations';
+import { add, nextRandom, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { BallEvent, BallInput, BallState } from '../../../src/games/ball/ball-state';
+import { ballRules } from '../../../src/games/ball/rules';
+import { rackPosition } from '../../../src/games/ball/stations';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { headOf, hold, inFront, stand, tickSeconds, velocityTo } from './playing';

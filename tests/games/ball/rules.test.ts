@@ -1,14 +1,14 @@
 import fc from 'fast-check';
-import { add, distance, length, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { armReach, fastestThrow, maxDelay } from 'threepoint-games/ball/action-rules';
-import type { BallInput } from 'threepoint-games/ball/ball-state';
-import { basketInHands, gripRadius } from 'threepoint-games/ball/basket';
-import { ballRadius } from 'threepoint-games/ball/flight';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { ballPosition, ballSecondsLeft, ballsLeft } from 'threepoint-games/ball/state-selectors';
-import { rackPosition, stations, throwingDistance } from 'threepoint-games/ball/stations';
-import { wristAround } from 'threepoint-games/fist';
+import { add, distance, length, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { armReach, fastestThrow, maxDelay } from '../../../src/games/ball/action-rules';
+import type { BallInput } from '../../../src/games/ball/ball-state';
+import { basketInHands, gripRadius } from '../../../src/games/ball/basket';
+import { ballRadius } from '../../../src/games/ball/flight';
+import { ballRules } from '../../../src/games/ball/rules';
+import { ballPosition, ballSecondsLeft, ballsLeft } from '../../../src/games/ball/state-selectors';
+import { rackPosition, stations, throwingDistance } from '../../../src/games/ball/stations';
+import { wristAround } from '../../../src/games/fist';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import { headOf, hold, holder, inFront, leftThrower, rightThrower, stand, tickSeconds, told } from './playing';
 

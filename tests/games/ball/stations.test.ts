@@ -1,5 +1,5 @@
-import { holderStation, rotationForRound } from 'threepoint-games/ball/stations';
 import { describe, expect, test } from 'vitest';
+import { holderStation, rotationForRound } from '../../../src/games/ball/stations';
 
 describe('another round', () => {
   test('needs a thrower and the holder, who stay where roles do not move on', () => {

@@ -1,21 +1,20 @@
-import { transformPoint } from 'threepoint/core/math/pose';
-import { distance, normalise, subtract, vec3 } from 'threepoint/core/math/vec3';
-import type { BallBot } from 'threepoint-games/ball/ball-bot';
-import type { BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
-import { BallGestures } from 'threepoint-games/ball/gestures';
-import type { PlayerBody } from 'threepoint-games/ball/player-postures';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
-import { stations } from 'threepoint-games/ball/stations';
+import { distance, normalise, subtract, transformPoint, vec3 } from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import type { BallBot } from '../../../src/games/ball/ball-bot';
+import type { BallState, TimedLaunch } from '../../../src/games/ball/ball-state';
+import { BallGestures } from '../../../src/games/ball/gestures';
+import type { PlayerBody } from '../../../src/games/ball/player-postures';
+import { ballRules } from '../../../src/games/ball/rules';
+import { createSimulatedHolder } from '../../../src/games/ball/simulated-holder';
+import { createSimulatedThrower } from '../../../src/games/ball/simulated-thrower';
+import { stations } from '../../../src/games/ball/stations';
 import {
   type BallSteering,
   createSteeredHolder,
   createSteeredThrower,
   type SteeredPlayer,
-} from 'threepoint-games/ball/steered-players';
-import { fallTime, positionAt } from 'threepoint-games/ballistics';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/games/ball/steered-players';
+import { fallTime, positionAt } from '../../../src/games/ballistics';
 
 const bodyAt = (player: number): PlayerBody => ({ eyeHeight: 1.6, arenaFromFloor: stations[player]! });
 

@@ -1,9 +1,8 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { nothingPressed } from 'threepoint/core/input/button-presses';
-import { normalise, vec3 } from 'threepoint/core/math/vec3';
-import { createArcheryActivity } from 'threepoint-page/archery/archery-activity';
-import { settlingSeconds } from 'threepoint-page/scene/boards/sheet';
+import { defaultCalibration, nothingPressed } from 'threepoint/core';
+import { normalise, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { createArcheryActivity } from '../../../src/page/archery/archery-activity';
+import { settlingSeconds } from '../../../src/page/scene/boards/sheet';
 import { posed } from '../../games/archery/bowman';
 import { activityServices } from '../activity-services';
 import { drawNowhere } from '../shell/drawing-in-node';

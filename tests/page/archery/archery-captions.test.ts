@@ -1,11 +1,9 @@
-import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { Arrow, Landing, Target } from 'threepoint-games/archery/archery-state';
-import { archeryRules } from 'threepoint-games/archery/rules';
-import { eventCaption } from 'threepoint-page/archery/sound/archery-captions';
-import { ArcherySounds } from 'threepoint-page/archery/sound/archery-sounds';
-import { directionText } from 'threepoint-page/scene/direction-text';
+import { fromAxisAngle, identity, up, type Vec3, vec3 } from 'threepoint/math';
+import { type Arrow, archeryRules, type Landing, type Target } from 'threepoint-games/archery';
 import { describe, expect, it } from 'vitest';
+import { eventCaption } from '../../../src/page/archery/sound/archery-captions';
+import { ArcherySounds } from '../../../src/page/archery/sound/archery-sounds';
+import { directionText } from '../../../src/page/scene/direction-text';
 
 const target = (x: number, z: number, points: number): Target => ({
   centre: vec3(x, 1.4, z),

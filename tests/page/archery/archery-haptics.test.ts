@@ -1,7 +1,7 @@
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { Arrow, Landing } from 'threepoint-games/archery/archery-state';
-import { eventHaptics } from 'threepoint-page/archery/sound/archery-haptics';
+import { vec3 } from 'threepoint/math';
+import type { Arrow, Landing } from 'threepoint-games/archery';
 import { describe, expect, it } from 'vitest';
+import { eventHaptics } from '../../../src/page/archery/sound/archery-haptics';
 
 const hit = (points: number, target: number | null = 1) => {
   const landing: Landing = {

@@ -1,9 +1,7 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { allReleased } from 'threepoint/core/input/button-presses';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import { ArcheryPlay, probeOf } from 'threepoint-page/archery/archery-play';
+import { allReleased, createPageClock, defaultCalibration } from 'threepoint/core';
+import { vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
 import { type Posed, posed } from '../../games/archery/bowman';
 
 const frameMs = 1000 / 72;

@@ -1,6 +1,6 @@
-import { creak, earth, rattle, thud, twang } from 'threepoint-page/archery/sound/archery-synthesis';
-import { bell, chime, click, warning, whoosh } from 'threepoint-page/scene/sound/sound-synthesis';
 import { describe, expect, it } from 'vitest';
+import { creak, earth, rattle, thud, twang } from '../../../src/page/archery/sound/archery-synthesis';
+import { bell, chime, click, warning, whoosh } from '../../../src/page/scene/sound/sound-synthesis';
 
 const rate = 48000;
 const sounds = {

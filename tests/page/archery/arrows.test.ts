@@ -1,12 +1,11 @@
 import { Matrix4, Vector3 } from 'three';
-import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from 'threepoint/core/math/vec3';
-import type { Arrow, Landing } from 'threepoint-games/archery/archery-state';
-import { arrowLength } from 'threepoint-games/archery/bow';
-import { positionAt, velocityAt } from 'threepoint-games/ballistics';
-import { arrowPose } from 'threepoint-page/archery/bow/arrow-pose';
-import { arrowGeometry, createArrows } from 'threepoint-page/archery/bow/arrows';
-import { createTrails } from 'threepoint-page/archery/bow/trails';
+import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from 'threepoint/math';
+import { positionAt, velocityAt } from 'threepoint-games';
+import { type Arrow, arrowLength, type Landing } from 'threepoint-games/archery';
 import { describe, expect, it } from 'vitest';
+import { arrowPose } from '../../../src/page/archery/bow/arrow-pose';
+import { arrowGeometry, createArrows } from '../../../src/page/archery/bow/arrows';
+import { createTrails } from '../../../src/page/archery/bow/trails';
 
 const release = { time: 2, position: vec3(0, 1.5, -0.8), velocity: vec3(1, 3, -30) };
 const after = 0.3;

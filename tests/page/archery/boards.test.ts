@@ -1,12 +1,11 @@
 import { Color } from 'three';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryState, Arrow, Landing } from 'threepoint-games/archery/archery-state';
-import { archeryRules } from 'threepoint-games/archery/rules';
-import { arrowResult, onRestartButton } from 'threepoint-page/archery/boards/result-panel';
-import { boardText } from 'threepoint-page/archery/boards/scoreboard';
-import { ringColor, rings } from 'threepoint-page/archery/range/target-rings';
-import { scoredBy } from 'threepoint-page/archery/range/target-stands';
+import { vec3 } from 'threepoint/math';
+import { type ArcheryState, type Arrow, archeryRules, type Landing } from 'threepoint-games/archery';
 import { describe, expect, it } from 'vitest';
+import { arrowResult, onRestartButton } from '../../../src/page/archery/boards/result-panel';
+import { boardText } from '../../../src/page/archery/boards/scoreboard';
+import { ringColor, rings } from '../../../src/page/archery/range/target-rings';
+import { scoredBy } from '../../../src/page/archery/range/target-stands';
 
 const shot = (id: number, landing: Partial<Landing> | null): Arrow => ({
   id,

@@ -1,10 +1,10 @@
 import fc from 'fast-check';
 import { type BufferAttribute, Mesh } from 'three';
-import { distance, vec3 } from 'threepoint/core/math/vec3';
-import { braceHeight, maximumDraw } from 'threepoint-games/archery/bow';
-import { createBow } from 'threepoint-page/archery/bow/bow-model';
-import { stringBow } from 'threepoint-page/archery/bow/limb-shape';
+import { distance, vec3 } from 'threepoint/math';
+import { braceHeight, maximumDraw } from 'threepoint-games/archery';
 import { describe, expect, it } from 'vitest';
+import { createBow } from '../../../src/page/archery/bow/bow-model';
+import { stringBow } from '../../../src/page/archery/bow/limb-shape';
 import { fromEulerYxz } from '../../threepoint/core/euler-angles';
 import { bowView, drawnString } from './bow-view';
 

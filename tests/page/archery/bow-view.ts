@@ -1,8 +1,7 @@
 import { type Group, Vector3 } from 'three';
-import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
-import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BowView } from 'threepoint-games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from 'threepoint-games/archery/bow';
+import { add, identity, type Quat, rotate, type Vec3, vec3 } from 'threepoint/math';
+import { type BowView, braceHeight } from 'threepoint-games/archery';
+import { arrowRestHeight } from '../../../src/games/archery/bow';
 
 /** A bow held at a place, its string pulled straight back by `draw` [m] and aside by `slip`, in the bow's own axes. */
 export function bowView(

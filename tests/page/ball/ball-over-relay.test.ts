@@ -1,17 +1,20 @@
 // @module-tag full
 
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
-import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
+import {
+  allReleased,
+  type Buttons,
+  createEstimator,
+  defaultCalibration,
+  forwardKinematics,
+  skeletonFromCalibration,
+  unknownFingers,
+} from 'threepoint/core';
+import { distance, type Vec3 } from 'threepoint/math';
+import { ballClientPolicy } from 'threepoint-games/ball';
 import { afterAll, expect, test } from 'vitest';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createRoomPass } from '../../../src/rooms/client/room-pass';
+import { SocketConnection } from '../../../src/rooms/client/socket-connection';
 import { type RunningRelay, startRelay } from '../../rooms/server/running-relay';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 

@@ -1,13 +1,9 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
-import { distance } from 'threepoint/core/math/vec3';
-import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { BallEvent, BallOptions } from 'threepoint-games/ball/ball-state';
-import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
+import { allReleased, type Buttons, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
+import { distance } from 'threepoint/math';
+import { type BallEvent, type BallSteering, createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, it } from 'vitest';
+import type { BallOptions } from '../../../src/games/ball/ball-state';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 /** Half of what a headset draws: every frame costs a solved body for each player. */

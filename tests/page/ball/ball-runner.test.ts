@@ -1,14 +1,11 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
-import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { createBallRunner } from 'threepoint-page/ball/ball-runner';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
-import type { ConnectionStatus, Visitor } from 'threepoint-rooms/client/connection';
-import type { PlayedStep } from 'threepoint-study/model/plan/schedule';
-import { type FinishedTrial, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
+import { allReleased, type Buttons, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
+import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball';
+import type { ConnectionStatus, Visitor } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
+import { createBallRunner } from '../../../src/page/ball/ball-runner';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import type { PlayedStep } from '../../../src/study/model/plan/schedule';
+import { type FinishedTrial, PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { activityServices } from '../activity-services';
 

@@ -1,9 +1,8 @@
 import { Group } from 'three';
-import { identity } from 'threepoint/core/math/quat';
-import { vec3, zero } from 'threepoint/core/math/vec3';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { type BallScene, BallView } from 'threepoint-page/ball/ball-view';
+import { identity, vec3, zero } from 'threepoint/math';
+import { ballRules } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
+import { type BallScene, BallView } from '../../../src/page/ball/ball-view';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();

@@ -1,9 +1,9 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
-import { distance, vec3 } from 'threepoint/core/math/vec3';
-import { ballInAir, floorContactTime } from 'threepoint-games/ball/flight';
-import { ballRules, defaultBallOptions } from 'threepoint-games/ball/rules';
-import { Balls } from 'threepoint-page/ball/view/balls';
+import { distance, vec3 } from 'threepoint/math';
+import { ballInAir, ballRules, defaultBallOptions } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import { floorContactTime } from '../../../src/games/ball/flight';
+import { Balls } from '../../../src/page/ball/view/balls';
 import { velocityTo } from '../../rooms/client/people';
 
 /** The look of each ball that is drawn, and the side of the court it lies on: −1 left, 1 right. */

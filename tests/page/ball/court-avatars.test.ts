@@ -1,6 +1,6 @@
-import { TransientError } from 'threepoint/core/errors/transient-error';
-import { BuiltInBodies } from 'threepoint-page/ball/court-avatars';
+import { TransientError } from 'threepoint/core';
 import { expect, test } from 'vitest';
+import { BuiltInBodies } from '../../../src/page/ball/court-avatars';
 
 test('a built-in body whose download failed is fetched again when it is needed again', async () => {
   let asked = 0;

@@ -1,10 +1,8 @@
-import { nothingPressed } from 'threepoint/core/input/button-presses';
-import type { Pose, TrackedPose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import { add, distance, vec3 } from 'threepoint/core/math/vec3';
-import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
+import { nothingPressed } from 'threepoint/core';
+import { add, distance, type Pose, type Side, type TrackedPose, vec3 } from 'threepoint/math';
+import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { holding, opening, shownAt, visitor } from '../../rooms/client/people';
 
 type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;

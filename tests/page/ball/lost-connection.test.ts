@@ -1,16 +1,14 @@
-import { allReleased, type Buttons } from 'threepoint/core/input/button-presses';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import { addScaled, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { type BallConnectionUpdate, ballClientPolicy } from 'threepoint-games/ball/ball-client';
-import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
-import type { BallGame } from 'threepoint-games/ball/ball-policy';
-import { holdSeconds } from 'threepoint-games/ball/gestures';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
-import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import { RoomSession } from 'threepoint-rooms/client/room-session';
-import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
+import { allReleased, type Buttons } from 'threepoint/core';
+import { addScaled, type Pose, type Side, type Vec3, vec3 } from 'threepoint/math';
+import { type BallGame, ballClientPolicy } from 'threepoint-games/ball';
+import type { ConnectionStatus } from 'threepoint-rooms/room';
 import { describe, expect, test } from 'vitest';
+import type { BallConnectionUpdate } from '../../../src/games/ball/ball-client';
+import type { BallRoomMessage } from '../../../src/games/ball/ball-messages';
+import { holdSeconds } from '../../../src/games/ball/gestures';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { RoomSession } from '../../../src/rooms/client/room-session';
+import type { ClientMessage } from '../../../src/rooms/protocol/messages';
 import { atRack, fists, holding, opening, shownAt, visitor } from '../../rooms/client/people';
 import { createTestRoom } from '../../rooms/room/test-room';
 

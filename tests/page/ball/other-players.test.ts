@@ -1,4 +1,4 @@
-import { hideLabel, muteLabel, otherPlayers, type SeatRow } from 'threepoint-page/ball/panel/other-players';
+import { hideLabel, muteLabel, otherPlayers, type SeatRow } from '../../../src/page/ball/panel/other-players';
 import { describe, expect, it } from 'vitest';
 
 const seated = (seat: number, change: Partial<SeatRow> = {}): SeatRow => ({

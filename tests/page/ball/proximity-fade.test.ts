@@ -1,8 +1,7 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { identity } from 'threepoint/core/math/quat';
-import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { proximityFade } from 'threepoint-page/ball/match/proximity-fade';
+import type { AvatarPose } from 'threepoint/core';
+import { identity, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { proximityFade } from '../../../src/page/ball/match/proximity-fade';
 
 const tracked = (position: Vec3) => ({ position, orientation: identity, tracking: 'tracked' as const });
 const standing = (hand: Vec3 | null = null): AvatarPose => ({

@@ -1,16 +1,13 @@
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { BallEvent, BallPlace, BallState } from 'threepoint-games/ball/ball-state';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { catchesOf, displayedSeconds } from 'threepoint-games/ball/state-selectors';
-import { cueCaption, eventCaption } from 'threepoint-page/ball/sound/ball-captions';
-import { eventHaptics } from 'threepoint-page/ball/sound/ball-haptics';
-import type { DisplayedMatch, DisplayedPlayer } from 'threepoint-page/ball/view/displayed-match';
-import { displayName, markedName } from 'threepoint-page/ball/view/displayed-match';
-import { lobbyButtons, seatOfButton } from 'threepoint-page/ball/view/lobby-sheet';
-import { eventLine, waitingLine, waitingSentence } from 'threepoint-page/ball/view/match-texts';
-import { labelScale } from 'threepoint-page/ball/view/name-labels';
-import { createSettling, settlingSeconds } from 'threepoint-page/scene/boards/sheet';
+import { identity, vec3 } from 'threepoint/math';
+import { type BallEvent, type BallPlace, type BallState, ballRules, catchesOf, displayedSeconds } from 'threepoint-games/ball';
+import { cueCaption, eventCaption } from '../../../src/page/ball/sound/ball-captions';
+import { eventHaptics } from '../../../src/page/ball/sound/ball-haptics';
+import type { DisplayedMatch, DisplayedPlayer } from '../../../src/page/ball/view/displayed-match';
+import { displayName, markedName } from '../../../src/page/ball/view/displayed-match';
+import { lobbyButtons, seatOfButton } from '../../../src/page/ball/view/lobby-sheet';
+import { eventLine, waitingLine, waitingSentence } from '../../../src/page/ball/view/match-texts';
+import { labelScale } from '../../../src/page/ball/view/name-labels';
+import { createSettling, settlingSeconds } from '../../../src/page/scene/boards/sheet';
 import { describe, expect, it } from 'vitest';
 
 const person = (name: string, more: Partial<DisplayedPlayer> = {}): DisplayedPlayer => ({

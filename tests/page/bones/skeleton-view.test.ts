@@ -1,5 +1,5 @@
-import { pictureSize, SkeletonView } from 'threepoint-page/bones/skeleton-view';
 import { describe, expect, test } from 'vitest';
+import { pictureSize, SkeletonView } from '../../../src/page/bones/skeleton-view';
 import { rigs } from '../../threepoint/core/humanoid/rigs';
 
 const { joints, bones } = rigs.find(({ name }) => name === 'Mixamo')!;

@@ -1,13 +1,12 @@
 import * as fc from 'fast-check';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
+import { estimatedJoints, estimatorNames } from 'threepoint/core';
 import {
   type HeadsetReport,
   reportFormat,
   reportVersion,
   trackerNames,
   worldNames,
-} from 'threepoint-page/check/headset-report';
+} from '../../../src/page/check/headset-report';
 
 const between = (min: number, max: number) => fc.double({ min, max, noNaN: true });
 const words = fc.string({ minLength: 1, maxLength: 30 }).map((text) => `x${text.trim()}`);

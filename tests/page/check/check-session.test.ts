@@ -1,6 +1,6 @@
 import type { WebGLRenderer } from 'three';
-import { enterSession } from 'threepoint-page/check/check-session';
 import { expect, test, vi } from 'vitest';
+import { enterSession } from '../../../src/page/check/check-session';
 
 class Session extends EventTarget {
   readonly inputSources = [];

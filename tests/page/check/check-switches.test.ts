@@ -1,5 +1,5 @@
-import { readCheckSwitches } from 'threepoint-page/check/check-switches';
 import { expect, test } from 'vitest';
+import { readCheckSwitches } from '../../../src/page/check/check-switches';
 
 test('an address without a query asks for a whole check in the headset', () => {
   expect(readCheckSwitches('')).toEqual({ emulate: false, pace: 1, complaints: [] });

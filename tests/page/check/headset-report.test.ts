@@ -1,7 +1,7 @@
 import * as fc from 'fast-check';
-import { ValidationError } from 'threepoint/core/validation/validation';
-import { readHeadsetReport, writeHeadsetReport } from 'threepoint-page/check/headset-report';
+import { ValidationError } from 'threepoint/core';
 import { expect, test } from 'vitest';
+import { readHeadsetReport, writeHeadsetReport } from '../../../src/page/check/headset-report';
 import { anyReport } from './any-report';
 
 test('what a check writes is read again, to four digits', () => {

@@ -1,11 +1,14 @@
-import { BodySolver } from 'threepoint/api/body-solver';
-import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { deviceBodySize, deviceJointNames } from 'threepoint/core/tracking/device-body';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { Measurements } from 'threepoint-page/check/measurements';
+import { BodySolver } from 'threepoint';
+import {
+  actorFrame,
+  createJointPoses,
+  forwardKinematics,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
 import { expect, test } from 'vitest';
+import { Measurements } from '../../../src/page/check/measurements';
+import { deviceBodySize, deviceJointNames } from '../../../src/threepoint/core/tracking/device-body';
 
 const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const kinds = { left: 'hand', right: 'controller' } as const;

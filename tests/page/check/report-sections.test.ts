@@ -1,6 +1,6 @@
 import * as fc from 'fast-check';
-import { reportSections } from 'threepoint-page/check/report-sections';
 import { expect, test } from 'vitest';
+import { reportSections } from '../../../src/page/check/report-sections';
 import { anyReport } from './any-report';
 
 test('any report has a card, and each of its figures has a unit', () => {

@@ -1,6 +1,6 @@
-import { type CheckStep, remainingSteps } from 'threepoint-page/check/check-steps';
-import { StepSequence } from 'threepoint-page/check/step-sequence';
 import { expect, test } from 'vitest';
+import { type CheckStep, remainingSteps } from '../../../src/page/check/check-steps';
+import { StepSequence } from '../../../src/page/check/step-sequence';
 
 /** Runs a sequence at 72 Hz; returns what it called, with times [s], and how many frames counted for each kind. */
 function run(remaining: () => readonly CheckStep[], pace: number) {

@@ -1,10 +1,17 @@
 import * as fc from 'fast-check';
-import type { Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply, type Quat } from 'threepoint/core/math/quat';
-import { createNormalRandom, createRandom } from 'threepoint/core/math/random';
-import { length, normalise, vec3 } from 'threepoint/core/math/vec3';
-import { type NoiseFigures, TrackerNoise } from 'threepoint-page/check/tracker-noise';
+import {
+  createNormalRandom,
+  createRandom,
+  fromAxisAngle,
+  length,
+  multiply,
+  normalise,
+  type Pose,
+  type Quat,
+  vec3,
+} from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { type NoiseFigures, TrackerNoise } from '../../../src/page/check/tracker-noise';
 
 /** A tracker that is held for 15 s: white noise by axis, and slow movement. */
 interface Held {

@@ -1,5 +1,5 @@
-import { histogramOf, TrackingLosses } from 'threepoint-page/check/tracking-losses';
 import { expect, test } from 'vitest';
+import { histogramOf, TrackingLosses } from '../../../src/page/check/tracking-losses';
 
 /** Plays a hand at 100 Hz: each letter is a frame; t tracked, l lost, m a menu of the system. */
 function played(frames: string) {

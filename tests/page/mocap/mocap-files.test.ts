@@ -1,21 +1,21 @@
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { mocapRateHz, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
 import {
+  createEstimator,
   parseRecording,
   type Replayable,
   recordingDuration,
   sampleRecording,
   writeRecording,
-} from 'threepoint/core/tracking/recording';
-import { meanErrors, meanOf } from 'threepoint-page/mocap/joint-errors';
-import { pairFiles } from 'threepoint-page/mocap/mocap-files';
-import { recordingOf } from 'threepoint-page/mocap/simulated-recording';
-import { Truth } from 'threepoint-page/mocap/truth';
+} from 'threepoint/core';
+import { mocapRateHz, prepareMocap } from 'threepoint/motion';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../../bench/evaluate/drive';
 import { addClip, emptyMeasures, report, reportNames } from '../../../bench/evaluate/measures';
 import type { RecordedFrame } from '../../../bench/evaluate/recordings';
+import { meanErrors, meanOf } from '../../../src/page/mocap/joint-errors';
+import { pairFiles } from '../../../src/page/mocap/mocap-files';
+import { recordingOf } from '../../../src/page/mocap/simulated-recording';
+import { Truth } from '../../../src/page/mocap/truth';
+import { finishWork } from '../../../src/threepoint/core/motion/work';
 import { goldenMocap, sourceOf } from '../../threepoint/core/mocap/golden-mocap';
 
 const clip = finishWork(prepareMocap(sourceOf(goldenMocap[0]!))).clips[0]!;

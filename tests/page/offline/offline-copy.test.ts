@@ -1,5 +1,5 @@
-import { OfflineCopy } from 'threepoint-page/offline/offline-copy';
 import { beforeEach, expect, test, vi } from 'vitest';
+import { OfflineCopy } from '../../../src/page/offline/offline-copy';
 
 beforeEach(() => {
   vi.stubGlobal('location', { href: 'https://a.example/threepoint/?play=ball' });

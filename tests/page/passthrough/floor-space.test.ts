@@ -1,5 +1,5 @@
-import { detectedFloors, hasSpace } from 'threepoint-page/passthrough/floor-space';
 import { describe, expect, test } from 'vitest';
+import { detectedFloors, hasSpace } from '../../../src/page/passthrough/floor-space';
 
 const rectangle = (halfWidth: number, ahead: number, behind: number) => [
   { x: -halfWidth, z: -ahead },

@@ -1,8 +1,6 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, rotate } from 'threepoint/core/math/quat';
-import { up, vec3 } from 'threepoint/core/math/vec3';
-import { MirrorStand, meetsMirror } from 'threepoint-page/passthrough/mirror-stand';
+import { fromAxisAngle, identity, type Pose, rotate, up, vec3 } from 'threepoint/math';
 import { describe, expect, test, vi } from 'vitest';
+import { MirrorStand, meetsMirror } from '../../../src/page/passthrough/mirror-stand';
 import { fakeHeadset, type Seen } from '../../threepoint/xr/fake-headset';
 
 type Place = Pose<'floor'>;

@@ -1,7 +1,6 @@
-import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { up } from 'threepoint/core/math/vec3';
-import { RoomLight } from 'threepoint-page/passthrough/room-light';
+import { fromAxisAngle, identity, up } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { RoomLight } from '../../../src/page/passthrough/room-light';
 
 const floor = {} as XRReferenceSpace;
 

@@ -1,8 +1,8 @@
 import { Box3, type Object3D } from 'three';
-import { createRange } from 'threepoint-page/archery/range/range';
-import { createCourt } from 'threepoint-page/ball/court/court';
-import { scenery } from 'threepoint-page/passthrough/passthrough-room';
 import { expect, test } from 'vitest';
+import { createRange } from '../../../src/page/archery/range/range';
+import { createCourt } from '../../../src/page/ball/court/court';
+import { scenery } from '../../../src/page/passthrough/passthrough-room';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 /** Returns the furthest that anything of a place reaches to the side in a user's room [m]. */

@@ -1,10 +1,10 @@
 import { DoubleSide, type Material, Mesh, type Object3D } from 'three';
-import { createTrails } from 'threepoint-page/archery/bow/trails';
-import { createBackstop } from 'threepoint-page/archery/range/backstop';
-import { createZone } from 'threepoint-page/archery/range/zone';
-import { createZoneRing } from 'threepoint-page/ball/court/zone-ring';
-import { createAimArc } from 'threepoint-page/ball/view/aim-arc';
 import { expect, test } from 'vitest';
+import { createTrails } from '../../../src/page/archery/bow/trails';
+import { createBackstop } from '../../../src/page/archery/range/backstop';
+import { createZone } from '../../../src/page/archery/range/zone';
+import { createZoneRing } from '../../../src/page/ball/court/zone-ring';
+import { createAimArc } from '../../../src/page/ball/view/aim-arc';
 
 test('what is transparent and seen from both sides is drawn in one pass, so that its program is not looked up anew in every frame', () => {
   const drawn: Object3D[] = [

@@ -8,9 +8,9 @@ import {
   MeshLambertMaterial,
   type Object3D,
 } from 'three';
-import { mergeMeshes } from 'threepoint-page/scene/merge-meshes';
-import { painted } from 'threepoint-page/scene/painted-geometry';
 import { describe, expect, test } from 'vitest';
+import { mergeMeshes } from '../../../src/page/scene/merge-meshes';
+import { painted } from '../../../src/page/scene/painted-geometry';
 
 const lambert = () => new MeshLambertMaterial({ vertexColors: true });
 const box = (x: number, material = lambert()) => {

@@ -1,5 +1,5 @@
-import { createSoundStage, type Recipes } from 'threepoint-page/scene/sound/sound-stage';
 import { describe, expect, test } from 'vitest';
+import { createSoundStage, type Recipes } from '../../../src/page/scene/sound/sound-stage';
 
 /** A gain, a limiter or a buffer of the browser's audio: takes what it is given. */
 const node = () => ({

@@ -1,5 +1,5 @@
-import { VoiceSound } from 'threepoint-page/scene/sound/voice-sound';
 import { expect, test, vi } from 'vitest';
+import { VoiceSound } from '../../../src/page/scene/sound/voice-sound';
 
 class Node {
   connect(next: Node): Node {

@@ -1,13 +1,11 @@
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createActor } from 'threepoint-page/emulator/actor';
-import type { Emulator } from 'threepoint-page/emulator/emulator';
-import { CalibrationControl } from 'threepoint-page/shell/controls/calibration-control';
-import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
-import { Recorder } from 'threepoint-page/studio/recorder';
+import { type Calibration, defaultCalibration, type TrackingFrame } from 'threepoint/core';
+import { type TrackedPose, vec3 } from 'threepoint/math';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
+import { createActor } from '../../../src/page/emulator/actor';
+import type { Emulator } from '../../../src/page/emulator/emulator';
+import { CalibrationControl } from '../../../src/page/shell/controls/calibration-control';
+import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import { Recorder } from '../../../src/page/studio/recorder';
 import { noPointers } from '../activity-services';
 
 /** The part of an element that the dialog needs. */

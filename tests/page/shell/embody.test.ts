@@ -1,9 +1,7 @@
-import type { BuiltInBody } from 'threepoint/core/body/built-in-bodies';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import type { Settings } from 'threepoint-page/shell/settings';
-import { type EmbodyingParts, embody } from 'threepoint-page/shell/study/embody';
+import { type BuiltInBody, type EstimatorName, TrackingDegradation } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import type { Settings } from '../../../src/page/shell/settings';
+import { type EmbodyingParts, embody } from '../../../src/page/shell/study/embody';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },

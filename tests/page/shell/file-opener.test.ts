@@ -1,10 +1,8 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { writeRecording } from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { FileOpener } from 'threepoint-page/shell/controls/file-opener';
-import { Recorder } from 'threepoint-page/studio/recorder';
-import type { Notice } from 'threepoint-ui/notices';
+import { type Calibration, type TrackingFrame, writeRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { FileOpener } from '../../../src/page/shell/controls/file-opener';
+import { Recorder } from '../../../src/page/studio/recorder';
+import type { Notice } from '../../../src/ui/notices';
 
 const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
 

@@ -1,9 +1,8 @@
-import { Body } from 'threepoint/api/body';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createFrameLoop, type FrameParts } from 'threepoint-page/shell/frame/frame-loop';
-import { FrameTiming } from 'threepoint-page/shell/frame-timing';
+import { Body } from 'threepoint';
+import type { AvatarPose, TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { createFrameLoop, type FrameParts } from '../../../src/page/shell/frame/frame-loop';
+import { FrameTiming } from '../../../src/page/shell/frame-timing';
 
 /** A frame whose head is as high [m] as its time [s] is long. */
 const trackedAt = (time: number): TrackingFrame => ({

@@ -1,5 +1,5 @@
-import { FrameTiming } from 'threepoint-page/shell/frame-timing';
 import { describe, expect, test } from 'vitest';
+import { FrameTiming } from '../../../src/page/shell/frame-timing';
 
 /** A clock that a test turns by hand [ms]. */
 function handClock() {

@@ -1,30 +1,25 @@
 import { Group, Vector3 } from 'three';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { GazePointer } from 'threepoint/core/input/gaze-pointer';
-import { MutablePointer, type Pointer } from 'threepoint/core/input/pointer';
-import { fromAxes, identity } from 'threepoint/core/math/quat';
-import type { Ray } from 'threepoint/core/math/ray';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { DeviceCommands } from 'threepoint/xr/device-commands';
-import type { OpenActivity } from 'threepoint-page/activity/activity';
-import { menuHeight } from 'threepoint-page/activity/activity-menu';
-import { type BallMenuActions, type BallMenuState, ballEntries } from 'threepoint-page/ball/menu/ball-menu';
-import type { OtherPlayer } from 'threepoint-page/ball/panel/other-players';
-import { activities as registered } from 'threepoint-page/shell/activity-registry';
-import { HeadsetControls } from 'threepoint-page/shell/controls/headset-controls';
-import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
-import type { PageStudy } from 'threepoint-page/shell/study/page-study';
-import { readSwitches } from 'threepoint-page/shell/switches';
-import { type ComfortActions, type ComfortState, comfortSheet } from 'threepoint-page/shell/vr-menu/comfort-sheet';
+import { defaultCalibration, GazePointer, MutablePointer, type Pointer, type TrackingFrame } from 'threepoint/core';
+import { fromAxes, identity, type Ray, vec3 } from 'threepoint/math';
+import { DeviceCommands } from 'threepoint/webxr';
+import type { OpenActivity } from '../../../src/page/activity/activity';
+import { menuHeight } from '../../../src/page/activity/activity-menu';
+import { type BallMenuActions, type BallMenuState, ballEntries } from '../../../src/page/ball/menu/ball-menu';
+import type { OtherPlayer } from '../../../src/page/ball/panel/other-players';
+import { activities as registered } from '../../../src/page/shell/activity-registry';
+import { HeadsetControls } from '../../../src/page/shell/controls/headset-controls';
+import { createSettings, SettingsWriter } from '../../../src/page/shell/settings';
+import type { PageStudy } from '../../../src/page/shell/study/page-study';
+import { readSwitches } from '../../../src/page/shell/switches';
+import { type ComfortActions, type ComfortState, comfortSheet } from '../../../src/page/shell/vr-menu/comfort-sheet';
 import {
   menuButtons,
   noticesTop,
   type VrMenuActions,
   type VrMenuState,
-} from 'threepoint-page/shell/vr-menu/menu-buttons';
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
-import { createVrPointers } from 'threepoint-ui/vr-pointers';
+} from '../../../src/page/shell/vr-menu/menu-buttons';
+import type { CalibrationStep } from 'threepoint-ui';
+import { createVrPointers } from 'threepoint-ui/vr';
 import { describe, expect, test, vi } from 'vitest';
 import { allocatedPerFrame } from '../../allocated-bytes';
 import { studyRun } from '../activity-services';

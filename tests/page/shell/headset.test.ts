@@ -1,5 +1,5 @@
-import { Headset, type HeadsetOptions } from 'threepoint-page/shell/headset';
 import { describe, expect, test, vi } from 'vitest';
+import { Headset, type HeadsetOptions } from '../../../src/page/shell/headset';
 
 /** Emulated devices that were installed in place of the browser's own. */
 let installed = 0;

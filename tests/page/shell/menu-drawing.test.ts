@@ -1,10 +1,10 @@
-import { menuHeight, menuMargin, menuWidth } from 'threepoint-page/activity/activity-menu';
-import { invitationSheet, type ShownInvitation } from 'threepoint-page/ball/menu/invitation-sheet';
-import { menuButtons, type VrMenuActions, type VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
-import { drawMenu } from 'threepoint-page/shell/vr-menu/menu-drawing';
-import { qrCode } from 'threepoint-ui/qr-code';
+import { qrCode } from 'threepoint-ui';
 import { encode } from 'uqr';
 import { describe, expect, test } from 'vitest';
+import { menuHeight, menuMargin, menuWidth } from '../../../src/page/activity/activity-menu';
+import { invitationSheet, type ShownInvitation } from '../../../src/page/ball/menu/invitation-sheet';
+import { menuButtons, type VrMenuActions, type VrMenuState } from '../../../src/page/shell/vr-menu/menu-buttons';
+import { drawMenu } from '../../../src/page/shell/vr-menu/menu-drawing';
 import { paper, studioMenu } from './menu-parts';
 
 const address = 'https://play.example.org/?play=ball&room=meadow';

@@ -1,4 +1,4 @@
-import type { VrMenuState } from 'threepoint-page/shell/vr-menu/menu-buttons';
+import type { VrMenuState } from '../../../src/page/shell/vr-menu/menu-buttons';
 import { expect } from 'vitest';
 
 /** The menu in the studio without a notice; tests change what they are about. */

@@ -1,5 +1,5 @@
-import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/frame/page-frame';
 import { expect, test } from 'vitest';
+import { PageFrame, type PageFrameOptions } from '../../../src/page/shell/frame/page-frame';
 
 /**
  * A page that draws nothing, frame by frame as its device asks for them: a window, or a session, which lets windows

@@ -1,22 +1,27 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { type Pose, transformPoint } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply } from 'threepoint/core/math/quat';
-import { right, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { Pointing } from 'threepoint/xr/pointing';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
-import { createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
-import { type ArcheryFrame, ArcheryPlay } from 'threepoint-page/archery/archery-play';
-import { CourtInput } from 'threepoint-page/ball/court-input';
-import { BallPlay } from 'threepoint-page/ball/match/ball-play';
-import { createActor } from 'threepoint-page/emulator/actor';
-import { Pointers } from 'threepoint-page/shell/frame/pointers';
-import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
-import { Recorder } from 'threepoint-page/studio/recorder';
+import { createEstimator, defaultCalibration, type TrackingFrame, unknownFingers } from 'threepoint/core';
+import {
+  fromAxisAngle,
+  identity,
+  multiply,
+  type Pose,
+  right,
+  subtract,
+  transformPoint,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { Pointing, TrackedSession } from 'threepoint/webxr';
+import type { SimulatedInput } from 'threepoint-games';
+import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import { type ArcheryFrame, ArcheryPlay } from '../../../src/page/archery/archery-play';
+import { CourtInput } from '../../../src/page/ball/court-input';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createActor } from '../../../src/page/emulator/actor';
+import { Pointers } from '../../../src/page/shell/frame/pointers';
+import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import { Recorder } from '../../../src/page/studio/recorder';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { controller, fakeHeadset, type Input } from '../../threepoint/xr/fake-headset';
 

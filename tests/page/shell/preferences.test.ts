@@ -1,7 +1,8 @@
 import fc from 'fast-check';
-import { armSpanRange, eyeHeightRange } from 'threepoint/core/body/calibration';
-import { createPreferenceStore, parsePreferences } from 'threepoint-page/shell/preferences';
+import { armSpanRange } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { createPreferenceStore, parsePreferences } from '../../../src/page/shell/preferences';
+import { eyeHeightRange } from '../../../src/threepoint/core/body/calibration';
 import { evenly } from '../../threepoint/core/arbitraries';
 
 function memory(): Pick<Storage, 'getItem' | 'setItem'> {

@@ -1,12 +1,11 @@
-import { BodySolver } from 'threepoint/api/body-solver';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { OpenActivity } from 'threepoint-page/activity/activity';
-import { FrameTiming } from 'threepoint-page/shell/frame-timing';
-import type { Headset } from 'threepoint-page/shell/headset';
-import { SessionChanges, type SessionChangesOptions } from 'threepoint-page/shell/session/session-changes';
-import { Recorder } from 'threepoint-page/studio/recorder';
+import { BodySolver } from 'threepoint';
+import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { expect, test, vi } from 'vitest';
+import type { OpenActivity } from '../../../src/page/activity/activity';
+import { FrameTiming } from '../../../src/page/shell/frame-timing';
+import type { Headset } from '../../../src/page/shell/headset';
+import { SessionChanges, type SessionChangesOptions } from '../../../src/page/shell/session/session-changes';
+import { Recorder } from '../../../src/page/studio/recorder';
 
 const noNetworks = () => Promise.reject(new Error('inverse kinematics needs no network'));
 

@@ -1,7 +1,7 @@
-import type { Preferences } from 'threepoint-page/shell/preferences';
-import { createSettings, SettingsWriter } from 'threepoint-page/shell/settings';
-import { readSwitches } from 'threepoint-page/shell/switches';
 import { describe, expect, test } from 'vitest';
+import type { Preferences } from '../../../src/page/shell/preferences';
+import { createSettings, SettingsWriter } from '../../../src/page/shell/settings';
+import { readSwitches } from '../../../src/page/shell/switches';
 
 /** Settings of a visit with this address by a person whose browser remembers this. */
 const visit = (query: string, remembered: Preferences = {}) =>

@@ -1,18 +1,20 @@
 import { setImmediate } from 'node:timers/promises';
 import fc from 'fast-check';
-import { BodySolver } from 'threepoint/api/body-solver';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { nothingPressed } from 'threepoint/core/input/button-presses';
-import { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createActor } from 'threepoint-page/emulator/actor';
-import { createFrameLoop } from 'threepoint-page/shell/frame/frame-loop';
-import { PageFrame, type PageFrameOptions } from 'threepoint-page/shell/frame/page-frame';
-import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
-import { FrameTiming } from 'threepoint-page/shell/frame-timing';
-import { Recorder } from 'threepoint-page/studio/recorder';
+import { BodySolver } from 'threepoint';
+import {
+  type Calibration,
+  type EstimatorName,
+  nothingPressed,
+  TrackingDegradation,
+  type TrackingFrame,
+} from 'threepoint/core';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { createActor } from '../../../src/page/emulator/actor';
+import { createFrameLoop } from '../../../src/page/shell/frame/frame-loop';
+import { PageFrame, type PageFrameOptions } from '../../../src/page/shell/frame/page-frame';
+import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import { FrameTiming } from '../../../src/page/shell/frame-timing';
+import { Recorder } from '../../../src/page/studio/recorder';
 import { cases } from '../../nightly';
 import { seed } from '../../threepoint/core/arbitraries';
 import { bodies, jointsOf } from '../../threepoint/core/estimation/contract-subjects';

@@ -1,5 +1,5 @@
-import { readSwitches } from 'threepoint-page/shell/switches';
 import { describe, expect, test } from 'vitest';
+import { readSwitches } from '../../../src/page/shell/switches';
 
 describe('the address of the page', () => {
   test('asks for nothing by itself', () => {

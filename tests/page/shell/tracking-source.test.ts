@@ -1,14 +1,15 @@
-import { BodySolver } from 'threepoint/api/body-solver';
-import { ReplayedBody } from 'threepoint/api/replayed-body';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { nothingPressed } from 'threepoint/core/input/button-presses';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import { createActor } from 'threepoint-page/emulator/actor';
-import { TrackingSource } from 'threepoint-page/shell/frame/tracking-source';
-import { Recorder } from 'threepoint-page/studio/recorder';
+import { BodySolver, ReplayedBody } from 'threepoint';
+import {
+  actorFrame,
+  defaultCalibration,
+  forwardKinematics,
+  nothingPressed,
+  skeletonFromCalibration,
+} from 'threepoint/core';
 import { expect, test } from 'vitest';
+import { createActor } from '../../../src/page/emulator/actor';
+import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import { Recorder } from '../../../src/page/studio/recorder';
 import { noPointers } from '../activity-services';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);

@@ -1,5 +1,5 @@
-import { unlockSound } from 'threepoint-page/shell/activities/unlock-sound';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
+import { unlockSound } from '../../../src/page/shell/activities/unlock-sound';
 
 let page = new EventTarget();
 let pageDocument = Object.assign(new EventTarget(), { visibilityState: 'visible' });

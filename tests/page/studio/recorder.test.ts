@@ -1,6 +1,6 @@
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { Recorder } from 'threepoint-page/studio/recorder';
+import type { TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { Recorder } from '../../../src/page/studio/recorder';
 
 const source = { device: 'emulated headset', rateHz: 72, calibration: { eyeHeight: 1.6, armSpan: 1.4 } };
 

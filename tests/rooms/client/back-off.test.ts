@@ -1,6 +1,6 @@
-import { BackOff } from 'threepoint-rooms/client/back-off';
-import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
 import { describe, expect, test } from 'vitest';
+import { BackOff } from '../../../src/rooms/client/back-off';
+import { bannerText, connectionText } from '../../../src/rooms/client/connection-text';
 
 describe('trying again', () => {
   test('waits longer after every failure, at most 4.5 s, and starts over after a success', () => {

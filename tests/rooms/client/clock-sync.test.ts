@@ -1,6 +1,6 @@
 import fc from 'fast-check';
-import { ClockSync } from 'threepoint-rooms/client/clock-sync';
 import { describe, expect, test } from 'vitest';
+import { ClockSync } from '../../../src/rooms/client/clock-sync';
 import { printFigures } from '../../print-figures';
 
 /**

@@ -1,7 +1,6 @@
-import { type BallLoopbackOptions, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { BallInput } from 'threepoint-games/ball/ball-state';
-import { ballRules } from 'threepoint-games/ball/rules';
+import { type BallInput, ballRules, createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import type { BallLoopbackOptions } from '../../../src/games/ball/ball-client';
 import { atRack, createPerson, fists, holding, opening, releaseOf, visitor } from './people';
 
 /** Three people in a room of this page, frame by frame at 72 Hz. */

@@ -1,15 +1,23 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { invertTransform, type Pose, transformPose } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { add, addScaled, scale, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallConnection, BallConnectionUpdate } from 'threepoint-games/ball/ball-client';
-import type { BallAction, BallEvent } from 'threepoint-games/ball/ball-state';
-import { rackPosition, stations } from 'threepoint-games/ball/stations';
-import { gravity } from 'threepoint-games/ballistics';
-import { wristAround } from 'threepoint-games/fist';
-import type { OutgoingPose, Visitor } from 'threepoint-rooms/client/connection';
+import { defaultCalibration, unknownFingers } from 'threepoint/core';
+import {
+  add,
+  addScaled,
+  identity,
+  invertTransform,
+  type Pose,
+  type Side,
+  scale,
+  subtract,
+  transformPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { type BallConnection, type BallEvent, rackPosition, stations } from 'threepoint-games/ball';
+import type { BallConnectionUpdate } from '../../../src/games/ball/ball-client';
+import type { BallAction } from '../../../src/games/ball/ball-state';
+import { gravity } from '../../../src/games/ballistics';
+import { wristAround } from '../../../src/games/fist';
+import type { OutgoingPose, Visitor } from '../../../src/rooms/client/connection';
 
 export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
   name,

@@ -1,9 +1,8 @@
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { LoopbackHost } from 'threepoint-rooms/client/loopback-host';
-import { RoomClient } from 'threepoint-rooms/client/room-client';
+import { unknownFingers } from 'threepoint/core';
+import { identity, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { LoopbackHost } from '../../../src/rooms/client/loopback-host';
+import { RoomClient } from '../../../src/rooms/client/room-client';
 import { countingClientPolicy, countingPolicy } from '../room/counting-game';
 import { visitor } from './people';
 

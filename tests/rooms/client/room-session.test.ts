@@ -1,12 +1,12 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { type BallConnectionUpdate, ballClientPolicy } from 'threepoint-games/ball/ball-client';
-import type { BallRoomMessage } from 'threepoint-games/ball/ball-messages';
-import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import { RoomSession } from 'threepoint-rooms/client/room-session';
-import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
-import { Room } from 'threepoint-rooms/room/room';
+import { defaultCalibration } from 'threepoint/core';
+import { type BallGame, BallPolicy, ballClientPolicy } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
+import type { BallConnectionUpdate } from '../../../src/games/ball/ball-client';
+import type { BallRoomMessage } from '../../../src/games/ball/ball-messages';
+import type { ConnectionStatus } from '../../../src/rooms/client/connection';
+import { RoomSession } from '../../../src/rooms/client/room-session';
+import type { ClientMessage } from '../../../src/rooms/protocol/messages';
+import { Room } from '../../../src/rooms/room/room';
 import { visitor } from './people';
 
 /** A client whose wire takes as long as the test wants: what the Room says waits until it is delivered. */

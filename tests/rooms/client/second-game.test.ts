@@ -1,8 +1,8 @@
-import type { Connection } from 'threepoint-rooms/client/connection';
-import { LoopbackHost } from 'threepoint-rooms/client/loopback-host';
-import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
 import { expect, onTestFinished, test } from 'vitest';
+import type { Connection } from '../../../src/rooms/client/connection';
+import { LoopbackHost } from '../../../src/rooms/client/loopback-host';
+import { createRoomPass } from '../../../src/rooms/client/room-pass';
+import { SocketConnection } from '../../../src/rooms/client/socket-connection';
 import { type CountingGame, countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
 import { until } from '../server/running-relay';
 import { relayOfTest } from '../server/until-finished';

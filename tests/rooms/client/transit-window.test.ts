@@ -1,6 +1,6 @@
-import { nextRandom } from 'threepoint/core/math/random';
-import { TransitWindow } from 'threepoint-rooms/client/transit-window';
+import { nextRandom } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { TransitWindow } from '../../../src/rooms/client/transit-window';
 
 test('the transits of the last seconds are ranked as a sort of them would, packet after packet', () => {
   const window = new TransitWindow(5);

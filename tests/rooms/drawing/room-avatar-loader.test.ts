@@ -1,10 +1,9 @@
 import { createHash } from 'node:crypto';
 import type { RequestListener } from 'node:http';
-import type { AvatarHash } from 'threepoint/core/body/avatar-ref';
-import { TransientError } from 'threepoint/core/errors/transient-error';
-import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import { RoomAvatarLoader } from 'threepoint-rooms/drawing/room-avatar-loader';
+import { type AvatarHash, TransientError } from 'threepoint/core';
 import { expect, onTestFinished, test } from 'vitest';
+import type { AvatarExchange } from '../../../src/rooms/client/avatar-exchange';
+import { RoomAvatarLoader } from '../../../src/rooms/drawing/room-avatar-loader';
 import { collectGarbage } from '../../collect-garbage';
 import { answeringHost } from '../client/answering-host';
 

@@ -1,13 +1,10 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createRandom } from 'threepoint/core/math/random';
-import { distance } from 'threepoint/core/math/vec3';
-import { maxPeerPacketBytes, peerPacketVersion } from 'threepoint-rooms/peers/peer-packet';
-import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
-import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
+import { defaultCalibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { createRandom, distance } from 'threepoint/math';
 import { afterEach, expect, test, vi } from 'vitest';
+import { maxPeerPacketBytes, peerPacketVersion } from '../../../src/rooms/peers/peer-packet';
+import { PoseSender } from '../../../src/rooms/peers/pose-sender';
+import { RemotePoses } from '../../../src/rooms/peers/remote-poses';
+import { packetMs } from '../../../src/rooms/protocol/packet-time';
 import { isNightly } from '../../nightly';
 import { solvedActor } from './solved-actor';
 

@@ -1,20 +1,33 @@
 import { readFile } from 'node:fs/promises';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import type { Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply } from 'threepoint/core/math/quat';
-import { add, addScaled, distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import {
+  type AvatarPose,
+  type Calibration,
+  defaultCalibration,
+  forwardKinematics,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
+import {
+  add,
+  addScaled,
+  distance,
+  fromAxisAngle,
+  identity,
+  multiply,
+  type Pose,
+  right,
+  up,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { loadAvatar } from 'threepoint/three';
-import { PlacedPose } from 'threepoint-rooms/drawing/placed-pose';
-import { RemoteBodies } from 'threepoint-rooms/drawing/remote-bodies';
-import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
-import { RemotePoses } from 'threepoint-rooms/peers/remote-poses';
 import { expect, test } from 'vitest';
+import { PlacedPose } from '../../../src/rooms/drawing/placed-pose';
+import { RemoteBodies } from '../../../src/rooms/drawing/remote-bodies';
+import { PoseSender } from '../../../src/rooms/peers/pose-sender';
+import { RemotePoses } from '../../../src/rooms/peers/remote-poses';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../src/threepoint/core/estimation/pinning';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { trackersOn, withOffsets } from '../../threepoint/core/estimation/tracked-body';
 

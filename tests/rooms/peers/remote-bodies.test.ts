@@ -1,8 +1,8 @@
 import { readFile } from 'node:fs/promises';
-import { loadAvatar } from 'threepoint/api/three';
-import { RemoteBodies } from 'threepoint-rooms/drawing/remote-bodies';
-import { PoseSender } from 'threepoint-rooms/peers/pose-sender';
+import { loadAvatar } from 'threepoint/three';
 import { expect, test, vi } from 'vitest';
+import { RemoteBodies } from '../../../src/rooms/drawing/remote-bodies';
+import { PoseSender } from '../../../src/rooms/peers/pose-sender';
 import { solvedActor } from './solved-actor';
 
 test('the body of a peer who has sent nothing for 30 s is removed, as if the transport had reported it', async () => {

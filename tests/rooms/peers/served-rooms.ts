@@ -1,7 +1,7 @@
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { type AttachRoomsOptions, attachRooms } from 'threepoint-rooms/server/attach-rooms';
 import { onTestFinished } from 'vitest';
+import { type AttachRoomsOptions, attachRooms } from '../../../src/rooms/server/attach-rooms';
 
 /** Starts a node:http server of another project with rooms attached. It closes when the test ends. */
 export async function servedRooms(options: AttachRoomsOptions = {}) {

@@ -1,7 +1,6 @@
-import { BodySolver } from 'threepoint/api/body-solver';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { PoseSource } from 'threepoint-rooms/peers/pose-sender';
+import { BodySolver } from 'threepoint';
+import { actorFrame, defaultCalibration } from 'threepoint/core';
+import type { PoseSource } from '../../../src/rooms/peers/pose-sender';
 
 /** An actor whose body the library solves by inverse kinematics. */
 export function solvedActor(): PoseSource & { moveTo(timeMs: number): void } {

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
-import { BitReader, BitWriter } from 'threepoint-rooms/protocol/bit-stream';
 import { expect, test } from 'vitest';
+import { BitReader, BitWriter } from '../../../src/rooms/protocol/bit-stream';
 import { seed } from '../../threepoint/core/arbitraries';
 
 const numbers = fc.array(

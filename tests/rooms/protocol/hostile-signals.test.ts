@@ -1,5 +1,5 @@
-import { createRandom } from 'threepoint/core/math/random';
-import { clientMessageFrom } from 'threepoint-rooms/protocol/messages';
+import { createRandom } from 'threepoint/math';
+import { clientMessageFrom } from '../../../src/rooms/protocol/messages';
 import { describe, expect, test } from 'vitest';
 import { cases } from '../../nightly';
 

@@ -1,8 +1,8 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
-import { builtInAvatarOf, builtInBodies, defaultAvatar, skinTones } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { ballActionFrom, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
+import { builtInAvatarOf, builtInBodies, defaultAvatar, defaultCalibration, skinTones } from 'threepoint/core';
+import { describe, expect, test } from 'vitest';
+import { ballActionFrom, ballRoomMessageFrom } from '../../../src/games/ball/ball-messages';
 import {
   type ClientMessage,
   clientMessageFrom,
@@ -10,13 +10,12 @@ import {
   packSeatInfo,
   protocolVersion,
   unpackSeatInfo,
-} from 'threepoint-rooms/protocol/messages';
-import { cleanName } from 'threepoint-rooms/protocol/player-name';
-import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { poseVersion } from 'threepoint-rooms/protocol/pose-packet';
-import { pageParser, relayParser, type SocketPacket } from 'threepoint-rooms/protocol/socket-parsers';
-import { maxCandidates, maxDescriptionLength } from 'threepoint-rooms/protocol/voice-messages';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/rooms/protocol/messages';
+import { cleanName } from '../../../src/rooms/protocol/player-name';
+import { encodeFrame } from '../../../src/rooms/protocol/pose-frame';
+import { poseVersion } from '../../../src/rooms/protocol/pose-packet';
+import { pageParser, relayParser, type SocketPacket } from '../../../src/rooms/protocol/socket-parsers';
+import { maxCandidates, maxDescriptionLength } from '../../../src/rooms/protocol/voice-messages';
 import { reportFigures } from '../../reliability/report-figures';
 import { noPackets } from './no-packets';
 

@@ -1,19 +1,33 @@
 import fc from 'fast-check';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { flatHand, relaxedHand, unknownFingers } from 'threepoint/core/body/hand-shape';
-import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration, wristFromHandBone } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { angleBetween, fromAxisAngle, identity, multiply, type Quat } from 'threepoint/core/math/quat';
-import { nextRandom } from 'threepoint/core/math/random';
-import { add, distance, right, vec3 } from 'threepoint/core/math/vec3';
-import { fingerFields } from 'threepoint-rooms/protocol/finger-steps';
-import { decodePoints, decodePose, encodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { packetLengthAt } from 'threepoint-rooms/protocol/pose-layout';
-import { maxPosePacketBytes, type PosePacket, poseVersion } from 'threepoint-rooms/protocol/pose-packet';
+import {
+  createEstimator,
+  defaultCalibration,
+  forwardKinematics,
+  jointNames,
+  skeletonFromCalibration,
+  unknownFingers,
+  wristFromHandBone,
+} from 'threepoint/core';
+import {
+  add,
+  angleBetween,
+  distance,
+  fromAxisAngle,
+  identity,
+  multiply,
+  nextRandom,
+  type Quat,
+  right,
+  vec3,
+} from 'threepoint/math';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { fingerFields } from '../../../src/rooms/protocol/finger-steps';
+import { decodePoints, decodePose, encodePose } from '../../../src/rooms/protocol/pose-codec';
+import { packetLengthAt } from '../../../src/rooms/protocol/pose-layout';
+import { maxPosePacketBytes, type PosePacket, poseVersion } from '../../../src/rooms/protocol/pose-packet';
+import { flatHand, relaxedHand } from '../../../src/threepoint/core/body/hand-shape';
+import { type JointName, parentOf } from '../../../src/threepoint/core/body/joints';
+import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
 import { cases, isNightly } from '../../nightly';
 import { seed } from '../../threepoint/core/arbitraries';
 import { openShippedModel } from '../../threepoint/core/estimation/shipped-models';

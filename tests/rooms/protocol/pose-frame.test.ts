@@ -1,8 +1,8 @@
 import fc from 'fast-check';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { maxSeats } from 'threepoint-rooms/protocol/messages';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { decodeFrame, encodeFrame, type SeatPose } from 'threepoint-rooms/protocol/pose-frame';
+import { unknownFingers } from 'threepoint/core';
+import { maxSeats } from '../../../src/rooms/protocol/messages';
+import { encodePose } from '../../../src/rooms/protocol/pose-codec';
+import { decodeFrame, encodeFrame, type SeatPose } from '../../../src/rooms/protocol/pose-frame';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { packetOf, pinnedPacketOf, pinnedSenders, senders } from './sent-bodies';
 

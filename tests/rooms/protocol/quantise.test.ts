@@ -1,7 +1,7 @@
 import fc from 'fast-check';
-import { angleBetween } from 'threepoint/core/math/quat';
-import { dot } from 'threepoint/core/math/vec3';
-import { BitReader, BitWriter } from 'threepoint-rooms/protocol/bit-stream';
+import { angleBetween, dot } from 'threepoint/math';
+import { expect, test } from 'vitest';
+import { BitReader, BitWriter } from '../../../src/rooms/protocol/bit-stream';
 import {
   fromDirectionSteps,
   fromQuatSteps,
@@ -16,8 +16,7 @@ import {
   writeDirection,
   writeQuat,
   writeStep,
-} from 'threepoint-rooms/protocol/quantise';
-import { expect, test } from 'vitest';
+} from '../../../src/rooms/protocol/quantise';
 import { direction, number, rotation, seed } from '../../threepoint/core/arbitraries';
 
 const degrees = 180 / Math.PI;

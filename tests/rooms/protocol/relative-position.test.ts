@@ -1,14 +1,14 @@
 import fc from 'fast-check';
-import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { BitReader, BitWriter } from 'threepoint-rooms/protocol/bit-stream';
+import { distance, type Vec3, vec3 } from 'threepoint/math';
+import { expect, test } from 'vitest';
+import { BitReader, BitWriter } from '../../../src/rooms/protocol/bit-stream';
 import {
   fromRelativePosition,
   makeRelativePositionSteps,
   readRelativePosition,
   toRelativePosition,
   writeRelativePosition,
-} from 'threepoint-rooms/protocol/relative-position';
-import { expect, test } from 'vitest';
+} from '../../../src/rooms/protocol/relative-position';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 
 /** What a receiver makes of a hand, in five bytes. */

@@ -1,18 +1,19 @@
 import fc from 'fast-check';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply } from 'threepoint/core/math/quat';
-import { add, up, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import type { PosePacket } from 'threepoint-rooms/protocol/pose-packet';
+import {
+  type AvatarPose,
+  actorFrame,
+  type Calibration,
+  forwardKinematics,
+  type PoseEstimator,
+  type Skeleton,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { add, fromAxisAngle, multiply, type TrackedPose, up, vec3 } from 'threepoint/math';
+import { packetMs } from '../../../src/rooms/protocol/packet-time';
+import type { PosePacket } from '../../../src/rooms/protocol/pose-packet';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../src/threepoint/core/estimation/pinning';
 import { evenly, rotation, standpoint, vector } from '../../threepoint/core/arbitraries';
 import { type Joints, poseOf, showAll } from '../../threepoint/core/estimation/drawn';
 import { movingPerson, transformFrame, withHand } from '../../threepoint/core/estimation/moving-person';

@@ -1,7 +1,7 @@
 import { createElement, createRef } from 'react';
-import { type JoinedRoom, joinRoom } from 'threepoint-rooms/drawing/join-room';
-import { RoomAvatars, type RoomAvatarsProps } from 'threepoint-rooms/react';
 import { beforeEach, expect, onTestFinished, test } from 'vitest';
+import { type JoinedRoom, joinRoom } from '../../../src/rooms/drawing/join-room';
+import { RoomAvatars, type RoomAvatarsProps } from '../../../src/rooms/react/index';
 import { openCanvas } from '../../threepoint/api/canvas';
 import { stubFileFetch } from '../peers/file-fetch';
 import { servedRooms } from '../peers/served-rooms';

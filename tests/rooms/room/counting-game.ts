@@ -1,10 +1,9 @@
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { createMatch } from 'threepoint-games/match';
-import type { ClientPolicy } from 'threepoint-rooms/client/client-policy';
-import { roomMessageReader } from 'threepoint-rooms/protocol/messages';
-import type { HostedGame, MatchAction, MatchPolicy, MatchState } from 'threepoint-rooms/room/match-policy';
-import type { RoomKind } from 'threepoint-rooms/room/room-kind';
+import { identity, vec3 } from 'threepoint/math';
+import { createMatch } from 'threepoint-games';
+import type { ClientPolicy } from '../../../src/rooms/client/client-policy';
+import { roomMessageReader } from '../../../src/rooms/protocol/messages';
+import type { HostedGame, MatchAction, MatchPolicy, MatchState } from '../../../src/rooms/room/match-policy';
+import type { RoomKind } from '../../../src/rooms/room/room-kind';
 import * as v from 'valibot';
 
 interface CountingState extends MatchState {

@@ -1,10 +1,10 @@
-import { distance, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { ClientMessage } from 'threepoint-rooms/protocol/messages';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { decodePoints } from 'threepoint-rooms/protocol/pose-codec';
-import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { maxHeadSpeed } from 'threepoint-rooms/room/pose-validator';
+import { distance, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { ClientMessage } from '../../../src/rooms/protocol/messages';
+import { packetMs } from '../../../src/rooms/protocol/packet-time';
+import { decodePoints } from '../../../src/rooms/protocol/pose-codec';
+import { decodeFrame } from '../../../src/rooms/protocol/pose-frame';
+import { maxHeadSpeed } from '../../../src/rooms/room/pose-validator';
 import { reportFigures } from '../../reliability/report-figures';
 import { poseOf } from './posed-head';
 import { createTestRoom } from './test-room';

@@ -1,6 +1,7 @@
-import { ballMatchTime, ballSecondsLeft } from 'threepoint-games/ball/state-selectors';
-import { poseRetentionSeconds } from 'threepoint-rooms/room/pose-validator';
+import { ballSecondsLeft } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import { ballMatchTime } from '../../../src/games/ball/state-selectors';
+import { poseRetentionSeconds } from '../../../src/rooms/room/pose-validator';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { createTestRoom } from './test-room';
 

@@ -1,4 +1,4 @@
-import { vec3 } from 'threepoint/core/math/vec3';
+import { vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { fists } from '../client/people';
 import { createTestRoom } from './test-room';

@@ -1,9 +1,6 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { identity } from 'threepoint/core/math/quat';
-import { add, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
+import { defaultCalibration, skeletonFromCalibration, unknownFingers } from 'threepoint/core';
+import { add, identity, type Vec3, vec3 } from 'threepoint/math';
+import { encodePose } from '../../../src/rooms/protocol/pose-codec';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 

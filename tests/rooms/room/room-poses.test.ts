@@ -1,5 +1,5 @@
-import { decodeFrame } from 'threepoint-rooms/protocol/pose-frame';
 import { describe, expect, test } from 'vitest';
+import { decodeFrame } from '../../../src/rooms/protocol/pose-frame';
 import { fists, opening, releaseOf } from '../client/people';
 import { createTestRoom } from './test-room';
 

@@ -1,7 +1,7 @@
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { BallAction } from 'threepoint-games/ball/ball-state';
-import { clientMessageFrom } from 'threepoint-rooms/protocol/messages';
+import { vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import type { BallAction } from '../../../src/games/ball/ball-state';
+import { clientMessageFrom } from '../../../src/rooms/protocol/messages';
 import { fists, opening, releaseOf, velocityTo } from '../client/people';
 import { createTestRoom } from './test-room';
 

@@ -1,12 +1,10 @@
 import fc from 'fast-check';
-import { BallPolicy } from 'threepoint-games/ball/ball-policy';
-import { packBall, unpackBall } from 'threepoint-games/ball/ball-snapshot';
-import type { BallState } from 'threepoint-games/ball/ball-state';
-import { applyBallEvent } from 'threepoint-games/ball/client-state';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { clientMessageFrom, protocolVersion, unpackSeatInfo } from 'threepoint-rooms/protocol/messages';
-import { Room } from 'threepoint-rooms/room/room';
-import { seatHoldSeconds } from 'threepoint-rooms/room/seats';
+import { BallPolicy, type BallState, ballRules } from 'threepoint-games/ball';
+import { packBall, unpackBall } from '../../../src/games/ball/ball-snapshot';
+import { applyBallEvent } from '../../../src/games/ball/client-state';
+import { clientMessageFrom, protocolVersion, unpackSeatInfo } from '../../../src/rooms/protocol/messages';
+import { Room } from '../../../src/rooms/room/room';
+import { seatHoldSeconds } from '../../../src/rooms/room/seats';
 import { describe, expect, test } from 'vitest';
 import { atRack, fists, opening, releaseOf, velocityTo } from '../client/people';
 import { createTestRoom, joinRequest } from './test-room';

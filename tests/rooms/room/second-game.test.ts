@@ -1,7 +1,7 @@
-import type { RoomMessage } from 'threepoint-rooms/protocol/messages';
-import { Room } from 'threepoint-rooms/room/room';
-import type { FreshPose, RoomRefusal } from 'threepoint-rooms/room/room-host';
 import { expect, test } from 'vitest';
+import type { RoomMessage } from '../../../src/rooms/protocol/messages';
+import { Room } from '../../../src/rooms/room/room';
+import type { FreshPose, RoomRefusal } from '../../../src/rooms/room/room-host';
 import { fists, opening } from '../client/people';
 import { type CountingGame, countingPolicy } from './counting-game';
 import { joinRequest, packetAt } from './test-room';

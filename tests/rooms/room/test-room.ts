@@ -1,16 +1,14 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { type BallRoomMessage, ballRoomMessageFrom } from 'threepoint-games/ball/ball-messages';
-import { type BallGame, BallPolicy } from 'threepoint-games/ball/ball-policy';
-import type { BallAction, BallEvent, BallInput, BallOptions, BallState } from 'threepoint-games/ball/ball-state';
-import { arenaFromSeatFloor } from 'threepoint-games/ball/stations';
-import { type ClientMessage, type JoinRequest, protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { encodePose } from 'threepoint-rooms/protocol/pose-codec';
-import { encodeFrame } from 'threepoint-rooms/protocol/pose-frame';
-import { Room, type RoomOptions } from 'threepoint-rooms/room/room';
-import type { RoomRefusal } from 'threepoint-rooms/room/room-host';
+import { defaultAvatar, defaultCalibration, skeletonFromCalibration } from 'threepoint/core';
+import { type BallEvent, type BallGame, type BallInput, BallPolicy, type BallState } from 'threepoint-games/ball';
+import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/games/ball/ball-messages';
+import type { BallAction, BallOptions } from '../../../src/games/ball/ball-state';
+import { arenaFromSeatFloor } from '../../../src/games/ball/stations';
+import { type ClientMessage, type JoinRequest, protocolVersion } from '../../../src/rooms/protocol/messages';
+import { packetMs } from '../../../src/rooms/protocol/packet-time';
+import { encodePose } from '../../../src/rooms/protocol/pose-codec';
+import { encodeFrame } from '../../../src/rooms/protocol/pose-frame';
+import { Room, type RoomOptions } from '../../../src/rooms/room/room';
+import type { RoomRefusal } from '../../../src/rooms/room/room-host';
 import { atRack, fists, holding, opening, releaseOf, shownAt, velocityTo } from '../client/people';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);

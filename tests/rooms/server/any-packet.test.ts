@@ -1,9 +1,9 @@
 import { setTimeout as after } from 'node:timers/promises';
 import fc from 'fast-check';
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { ballKind } from 'threepoint-games/ball';
 import { expect, onTestFinished, test } from 'vitest';
 import { WebSocket } from 'ws';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
 import { isAlive } from '../../server/child-process';

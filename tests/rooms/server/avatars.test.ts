@@ -1,8 +1,8 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { request as httpRequest } from 'node:http';
-import { maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
-import { createAvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import { createRoomPass } from 'threepoint-rooms/client/room-pass';
+import { maxAvatarBytes } from 'threepoint/core';
+import { createAvatarExchange } from '../../../src/rooms/client/avatar-exchange';
+import { createRoomPass } from '../../../src/rooms/client/room-pass';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan } from '../../study/model/studies';

@@ -1,6 +1,6 @@
-import { lobbyNamespace } from 'threepoint-rooms/server/lobby/lobby-publisher';
 import { expect, onTestFinished, test } from 'vitest';
 import type { WebSocket } from 'ws';
+import { lobbyNamespace } from '../../../src/rooms/server/lobby/lobby-publisher';
 import { joinMessage } from '../room/test-room';
 import { type rawGuest, until } from './running-relay';
 import { guestOfTest, relayOfTest, socketOfTest } from './until-finished';

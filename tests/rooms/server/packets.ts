@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
+import { defaultAvatar } from 'threepoint/core';
 import { poseBytes } from './running-relay';
 
 // What a client may send over the relay's WebSocket, by a grammar of what is right and what is not: each part is right

@@ -1,6 +1,6 @@
-import { PoseSchedule } from 'threepoint-rooms/server/hosting/pose-schedule';
-import { createTicker } from 'threepoint-rooms/server/hosting/ticker';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { PoseSchedule } from '../../../src/rooms/server/hosting/pose-schedule';
+import { createTicker } from '../../../src/rooms/server/hosting/ticker';
 
 beforeEach(() => {
   vi.useFakeTimers();

@@ -1,13 +1,12 @@
 // @module-tag full
 
-import { nextRandom } from 'threepoint/core/math/random';
-import { ballClientPolicy } from 'threepoint-games/ball/ball-client';
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import { bannerText } from 'threepoint-rooms/client/connection-text';
-import { RemotePlayers } from 'threepoint-rooms/client/remote-players';
-import { SocketConnection } from 'threepoint-rooms/client/socket-connection';
-import { packetMs } from 'threepoint-rooms/protocol/packet-time';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { nextRandom } from 'threepoint/math';
+import { ballClientPolicy, ballKind } from 'threepoint-games/ball';
+import { bannerText } from '../../../src/rooms/client/connection-text';
+import { RemotePlayers } from '../../../src/rooms/client/remote-players';
+import { SocketConnection } from '../../../src/rooms/client/socket-connection';
+import { packetMs } from '../../../src/rooms/protocol/packet-time';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { collectGarbage } from '../../collect-garbage';
 import { isNightly } from '../../nightly';

@@ -1,7 +1,7 @@
 import { SignJWT } from 'jose';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
+import { clientAddressOf } from 'threepoint-http';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
+import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { type RunningRelay, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
 import { guestOfTest } from './until-finished';

@@ -1,11 +1,10 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { ballKind } from 'threepoint-games/ball/ball-messages';
-import type { BallState } from 'threepoint-games/ball/ball-state';
-import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import { bannerText } from 'threepoint-rooms/client/connection-text';
-import { protocolVersion } from 'threepoint-rooms/protocol/messages';
-import { messageEvent } from 'threepoint-rooms/protocol/socket-parsers';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
+import { defaultCalibration } from 'threepoint/core';
+import { ballKind, type BallState } from 'threepoint-games/ball';
+import type { ConnectionStatus } from '../../../src/rooms/client/connection';
+import { bannerText } from '../../../src/rooms/client/connection-text';
+import { protocolVersion } from '../../../src/rooms/protocol/messages';
+import { messageEvent } from '../../../src/rooms/protocol/socket-parsers';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { type RunningRelay, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';

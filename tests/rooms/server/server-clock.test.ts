@@ -1,5 +1,5 @@
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { expect, onTestFinished, test } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { reportFigures } from '../../reliability/report-figures';
 import { experimenterToken, forkServer } from '../../server/server-child';
 import { paperPlan, session } from '../../study/model/studies';

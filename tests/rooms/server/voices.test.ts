@@ -1,7 +1,7 @@
 import { createHmac } from 'node:crypto';
-import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { SignalBody } from '../../../src/rooms/protocol/voice-messages';
+import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
 import { paperPlan } from '../../study/model/studies';
 import { studySeats } from '../../study/server/running-studies';
 import { type RunningRelay, startRelay, tokenFor, until } from './running-relay';

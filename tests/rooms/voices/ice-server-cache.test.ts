@@ -1,6 +1,6 @@
-import { IceServerCache } from 'threepoint-rooms/voices/ice-server-cache';
-import type { VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
 import { describe, expect, test } from 'vitest';
+import { IceServerCache } from '../../../src/rooms/voices/ice-server-cache';
+import type { VoiceSettings } from '../../../src/rooms/voices/voice-settings';
 
 /** A server that gives numbered passes, each good for so long [s]; null: it has no relay. */
 function serverOf(ttlSeconds: number | null) {

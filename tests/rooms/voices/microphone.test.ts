@@ -1,5 +1,5 @@
-import { Microphone } from 'threepoint-rooms/voices/microphone';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { Microphone } from '../../../src/rooms/voices/microphone';
 
 /**
  * A track as a browser's: an event target that can be stopped; `end`: the device ends it, as a headset does that

@@ -1,4 +1,4 @@
-import { VoicePeer } from 'threepoint-rooms/voices/voice-peer';
+import { VoicePeer } from '../../../src/rooms/voices/voice-peer';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 
 /** A browser's connection, as far as one that ends needs it. */

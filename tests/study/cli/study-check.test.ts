@@ -2,12 +2,12 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { planJsonSchema } from 'threepoint-study/cli/check/plan-json-schema';
-import { shippedPhrases } from 'threepoint-study/model/phrases/phrases';
-import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan/plan';
-import { durationOf, outlineOf } from 'threepoint-study/model/plan/plan-outline';
-import { orderCounts } from 'threepoint-study/model/plan/plan-remarks';
 import { describe, expect, test } from 'vitest';
+import { planJsonSchema } from '../../../src/study/cli/check/plan-json-schema';
+import { shippedPhrases } from '../../../src/study/model/phrases/phrases';
+import { checkedPlan, type StudyTask } from '../../../src/study/model/plan/plan';
+import { durationOf, outlineOf } from '../../../src/study/model/plan/plan-outline';
+import { orderCounts } from '../../../src/study/model/plan/plan-remarks';
 import { directoryWith } from '../../temporary-directory';
 import { examplePlan, paperFile, paperPlan, planComplaints } from '../model/studies';
 

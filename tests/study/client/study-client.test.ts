@@ -1,12 +1,12 @@
-import { requestTimeoutMs } from 'threepoint-http/web-server';
+import { expect, test } from 'vitest';
+import { requestTimeoutMs } from '../../../src/http/web-server';
 import {
   createParticipantClient,
   motionTimeoutMs,
   NoStudyServer,
   ServerRefusal,
   ServerUnreachable,
-} from 'threepoint-study/client/study-client';
-import { expect, test } from 'vitest';
+} from '../../../src/study/client/study-client';
 import { answeringHost, says } from '../../rooms/client/answering-host';
 
 const clientOf = async (status: number, body: string) =>

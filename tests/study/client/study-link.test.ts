@@ -1,5 +1,5 @@
-import { invitationIn, studyLink } from 'threepoint-study/client/study-link';
 import { expect, test } from 'vitest';
+import { invitationIn, studyLink } from '../../../src/study/client/study-link';
 
 test('a link to a place says study and participant to the server, and the invitation to the page alone', () => {
   const link = new URL(

@@ -1,6 +1,6 @@
-import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
-import { answerMeasures, scoreMeasures } from 'threepoint-study/model/results/measures';
-import type { AnswerRow, TrialRow } from 'threepoint-study/model/tables/study-tables';
+import { compareConditions } from '../../../src/study/model/results/compare-conditions';
+import { answerMeasures, scoreMeasures } from '../../../src/study/model/results/measures';
+import type { AnswerRow, TrialRow } from '../../../src/study/model/tables/study-tables';
 
 /** One question answered under conditions c0, c1 … by P01, P02 …. */
 export const rowsOf = (participants: readonly (readonly number[])[]): readonly AnswerRow[] =>

@@ -1,9 +1,9 @@
 import fc from 'fast-check';
-import { cohortsByParticipant, groupsOf, ordersByGroup } from 'threepoint-study/model/plan/allocation';
-import { checkedPlan, participantsOf, type StudyCohort, type StudyTask } from 'threepoint-study/model/plan/plan';
-import { cohortCounts, orderCounts, remarksOn } from 'threepoint-study/model/plan/plan-remarks';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { describe, expect, test } from 'vitest';
+import { cohortsByParticipant, groupsOf, ordersByGroup } from '../../../src/study/model/plan/allocation';
+import { checkedPlan, participantsOf, type StudyCohort, type StudyTask } from '../../../src/study/model/plan/plan';
+import { cohortCounts, orderCounts, remarksOn } from '../../../src/study/model/plan/plan-remarks';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { seed } from '../../threepoint/core/arbitraries';
 import { paperPlan } from './studies';
 

@@ -1,6 +1,6 @@
-import { compareAll } from 'threepoint-study/model/results/compare-all';
-import { answerMeasures } from 'threepoint-study/model/results/measures';
 import { expect, test } from 'vitest';
+import { compareAll } from '../../../src/study/model/results/compare-all';
+import { answerMeasures } from '../../../src/study/model/results/measures';
 import { chicks, plantGrowth, roundingTimes } from '../statistics/data-sets';
 import { rowsOf } from './answered';
 

@@ -1,16 +1,16 @@
-import { ordersByGroup } from 'threepoint-study/model/plan/allocation';
-import { questionnairesOf, type StudyTask } from 'threepoint-study/model/plan/plan';
-import type { AnswerRow, TrialRow } from 'threepoint-study/model/tables/study-tables';
+import { describe, expect, test } from 'vitest';
+import { ordersByGroup } from '../../../src/study/model/plan/allocation';
+import { questionnairesOf, type StudyTask } from '../../../src/study/model/plan/plan';
+import type { AnswerRow, TrialRow } from '../../../src/study/model/tables/study-tables';
 import {
   type AnswerModel,
   answerModelWith,
   drawAnswers,
   drawPerson,
   nullAnswerModel,
-} from 'threepoint-study/simulation/answer-model';
-import { randomSource } from 'threepoint-study/simulation/random-source';
-import { signedRankTest } from 'threepoint-study/statistics/paired-tests';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/study/simulation/answer-model';
+import { randomSource } from '../../../src/study/simulation/random-source';
+import { signedRankTest } from '../../../src/study/statistics/paired-tests';
 import { threeRounds } from '../statistics/data-sets';
 import { compareAnswers, compareScores } from './answered';
 import { paperPlan } from './studies';

@@ -1,5 +1,5 @@
-import { checkedDemographics, demographicFields } from 'threepoint-study/model/records/demographics';
 import { describe, expect, test } from 'vitest';
+import { checkedDemographics, demographicFields } from '../../../src/study/model/records/demographics';
 import { aWomanOf26 } from './studies';
 
 describe('demographics', () => {

@@ -1,12 +1,12 @@
-import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { resumed } from 'threepoint-study/model/progress/progress';
-import { checkedRecord, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { answersIn, scalesIn, studyTables } from 'threepoint-study/model/tables/study-tables';
-import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
-import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
-import { simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { describe, expect, test } from 'vitest';
+import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from '../../../src/study/model/plan/plan';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { resumed } from '../../../src/study/model/progress/progress';
+import { checkedRecord, type StudyRecord } from '../../../src/study/model/records/study-record';
+import { answersIn, scalesIn, studyTables } from '../../../src/study/model/tables/study-tables';
+import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
+import { statedPerformanceModel } from '../../../src/study/simulation/performance-model';
+import { simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { compareAnswers } from './answered';
 import { examplePlan, paperPlan, planWith, session } from './studies';
 

@@ -1,6 +1,6 @@
-import type { StudyRecord, TrialRecord } from 'threepoint-study/model/records/study-record';
-import { frameTimes } from 'threepoint-study/model/results/frame-times';
 import { expect, test } from 'vitest';
+import type { StudyRecord, TrialRecord } from '../../../src/study/model/records/study-record';
+import { frameTimes } from '../../../src/study/model/results/frame-times';
 import { outcomeOf } from './studies';
 
 function trial(participant: string, condition: string | null, frames: readonly number[], run = 1): TrialRecord {

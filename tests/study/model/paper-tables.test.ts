@@ -1,11 +1,11 @@
+import { describe, expect, test } from 'vitest';
 import {
   checkedPaperRows,
   paperFrameTimes,
   paperRows,
   paperScores,
   savedShare,
-} from 'threepoint-study/model/results/paper-tables';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/study/model/results/paper-tables';
 
 describe("the paper's own numbers", () => {
   test('two printed p-values do not follow from their t: Q1 and Q11', () => {

@@ -1,5 +1,6 @@
-import { english, type Phrase } from 'threepoint-study/model/phrases/english';
-import { german } from 'threepoint-study/model/phrases/german';
+import { describe, expect, test } from 'vitest';
+import { english, type Phrase } from '../../../src/study/model/phrases/english';
+import { german } from '../../../src/study/model/phrases/german';
 import {
   missingKeys,
   PhrasedError,
@@ -8,10 +9,9 @@ import {
   phrasesOf,
   placeholdersIn,
   preferredLanguage,
-} from 'threepoint-study/model/phrases/phrases';
-import { checkedPlan } from 'threepoint-study/model/plan/plan';
-import { remarksOn } from 'threepoint-study/model/plan/plan-remarks';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/study/model/phrases/phrases';
+import { checkedPlan } from '../../../src/study/model/plan/plan';
+import { remarksOn } from '../../../src/study/model/plan/plan-remarks';
 import { examplePlan, planComplaints } from './studies';
 
 const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));

@@ -1,14 +1,14 @@
 import fc from 'fast-check';
-import { groupsOf, ordersByGroup, ordersOf } from 'threepoint-study/model/plan/allocation';
+import { describe, expect, test } from 'vitest';
+import { groupsOf, ordersByGroup, ordersOf } from '../../../src/study/model/plan/allocation';
 import {
   checkedPlan,
   parsePlan,
   participantsOf,
   type StudyPlan,
   type StudyTask,
-} from 'threepoint-study/model/plan/plan';
-import { blindLabel, scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/study/model/plan/plan';
+import { blindLabel, scheduleFor } from '../../../src/study/model/plan/schedule';
 import { seed } from '../../threepoint/core/arbitraries';
 import { paperFile, paperPlan, planWith } from './studies';
 

@@ -1,10 +1,10 @@
-import { checkedPlan } from 'threepoint-study/model/plan/plan';
-import { remarksOn } from 'threepoint-study/model/plan/plan-remarks';
-import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
-import { measuresIn, overallComparisons, resultTables } from 'threepoint-study/model/results/exported-results';
-import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
-import { holm } from 'threepoint-study/statistics/holm';
 import { expect, test } from 'vitest';
+import { checkedPlan } from '../../../src/study/model/plan/plan';
+import { remarksOn } from '../../../src/study/model/plan/plan-remarks';
+import { compareConditions } from '../../../src/study/model/results/compare-conditions';
+import { measuresIn, overallComparisons, resultTables } from '../../../src/study/model/results/exported-results';
+import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
+import { holm } from '../../../src/study/statistics/holm';
 import { examplePlan, latencyPlan } from './studies';
 
 const plan = latencyPlan({ participants: 6 });

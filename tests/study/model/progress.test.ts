@@ -1,6 +1,7 @@
 import fc from 'fast-check';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { ProgressEvent } from 'threepoint-study/model/progress/apply-event';
+import { describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { ProgressEvent } from '../../../src/study/model/progress/apply-event';
 import {
   begin,
   clockText,
@@ -10,9 +11,8 @@ import {
   reported,
   resumed,
   sinceReport,
-} from 'threepoint-study/model/progress/progress';
-import { checkedRecord } from 'threepoint-study/model/records/study-record';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/study/model/progress/progress';
+import { checkedRecord } from '../../../src/study/model/records/study-record';
 import { seed } from '../../threepoint/core/arbitraries';
 import { aWomanOf26, outcomeOf, paperPlan, session } from './studies';
 

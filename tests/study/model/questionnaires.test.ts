@@ -1,7 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import type { QuestionnaireFile } from 'threepoint-study/model/questionnaires/questionnaire-schema';
-import { scaleRange, scaleScore } from 'threepoint-study/model/questionnaires/questionnaire-scores';
+import { describe, expect, test } from 'vitest';
+import type { QuestionnaireFile } from '../../../src/study/model/questionnaires/questionnaire-schema';
+import { scaleRange, scaleScore } from '../../../src/study/model/questionnaires/questionnaire-scores';
 import {
   type Answers,
   checkedAnswers,
@@ -11,8 +12,7 @@ import {
   shippedQuestionnaires,
   typedAnswer,
   unanswered,
-} from 'threepoint-study/model/questionnaires/questionnaires';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/study/model/questionnaires/questionnaires';
 
 const shipped = (id: string): Questionnaire => {
   const found = shippedQuestionnaires[id];

@@ -1,13 +1,13 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { parsePlan, readPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import type { Schedule, StudyStep } from 'threepoint-study/model/plan/schedule';
-import { applyEvent, type ProgressEvent } from 'threepoint-study/model/progress/apply-event';
-import { begin, currentStep, type Progress } from 'threepoint-study/model/progress/progress';
-import type { Answer, AnswerForm } from 'threepoint-study/model/questionnaires/question-kind';
-import { questionKind } from 'threepoint-study/model/questionnaires/question-kinds';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { TrialLog, type TrialOutcome } from 'threepoint-study/model/records/trial-log';
+import { parsePlan, readPlan, type StudyPlan } from '../../../src/study/model/plan/plan';
+import type { Schedule, StudyStep } from '../../../src/study/model/plan/schedule';
+import { applyEvent, type ProgressEvent } from '../../../src/study/model/progress/apply-event';
+import { begin, currentStep, type Progress } from '../../../src/study/model/progress/progress';
+import type { Answer, AnswerForm } from '../../../src/study/model/questionnaires/question-kind';
+import { questionKind } from '../../../src/study/model/questionnaires/question-kinds';
+import { recordVersion, type StudyRecord } from '../../../src/study/model/records/study-record';
+import { TrialLog, type TrialOutcome } from '../../../src/study/model/records/trial-log';
 
 const shippedFile = (name: string): string =>
   readFileSync(fileURLToPath(new URL(`../../../public/studies/${name}.json`, import.meta.url)), 'utf8');

@@ -1,8 +1,8 @@
-import { participantsOf } from 'threepoint-study/model/plan/plan';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { answersIn, studyTables, trialsIn } from 'threepoint-study/model/tables/study-tables';
-import { tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { describe, expect, test } from 'vitest';
+import { participantsOf } from '../../../src/study/model/plan/plan';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { answersIn, studyTables, trialsIn } from '../../../src/study/model/tables/study-tables';
+import { tidyCsv } from '../../../src/study/model/tables/tidy-csv';
 import { paperPlan, session } from './studies';
 
 const plan = paperPlan();

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
-import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import { codebookOf, type Table, text, tidyCsv } from 'threepoint-study/model/tables/tidy-csv';
 import { describe, expect, test } from 'vitest';
+import { csvRows } from '../../../src/study/cli/verify/csv-rows';
+import { codebookOf, type Table, text, tidyCsv } from '../../../src/study/model/tables/tidy-csv';
 import { seed } from '../../threepoint/core/arbitraries';
 
 const tableOf = (...cells: Table['rows'][number][string][]): Table => ({

@@ -1,8 +1,13 @@
 import fc from 'fast-check';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { checkedRecord, longestRecord } from 'threepoint-study/model/records/study-record';
-import { checkedOutcome, DurationStatistics, maxTrialEvents, TrialLog } from 'threepoint-study/model/records/trial-log';
 import { describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { checkedRecord, longestRecord } from '../../../src/study/model/records/study-record';
+import {
+  checkedOutcome,
+  DurationStatistics,
+  maxTrialEvents,
+  TrialLog,
+} from '../../../src/study/model/records/trial-log';
 import { number, seed } from '../../threepoint/core/arbitraries';
 import { outcomeOf, paperPlan, session } from './studies';
 

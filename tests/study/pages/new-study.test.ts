@@ -1,5 +1,5 @@
-import { simulatedPlan } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
+import { simulatedPlan } from '../../../src/study/simulation/simulate-study';
 import { examplePlan } from '../model/studies';
 import { now, servedStudies } from '../server/running-studies';
 

@@ -1,9 +1,9 @@
-import { checkedPlan, type StudyTask } from 'threepoint-study/model/plan/plan';
-import { compareConditions } from 'threepoint-study/model/results/compare-conditions';
-import { scaleCharts } from 'threepoint-study/pages/results/comparison-figures';
-import { shownResults } from 'threepoint-study/pages/results/shown-results';
-import { modelsWith, simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import { expect, test } from 'vitest';
+import { checkedPlan, type StudyTask } from '../../../src/study/model/plan/plan';
+import { compareConditions } from '../../../src/study/model/results/compare-conditions';
+import { scaleCharts } from '../../../src/study/pages/results/comparison-figures';
+import { shownResults } from '../../../src/study/pages/results/shown-results';
+import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { latencyPlan } from '../model/studies';
 
 test('two tasks that participants read alike stand side by side in a figure, each with its id', () => {

@@ -1,8 +1,8 @@
-import { createExperimenterClient } from 'threepoint-study/client/study-client';
-import { measuresIn, overallComparisons } from 'threepoint-study/model/results/exported-results';
-import { answersIn, trialsIn } from 'threepoint-study/model/tables/study-tables';
-import { storeSimulation } from 'threepoint-study/pages/experimenter/store-simulation';
 import { expect, test } from 'vitest';
+import { createExperimenterClient } from '../../../src/study/client/study-client';
+import { measuresIn, overallComparisons } from '../../../src/study/model/results/exported-results';
+import { answersIn, trialsIn } from '../../../src/study/model/tables/study-tables';
+import { storeSimulation } from '../../../src/study/pages/experimenter/store-simulation';
 import { examplePlan, latencyPlan } from '../model/studies';
 import { experimenter, now, servedStudies } from '../server/running-studies';
 

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
-import { swarmOffsets } from 'threepoint-study/pages/results/swarm-layout';
 import { expect, test } from 'vitest';
+import { swarmOffsets } from '../../../src/study/pages/results/swarm-layout';
 
 const apart = (values: readonly number[], beside: readonly number[]) => {
   let least = Number.POSITIVE_INFINITY;

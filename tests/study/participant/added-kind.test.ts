@@ -1,32 +1,32 @@
-import { planJsonSchema } from 'threepoint-study/cli/check/plan-json-schema';
-import { inLanguage, words } from 'threepoint-study/model/phrases/localized-text';
-import { phrasesOf } from 'threepoint-study/model/phrases/phrases';
-import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { begin } from 'threepoint-study/model/progress/progress';
-import type { Answer, QuestionKind } from 'threepoint-study/model/questionnaires/question-kind';
-import { questionKindNames, registerQuestionKind } from 'threepoint-study/model/questionnaires/question-kinds';
-import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
-import type { StudyPlugin } from 'threepoint-study/model/questionnaires/study-plugin';
-import { checkedRecord } from 'threepoint-study/model/records/study-record';
-import { measuresIn } from 'threepoint-study/model/results/exported-results';
-import { answersIn, studyTables } from 'threepoint-study/model/tables/study-tables';
-import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
-import type { QuestionView } from 'threepoint-study/participant/questions/question-view';
-import { questionView, registerQuestionView } from 'threepoint-study/participant/questions/question-views';
-import { questionPart } from 'threepoint-study/participant/screens/question-screen';
-import type { ShownSession } from 'threepoint-study/participant/screens/study-situation';
-import { nullAnswerModel } from 'threepoint-study/simulation/answer-model';
-import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
-import { simulateStudy } from 'threepoint-study/simulation/simulate-study';
 import * as v from 'valibot';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
+import { planJsonSchema } from '../../../src/study/cli/check/plan-json-schema';
+import { inLanguage, words } from '../../../src/study/model/phrases/localized-text';
+import { phrasesOf } from '../../../src/study/model/phrases/phrases';
+import { checkedPlan, type StudyPlan } from '../../../src/study/model/plan/plan';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { begin } from '../../../src/study/model/progress/progress';
+import type { Answer, QuestionKind } from '../../../src/study/model/questionnaires/question-kind';
+import { questionKindNames, registerQuestionKind } from '../../../src/study/model/questionnaires/question-kinds';
+import type { Question } from '../../../src/study/model/questionnaires/questionnaire-schema';
+import type { StudyPlugin } from '../../../src/study/model/questionnaires/study-plugin';
+import { checkedRecord } from '../../../src/study/model/records/study-record';
+import { measuresIn } from '../../../src/study/model/results/exported-results';
+import { answersIn, studyTables } from '../../../src/study/model/tables/study-tables';
+import { questionTargets } from '../../../src/study/participant/questions/question-sheet';
+import type { QuestionView } from '../../../src/study/participant/questions/question-view';
+import { questionView, registerQuestionView } from '../../../src/study/participant/questions/question-views';
+import { questionPart } from '../../../src/study/participant/screens/question-screen';
+import type { ShownSession } from '../../../src/study/participant/screens/study-situation';
+import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
+import { statedPerformanceModel } from '../../../src/study/simulation/performance-model';
+import { simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { paperPlan, session } from '../model/studies';
 import agreement from '../plugins/agreement.mjs';
 
 // A laboratory adds a kind of question from outside the package: agreement, which is 1 or 0.
 
-declare module 'threepoint-study/model/questionnaires/question-kind' {
+declare module '../../../src/study/model/questionnaires/question-kind' {
   interface AnswerForms {
     agreement: { readonly kind: 'agreement'; readonly yes: string; readonly no: string };
   }

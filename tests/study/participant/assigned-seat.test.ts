@@ -1,9 +1,9 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { assignedSeat } from 'threepoint-page/ball/match/ball-connections';
-import { relayConfigurationFrom } from 'threepoint-rooms/server/settings/relay-configuration';
-import { createExperimenterClient, createParticipantClient } from 'threepoint-study/client/study-client';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { ParticipantState } from 'threepoint-study/model/progress/study-api';
+import { defaultAvatar } from 'threepoint/core';
+import { assignedSeat } from '../../../src/page/ball/match/ball-connections';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
+import { createExperimenterClient, createParticipantClient } from '../../../src/study/client/study-client';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { ParticipantState } from '../../../src/study/model/progress/study-api';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../../server/room-kinds';
 import { startServer } from '../../../server/start-server';

@@ -1,7 +1,7 @@
 import { IDBFactory } from 'fake-indexeddb';
 import { openDB } from 'idb';
-import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, onTestFinished, test, vi } from 'vitest';
+import { openStudyVault } from '../../../src/study/participant/session/study-vault';
 import { reportFigures } from '../../reliability/report-figures';
 import { aWomanOf26 } from '../model/studies';
 import { agree, beforeTheQuestions, choose } from './participant-steps';

@@ -1,5 +1,5 @@
-import { ExchangeTimer } from 'threepoint-study/participant/exchange-timer';
 import { expect, test } from 'vitest';
+import { ExchangeTimer } from '../../../src/study/participant/exchange-timer';
 
 /** Exchanges with a server that answers or not; each time set by the timer is run by the test. */
 function timed() {

@@ -1,5 +1,5 @@
-import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, test } from 'vitest';
+import { openStudyVault } from '../../../src/study/participant/session/study-vault';
 import { beforeTheQuestions, choose } from './participant-steps';
 import { place, studyServer } from './study-server';
 

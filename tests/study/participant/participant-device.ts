@@ -1,8 +1,8 @@
 import 'fake-indexeddb/auto';
-import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
-import { openStudyVault, type StudyVault } from 'threepoint-study/participant/session/study-vault';
 import { expect, vi } from 'vitest';
+import { createParticipantClient } from '../../../src/study/client/study-client';
+import { ParticipantSession, startSession } from '../../../src/study/participant/session/participant-session';
+import { openStudyVault, type StudyVault } from '../../../src/study/participant/session/study-vault';
 import { aWomanOf26, outcomeOf, paperPlan } from '../model/studies';
 import { place } from './study-server';
 

@@ -1,8 +1,7 @@
 import { request as httpRequest } from 'node:http';
-import { writeRecording } from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { unpacked } from 'threepoint-study/server/storage/study-motion';
+import { type TrackingFrame, writeRecording } from 'threepoint/core';
 import { expect, test } from 'vitest';
+import { unpacked } from '../../../src/study/server/storage/study-motion';
 import { answeringHost } from '../../rooms/client/answering-host';
 import { calibration, device, toTheFirstQuestion } from './participant-device';
 import { place, type StudyServer, studyServer } from './study-server';

@@ -1,6 +1,6 @@
-import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { afterEach, expect, test, vi } from 'vitest';
+import { createParticipantClient } from '../../../src/study/client/study-client';
+import { ParticipantSession, startSession } from '../../../src/study/participant/session/participant-session';
 import { calibration, device, fillDevice, toTheFirstQuestion, toTheFirstRest } from './participant-device';
 import { place, studyServer } from './study-server';
 

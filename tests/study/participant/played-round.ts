@@ -1,7 +1,7 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { ArcheryPlay } from 'threepoint-page/archery/archery-play';
-import { createArcheryRunner } from 'threepoint-page/archery/archery-runner';
-import { type FinishedTrial, PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
+import { defaultCalibration } from 'threepoint/core';
+import { ArcheryPlay } from '../../../src/page/archery/archery-play';
+import { createArcheryRunner } from '../../../src/page/archery/archery-runner';
+import { type FinishedTrial, PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { activityServices } from '../../page/activity-services';
 
 export const frameSeconds = 1 / 72;

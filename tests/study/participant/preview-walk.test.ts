@@ -1,6 +1,6 @@
-import { outlineOf } from 'threepoint-study/model/plan/plan-outline';
-import { PreviewWalk } from 'threepoint-study/participant/preview/preview-walk';
 import { describe, expect, test } from 'vitest';
+import { outlineOf } from '../../../src/study/model/plan/plan-outline';
+import { PreviewWalk } from '../../../src/study/participant/preview/preview-walk';
 import { examplePlan, latencyPlan, paperPlan } from '../model/studies';
 
 const walkOf = (plan = examplePlan(), participant = 'P01') =>

@@ -1,14 +1,18 @@
-import { phrasesOf } from 'threepoint-study/model/phrases/phrases';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { begin } from 'threepoint-study/model/progress/progress';
-import type { Answer } from 'threepoint-study/model/questionnaires/question-kind';
-import type { Question } from 'threepoint-study/model/questionnaires/questionnaire-schema';
-import { type Answers, shippedQuestionnaires, typedAnswer } from 'threepoint-study/model/questionnaires/questionnaires';
-import { questionTargets } from 'threepoint-study/participant/questions/question-sheet';
-import { height, width } from 'threepoint-study/participant/questions/sheet-target';
-import { questionPart } from 'threepoint-study/participant/screens/question-screen';
-import type { ParticipantSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
+import { phrasesOf } from '../../../src/study/model/phrases/phrases';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { begin } from '../../../src/study/model/progress/progress';
+import type { Answer } from '../../../src/study/model/questionnaires/question-kind';
+import type { Question } from '../../../src/study/model/questionnaires/questionnaire-schema';
+import {
+  type Answers,
+  shippedQuestionnaires,
+  typedAnswer,
+} from '../../../src/study/model/questionnaires/questionnaires';
+import { questionTargets } from '../../../src/study/participant/questions/question-sheet';
+import { height, width } from '../../../src/study/participant/questions/sheet-target';
+import { questionPart } from '../../../src/study/participant/screens/question-screen';
+import type { ParticipantSession } from '../../../src/study/participant/session/participant-session';
 import { expectApart } from '../../page/shell/menu-parts';
 import { examplePlan } from '../model/studies';
 

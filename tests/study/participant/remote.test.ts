@@ -1,7 +1,7 @@
-import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import { setupFaults } from 'threepoint-study/model/plan/remote-setup';
-import { uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
 import { describe, expect, test } from 'vitest';
+import { Phrases } from '../../../src/study/model/phrases/phrases';
+import { setupFaults } from '../../../src/study/model/plan/remote-setup';
+import { uploadStatusText } from '../../../src/study/participant/screens/study-screens';
 import { aWomanOf26 } from '../model/studies';
 import { agree, canStart } from './participant-steps';
 import { browser, type Tab } from './study-browser';

@@ -1,21 +1,24 @@
 import 'fake-indexeddb/auto';
 import { IDBFactory } from 'fake-indexeddb';
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { Side } from 'threepoint/core/math/side';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { createParticipantClient } from 'threepoint-study/client/study-client';
-import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
-import type { DeviceFault } from 'threepoint-study/model/plan/remote-setup';
-import type { FrameListener } from 'threepoint-study/model/records/trial-log';
-import type { Invited, StudyForm } from 'threepoint-study/participant/forms/study-form';
-import type { StudyScreen } from 'threepoint-study/participant/questions/study-screen';
-import type { StudyAddressBar, StudyDisplay, StudyPage } from 'threepoint-study/participant/study-page';
-import { StudyVisit } from 'threepoint-study/participant/study-visit';
-import type { StudyHost } from 'threepoint-study/participant/trial/study-host';
-import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from 'threepoint-study/participant/trial/task-runner';
+import {
+  type Calibration,
+  createPageClock,
+  defaultCalibration,
+  type EstimatorName,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { Side } from 'threepoint/math';
 import { expect, vi } from 'vitest';
+import { createParticipantClient } from '../../../src/study/client/study-client';
+import type { Embodiment } from '../../../src/study/model/plan/embodiment';
+import type { DeviceFault } from '../../../src/study/model/plan/remote-setup';
+import type { FrameListener } from '../../../src/study/model/records/trial-log';
+import type { Invited, StudyForm } from '../../../src/study/participant/forms/study-form';
+import type { StudyScreen } from '../../../src/study/participant/questions/study-screen';
+import type { StudyAddressBar, StudyDisplay, StudyPage } from '../../../src/study/participant/study-page';
+import { StudyVisit } from '../../../src/study/participant/study-visit';
+import type { StudyHost } from '../../../src/study/participant/trial/study-host';
+import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../../../src/study/participant/trial/task-runner';
 import type { StudyServer } from './study-server';
 
 /** A clock that the test advances, with its timers. */

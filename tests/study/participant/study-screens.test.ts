@@ -1,10 +1,10 @@
-import { createParticipantClient } from 'threepoint-study/client/study-client';
-import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import type { ProgressEvent } from 'threepoint-study/model/progress/apply-event';
-import { screenOf, uploadStatusText } from 'threepoint-study/participant/screens/study-screens';
-import type { ScreenActions, StudySituation } from 'threepoint-study/participant/screens/study-situation';
-import { ParticipantSession, startSession } from 'threepoint-study/participant/session/participant-session';
 import { describe, expect, test } from 'vitest';
+import { createParticipantClient } from '../../../src/study/client/study-client';
+import { Phrases } from '../../../src/study/model/phrases/phrases';
+import type { ProgressEvent } from '../../../src/study/model/progress/apply-event';
+import { screenOf, uploadStatusText } from '../../../src/study/participant/screens/study-screens';
+import type { ScreenActions, StudySituation } from '../../../src/study/participant/screens/study-situation';
+import { ParticipantSession, startSession } from '../../../src/study/participant/session/participant-session';
 import { aWomanOf26, paperPlan } from '../model/studies';
 import { toTheFirstRest } from './participant-device';
 

@@ -1,11 +1,11 @@
 import { join } from 'node:path';
-import { createRouter, noPage } from 'threepoint-http/router';
-import { serve, type WebServer } from 'threepoint-http/web-server';
-import { createExperimenterClient } from 'threepoint-study/client/study-client';
-import type { StudyPlan } from 'threepoint-study/model/plan/plan';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
+import { createRouter, noPage } from 'threepoint-http';
 import { onTestFinished } from 'vitest';
+import { serve, type WebServer } from '../../../src/http/web-server';
+import { createExperimenterClient } from '../../../src/study/client/study-client';
+import type { StudyPlan } from '../../../src/study/model/plan/plan';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
+import { openStudyStore } from '../../../src/study/server/storage/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { experimenter, studiesInThisThread } from '../server/running-studies';

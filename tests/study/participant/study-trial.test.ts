@@ -1,9 +1,8 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { parseRecording } from 'threepoint/core/tracking/recording';
-import { maxMotionBytes } from 'threepoint-study/model/progress/study-api';
-import { recordingTime } from 'threepoint-study/model/records/trial-clock';
-import { PlayedTrial } from 'threepoint-study/participant/trial/study-trial';
+import { defaultCalibration, parseRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { maxMotionBytes } from '../../../src/study/model/progress/study-api';
+import { recordingTime } from '../../../src/study/model/records/trial-clock';
+import { PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { epoch, frameSeconds, playedRound } from './played-round';
 import { OneShotGame } from './study-browser';
 

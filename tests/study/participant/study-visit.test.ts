@@ -1,6 +1,6 @@
-import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { openStudyVault } from 'threepoint-study/participant/session/study-vault';
+import { estimatorNames } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { openStudyVault } from '../../../src/study/participant/session/study-vault';
 import { aWomanOf26 } from '../model/studies';
 import {
   agree,

@@ -1,7 +1,7 @@
-import { Phrases } from 'threepoint-study/model/phrases/phrases';
-import type { StudyScreen } from 'threepoint-study/participant/questions/study-screen';
-import { VrStudyPanel } from 'threepoint-study/participant/sheet/vr-study-panel';
 import { expect, test } from 'vitest';
+import { Phrases } from '../../../src/study/model/phrases/phrases';
+import type { StudyScreen } from '../../../src/study/participant/questions/study-screen';
+import { VrStudyPanel } from '../../../src/study/participant/sheet/vr-study-panel';
 import { drawNowhere } from '../../page/shell/drawing-in-node';
 
 drawNowhere();

@@ -2,8 +2,8 @@ import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { gunzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, test } from 'vitest';
+import { openStudyStore } from '../../../src/study/server/storage/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { type Anything, servedStudies } from './running-studies';
 

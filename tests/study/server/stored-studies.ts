@@ -1,8 +1,8 @@
 import { join } from 'node:path';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore, type StudyStore } from 'threepoint-study/server/storage/study-store';
 import { onTestFinished } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
+import { openStudyStore, type StudyStore } from '../../../src/study/server/storage/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';

@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { normalisedCode } from 'threepoint-study/server/storage/schema';
 import { describe, expect, test } from 'vitest';
+import { normalisedCode } from '../../../src/study/server/storage/schema';
 import { now } from './running-studies';
 import { completed, withPaperStudy } from './stored-studies';
 

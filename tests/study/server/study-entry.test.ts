@@ -1,7 +1,7 @@
 import { connect } from 'node:net';
-import { participantsOf } from 'threepoint-study/model/plan/plan';
-import { openPlacesPerHour } from 'threepoint-study/server/routes/guard';
 import { describe, expect, test } from 'vitest';
+import { participantsOf } from '../../../src/study/model/plan/plan';
+import { openPlacesPerHour } from '../../../src/study/server/routes/guard';
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan } from '../model/studies';
 import { type Asked, experimenter, servedPaperStudy } from './running-studies';

@@ -1,8 +1,8 @@
-import { writeRecording } from 'threepoint/core/tracking/recording';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { begin, type Progress } from 'threepoint-study/model/progress/progress';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
+import { writeRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { begin, type Progress } from '../../../src/study/model/progress/progress';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';

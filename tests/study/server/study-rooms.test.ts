@@ -1,10 +1,10 @@
 import { io } from 'socket.io-client';
-import { createRoomPass } from 'threepoint-rooms/client/room-pass';
-import { pageParser } from 'threepoint-rooms/protocol/socket-parsers';
-import { RoomTokens } from 'threepoint-rooms/server/access/room-tokens';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { createStudySeats } from 'threepoint-study/server/routes/seats';
+import { RoomTokens } from 'threepoint-rooms/server';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
+import { createRoomPass } from '../../../src/rooms/client/room-pass';
+import { pageParser } from '../../../src/rooms/protocol/socket-parsers';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { reportFigures } from '../../reliability/report-figures';
 import {
   type RunningRelay,

@@ -1,8 +1,8 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { bodyLimits } from 'threepoint-study/server/routes/route';
 import { describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
+import { bodyLimits } from '../../../src/study/server/routes/route';
 import { reportFigures } from '../../reliability/report-figures';
 import { paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';

@@ -1,8 +1,8 @@
 import { statSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { expect, onTestFinished, test, vi } from 'vitest';
+import { openStudyStore } from '../../../src/study/server/storage/study-store';
 import { hasFileModes } from '../../platform';
 import { until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';

@@ -1,10 +1,10 @@
 import { copyFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { begin, reported } from 'threepoint-study/model/progress/progress';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
 import { describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { begin, reported } from '../../../src/study/model/progress/progress';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';

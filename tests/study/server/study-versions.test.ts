@@ -1,8 +1,8 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { togetherWith } from 'threepoint-study/model/plan/allocation';
-import type { StudyPlan } from 'threepoint-study/model/plan/plan';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
 import { describe, expect, test } from 'vitest';
+import { togetherWith } from '../../../src/study/model/plan/allocation';
+import type { StudyPlan } from '../../../src/study/model/plan/plan';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { latencyPlan, paperPlan, session } from '../model/studies';
 import { experimenter, now, servedStudies } from './running-studies';
 

@@ -6,9 +6,9 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import { checkedRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
+import { scheduleFor } from '../../../src/study/model/plan/schedule';
+import { checkedRecord } from '../../../src/study/model/records/study-record';
+import { openStudyStore } from '../../../src/study/server/storage/study-store';
 import { latencyPlan, session } from '../model/studies';
 
 const now = 1_800_000_000;

@@ -1,11 +1,11 @@
 import fc from 'fast-check';
-import { type Effect, varianceAnalysis } from 'threepoint-study/statistics/analysis-of-variance';
-import { rankSumCounts, rankSumTest, welchTest } from 'threepoint-study/statistics/between-tests';
-import { noncentralF, noncentralT } from 'threepoint-study/statistics/noncentral';
-import { pairedTTest, signedRankTest } from 'threepoint-study/statistics/paired-tests';
-import { friedmanTest, kruskalWallisTest } from 'threepoint-study/statistics/rank-analyses';
-import { meanOf } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
+import { type Effect, varianceAnalysis } from '../../../src/study/statistics/analysis-of-variance';
+import { rankSumCounts, rankSumTest, welchTest } from '../../../src/study/statistics/between-tests';
+import { noncentralF, noncentralT } from '../../../src/study/statistics/noncentral';
+import { pairedTTest, signedRankTest } from '../../../src/study/statistics/paired-tests';
+import { friedmanTest, kruskalWallisTest } from '../../../src/study/statistics/rank-analyses';
+import { meanOf } from '../../../src/study/statistics/summaries';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { expectAsInR } from './as-in-r';
 import {

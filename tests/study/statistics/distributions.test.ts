@@ -1,7 +1,7 @@
 import fc from 'fast-check';
-import { gammaTail, incompleteBeta, normalCdf, signedRankCdf } from 'threepoint-study/statistics/distributions';
-import { criticalT, twoSidedP } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
+import { gammaTail, incompleteBeta, normalCdf, signedRankCdf } from '../../../src/study/statistics/distributions';
+import { criticalT, twoSidedP } from '../../../src/study/statistics/summaries';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 
 /** Both values are equal to this share of the greater. */

@@ -1,8 +1,8 @@
 import fc from 'fast-check';
-import { holm } from 'threepoint-study/statistics/holm';
-import { pairedTTest, signedRankTest } from 'threepoint-study/statistics/paired-tests';
-import { meanSummary, twoSidedP } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
+import { holm } from '../../../src/study/statistics/holm';
+import { pairedTTest, signedRankTest } from '../../../src/study/statistics/paired-tests';
+import { meanSummary, twoSidedP } from '../../../src/study/statistics/summaries';
 import { number, seed } from '../../threepoint/core/arbitraries';
 import { depression, sleep } from './data-sets';
 

@@ -1,5 +1,5 @@
-import { powerTable, simulatedPower } from 'threepoint-study/statistics/power';
 import { describe, expect, test } from 'vitest';
+import { powerTable, simulatedPower } from '../../../src/study/statistics/power';
 
 const simulation = { seed: 22, studies: 10_000 };
 /** Three standard errors of a share of as many studies. */

@@ -1,10 +1,10 @@
 import fc from 'fast-check';
-import { rankSumTest } from 'threepoint-study/statistics/between-tests';
-import { signedRankTest } from 'threepoint-study/statistics/paired-tests';
-import { friedmanTest, kruskalWallisTest } from 'threepoint-study/statistics/rank-analyses';
-import { ranksOf } from 'threepoint-study/statistics/ranks';
-import { meanOf } from 'threepoint-study/statistics/summaries';
 import { describe, expect, test } from 'vitest';
+import { rankSumTest } from '../../../src/study/statistics/between-tests';
+import { signedRankTest } from '../../../src/study/statistics/paired-tests';
+import { friedmanTest, kruskalWallisTest } from '../../../src/study/statistics/rank-analyses';
+import { ranksOf } from '../../../src/study/statistics/ranks';
+import { meanOf } from '../../../src/study/statistics/summaries';
 import { seed } from '../../threepoint/core/arbitraries';
 
 type Rounds = readonly number[];

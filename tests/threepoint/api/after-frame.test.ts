@@ -1,5 +1,5 @@
-import { createAfterFrame } from 'threepoint/api/after-frame';
 import { expect, test } from 'vitest';
+import { createAfterFrame } from '../../../src/threepoint/api/after-frame';
 import { openPorts } from './open-ports';
 
 test('what a frame leaves for later is done after it, in order', async () => {

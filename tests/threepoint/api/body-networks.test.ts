@@ -1,6 +1,6 @@
-import { Body } from 'threepoint/api/body';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { describe, expect, test, vi } from 'vitest';
+import { Body } from '../../../src/threepoint/api/body';
+import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 import { openPorts } from './open-ports';

@@ -1,15 +1,15 @@
-import { Body, type BodyOptions } from 'threepoint/api/body';
-import { copyAvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { closedHand, type Fingers, flatHand, makeHandShape } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import type { NetworkName } from 'threepoint/core/estimation/estimators';
-import { estimatorNames } from 'threepoint/core/estimation/pose-estimator';
-import { distance } from 'threepoint/core/math/vec3';
-import { createPageClock } from 'threepoint/core/tracking/page-clock';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test, vi } from 'vitest';
+import { Body, type BodyOptions } from '../../../src/threepoint/api/body';
+import { copyAvatarPose } from '../../../src/threepoint/core/body/avatar-pose';
+import { type Calibration, defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
+import { closedHand, type Fingers, flatHand, makeHandShape } from '../../../src/threepoint/core/body/hand-shape';
+import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
+import type { NetworkName } from '../../../src/threepoint/core/estimation/estimators';
+import { estimatorNames } from '../../../src/threepoint/core/estimation/pose-estimator';
+import { distance } from '../../../src/threepoint/core/math/vec3';
+import { createPageClock } from '../../../src/threepoint/core/tracking/page-clock';
+import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { openPlainModel, openShippedModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
 

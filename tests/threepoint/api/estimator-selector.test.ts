@@ -1,9 +1,13 @@
-import { EstimatorSelector } from 'threepoint/api/estimator-selector';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator, networkOf } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import { type EstimatorName, estimatorNames, type PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
 import { describe, expect, test } from 'vitest';
+import { EstimatorSelector } from '../../../src/threepoint/api/estimator-selector';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { createEstimator, networkOf } from '../../../src/threepoint/core/estimation/estimators';
+import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
+import {
+  type EstimatorName,
+  estimatorNames,
+  type PoseEstimator,
+} from '../../../src/threepoint/core/estimation/pose-estimator';
 import { openPlainModel } from '../core/estimation/shipped-models';
 
 const head = {

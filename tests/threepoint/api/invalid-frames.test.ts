@@ -1,11 +1,11 @@
-import { Body } from 'threepoint/api/body';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { deviceBodySize } from 'threepoint/core/tracking/device-body';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { TrackingValidator } from 'threepoint/core/tracking/tracking-validator';
 import { describe, expect, test } from 'vitest';
+import { Body } from '../../../src/threepoint/api/body';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import type { EstimatorName } from '../../../src/threepoint/core/estimation/pose-estimator';
+import type { TrackedPose } from '../../../src/threepoint/core/math/pose';
+import { deviceBodySize } from '../../../src/threepoint/core/tracking/device-body';
+import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
+import { TrackingValidator } from '../../../src/threepoint/core/tracking/tracking-validator';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { numbersIn } from '../core/numbers-in';

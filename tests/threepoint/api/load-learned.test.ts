@@ -1,10 +1,10 @@
-import { Body } from 'threepoint/api/body';
-import { exportMotion } from 'threepoint/api/export-motion';
-import { loadLearned } from 'threepoint/api/load-learned';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { Recording } from 'threepoint/core/tracking/recording';
 import { expect, test, vi } from 'vitest';
+import { Body } from '../../../src/threepoint/api/body';
+import { exportMotion } from '../../../src/threepoint/api/export-motion';
+import { loadLearned } from '../../../src/threepoint/api/load-learned';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
+import type { Recording } from '../../../src/threepoint/core/tracking/recording';
 
 const models = new URL('../../../public/models/', import.meta.url);
 

@@ -1,5 +1,5 @@
-import { Body, type BodyOptions } from 'threepoint/api/body';
-import type { Calibration } from 'threepoint/core/body/calibration';
+import { Body, type BodyOptions } from '../../../src/threepoint/api/body';
+import type { Calibration } from '../../../src/threepoint/core/body/calibration';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 

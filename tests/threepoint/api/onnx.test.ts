@@ -1,12 +1,12 @@
 import { readFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { Body } from 'threepoint/api/body';
-import { loadLearned } from 'threepoint/api/load-learned';
-import { onnxNetworks } from 'threepoint/api/onnx';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { afterAll, beforeAll, expect, test } from 'vitest';
+import { Body } from '../../../src/threepoint/api/body';
+import { loadLearned } from '../../../src/threepoint/api/load-learned';
+import { onnxNetworks } from '../../../src/threepoint/api/onnx';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 
 let server: Server;
 let models = '';

@@ -1,14 +1,14 @@
-import { Body } from 'threepoint/api/body';
-import { ReplayedBody } from 'threepoint/api/replayed-body';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { distance } from 'threepoint/core/math/vec3';
-import { Recorder } from 'threepoint-page/studio/recorder';
 import { describe, expect, test, vi } from 'vitest';
+import { Recorder } from '../../../src/page/studio/recorder';
+import { Body } from '../../../src/threepoint/api/body';
+import { ReplayedBody } from '../../../src/threepoint/api/replayed-body';
+import type { Calibration } from '../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
+import { estimatedJoints } from '../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
+import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
+import type { EstimatorName } from '../../../src/threepoint/core/estimation/pose-estimator';
+import { distance } from '../../../src/threepoint/core/math/vec3';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 

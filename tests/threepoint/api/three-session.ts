@@ -1,8 +1,8 @@
 import { Vector3, type WebGLRenderer } from 'three';
-import { BodyTracker, type BodyTrackerOptions, loadAvatar } from 'threepoint/api/three';
-import { invertTransform, type Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { up, type Vec3 } from 'threepoint/core/math/vec3';
+import { BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../../src/threepoint/api/three';
+import { invertTransform, type Pose } from '../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
+import { up, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { mannequin } from '../avatar/glb';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { controller, fakeHeadset } from '../xr/fake-headset';

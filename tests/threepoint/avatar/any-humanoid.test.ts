@@ -1,8 +1,8 @@
 import { Matrix4, type SkinnedMesh, Vector3 } from 'three';
-import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
+import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
+import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { builtRig, type RigOptions, rightArm } from './built-rig';
 import { mixamo, namings, vroid } from './rig-namings';
 import { expectBody, hold, opened, skinAt } from './worn-body';

@@ -3,10 +3,10 @@ import { createVRMAnimationClip, type VRMAnimation, VRMAnimationLoaderPlugin } f
 import { validateBytes } from 'gltf-validator';
 import { type Object3D, Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
-import { turnPoint } from 'threepoint/core/motion/motion-bones';
-import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
+import { createAvatarMotionWriter } from '../../../src/threepoint/avatar/avatar-motion-writer';
+import { turnPoint } from '../../../src/threepoint/core/motion/motion-bones';
+import { writeVrma } from '../../../src/threepoint/core/motion/write-vrma';
 import { actingPerson, bytesOf, contortedPerson } from '../core/motion/moved-person';
 import { playerOf } from '../core/motion/play-clip';
 import { builtRig } from './built-rig';

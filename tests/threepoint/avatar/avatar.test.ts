@@ -1,16 +1,16 @@
 import { Matrix4, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
-import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { angleBetween, fromAxisAngle, multiply, rotate } from 'threepoint/core/math/quat';
-import { backward, distance, dot, length, subtract, up, type Vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { beforeAll, describe, expect, test } from 'vitest';
+import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
+import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
+import { type Calibration, defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
+import { jointNames } from '../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { angleBetween, fromAxisAngle, multiply, rotate } from '../../../src/threepoint/core/math/quat';
+import { backward, distance, dot, length, subtract, up, type Vec3 } from '../../../src/threepoint/core/math/vec3';
+import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
 import { changed, mannequin, old } from './glb';
 

@@ -1,8 +1,8 @@
 import { type Mesh, type MeshStandardMaterial, Texture } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { blobBufferViews } from 'threepoint/avatar/file/blob-buffer-views';
-import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
 import { describe, expect, test, vi } from 'vitest';
+import { blobBufferViews } from '../../../src/threepoint/avatar/file/blob-buffer-views';
+import { readGlbChunks } from '../../../src/threepoint/avatar/file/glb-chunks';
 import { glbOf, padded } from './glb';
 
 const places = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25, 0.5, -2]);

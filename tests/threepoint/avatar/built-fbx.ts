@@ -1,5 +1,5 @@
 import { Matrix4, Vector3 } from 'three';
-import type { BoneName } from 'threepoint/core/humanoid/bones';
+import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
 import { boxCorners, boxFaces, boxHalf, type RigOptions, rigJoints } from './built-rig';
 import { type FbxNode, long, fbxNode as node } from './fbx-file';
 

@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
-import type { BoneName } from 'threepoint/core/humanoid/bones';
+import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
 import { glbOf, padded } from './glb';
 
 type Point = readonly [number, number, number];

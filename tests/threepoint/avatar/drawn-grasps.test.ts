@@ -1,24 +1,38 @@
 import type { Vector3 } from 'three';
-import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
-import type { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import { fingerBoneNames } from 'threepoint/core/body/finger-bone-names';
-import { distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
-import { type FingerName, fingerNames, type MutableHandShape } from 'threepoint/core/body/hand-shape';
-import { createIk, createWithNetwork } from 'threepoint/core/estimation/estimators';
-import { makeTransform, type Pose } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { copyVec3, dot, forward, normalise, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { bowInHand } from 'threepoint-games/archery/bow-pose';
-import { basketInHands, basketRadius, gripRadius, rimTube } from 'threepoint-games/ball/basket';
-import { ballRadius } from 'threepoint-games/ball/flight';
-import { createPlayerPostures, makePosture } from 'threepoint-games/ball/player-postures';
-import { ballRules } from 'threepoint-games/ball/rules';
-import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { stations } from 'threepoint-games/ball/stations';
-import { ballInPalm, wristAround } from 'threepoint-games/fist';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
+import { ballInPalm, type SimulatedInput } from 'threepoint-games';
+import {
+  ballRadius,
+  ballRules,
+  basketInHands,
+  basketRadius,
+  createSimulatedHolder,
+  rimTube,
+  stations,
+} from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
+import { bowInHand } from '../../../src/games/archery/bow-pose';
+import { gripRadius } from '../../../src/games/ball/basket';
+import { createPlayerPostures, makePosture } from '../../../src/games/ball/player-postures';
+import { wristAround } from '../../../src/games/fist';
+import { bodyLabels } from '../../../src/threepoint/avatar/built-in-body-labels';
+import type { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-object';
+import { fingerBoneNames } from '../../../src/threepoint/core/body/finger-bone-names';
+import { distanceToBall, distanceToRod } from '../../../src/threepoint/core/body/grasp';
+import { type FingerName, fingerNames, type MutableHandShape } from '../../../src/threepoint/core/body/hand-shape';
+import { createIk, createWithNetwork } from '../../../src/threepoint/core/estimation/estimators';
+import { makeTransform, type Pose } from '../../../src/threepoint/core/math/pose';
+import { rotate } from '../../../src/threepoint/core/math/quat';
+import type { Side } from '../../../src/threepoint/core/math/side';
+import {
+  copyVec3,
+  dot,
+  forward,
+  normalise,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../src/threepoint/core/math/vec3';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { builtInBody, type DrawnSkin, drawnHands, drawnSkin, wearer } from './drawn-skin';

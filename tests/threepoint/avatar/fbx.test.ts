@@ -1,10 +1,10 @@
 import { deflateSync } from 'node:zlib';
-import { createAvatarMotionWriter } from 'threepoint/avatar/avatar-motion-writer';
-import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
-import { MotionOnlyError } from 'threepoint/avatar/file/motion-only-error';
-import { parseChecked } from 'threepoint/avatar/load-avatar';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
+import { createAvatarMotionWriter } from '../../../src/threepoint/avatar/avatar-motion-writer';
+import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
+import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
+import { MotionOnlyError } from '../../../src/threepoint/avatar/file/motion-only-error';
+import { parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { builtFbx } from './built-fbx';
 import { type FbxNode, fbxBinary, fbxNode, fbxText, long } from './fbx-file';
 import { partsOf } from './glb';

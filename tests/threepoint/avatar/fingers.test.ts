@@ -1,6 +1,7 @@
 import { Group, type Object3D, SkinnedMesh, Vector3 } from 'three';
-import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
+import { describe, expect, test } from 'vitest';
+import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
+import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import {
   closedHand,
   type FingerName,
@@ -8,13 +9,12 @@ import {
   flatHand,
   type HandShape,
   relaxedHand,
-} from 'threepoint/core/body/hand-shape';
-import { makePose, type Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { addScaled, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
-import { describe, expect, test } from 'vitest';
+} from '../../../src/threepoint/core/body/hand-shape';
+import { makePose, type Pose } from '../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, rotate } from '../../../src/threepoint/core/math/quat';
+import type { Side } from '../../../src/threepoint/core/math/side';
+import { addScaled, distance, normalise, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { TrackedSession } from '../../../src/threepoint/xr/tracked-session';
 import { printFigures } from '../../print-figures';
 import { fakeHeadset } from '../xr/fake-headset';
 import { jointAt, type RecordedHand, recordedHands, trackedHand } from '../xr/recorded-hands';

@@ -1,10 +1,10 @@
 import { readFileSync } from 'node:fs';
 import type { BufferAttribute, MeshStandardMaterial, SkinnedMesh } from 'three';
-import { createAvatar } from 'threepoint/avatar/avatar';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { FlatPartsMaterial } from 'threepoint/avatar/rig/flat-parts';
-import { skinnedMeshesOf } from 'threepoint/avatar/scene-meshes';
 import { expect, test } from 'vitest';
+import { createAvatar } from '../../../src/threepoint/avatar/avatar';
+import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
+import { FlatPartsMaterial } from '../../../src/threepoint/avatar/rig/flat-parts';
+import { skinnedMeshesOf } from '../../../src/threepoint/avatar/scene-meshes';
 
 const read = (name: string) => parseAvatar(new Uint8Array(readFileSync(`public/avatars/${name}.vrm`)).buffer, name);
 

@@ -1,5 +1,5 @@
-import { createHeadLossFade } from 'threepoint/avatar/head-loss-fade';
 import { describe, expect, test } from 'vitest';
+import { createHeadLossFade } from '../../../src/threepoint/avatar/head-loss-fade';
 import { reportFigures } from '../../reliability/report-figures';
 
 describe('a body whose head is lost', () => {

@@ -1,13 +1,19 @@
-import { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from 'threepoint/core/body/hand-geometry';
-import { fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
-import { type Pose, transformPoint } from 'threepoint/core/math/pose';
-import { identity } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { distance, dot, forward, length, reject, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import { basketInHands, basketRadius, gripRadius, rimTube } from 'threepoint-games/ball/basket';
-import { wristAround } from 'threepoint-games/fist';
+import { basketInHands, basketRadius, rimTube } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
+import { gripRadius } from '../../../src/games/ball/basket';
+import { wristAround } from '../../../src/games/fist';
+import { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-object';
+import {
+  averageHand,
+  fingerPoints,
+  makeFingerPoints,
+  scaledHand,
+} from '../../../src/threepoint/core/body/hand-geometry';
+import { fingerNames, makeHandShape } from '../../../src/threepoint/core/body/hand-shape';
+import { type Pose, transformPoint } from '../../../src/threepoint/core/math/pose';
+import { identity } from '../../../src/threepoint/core/math/quat';
+import type { Side } from '../../../src/threepoint/core/math/side';
+import { distance, dot, forward, length, reject, subtract, up, vec3 } from '../../../src/threepoint/core/math/vec3';
 
 const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
   left: wristAround('left', vec3(-gripRadius, 1.1, -0.4), forward, up),

@@ -1,10 +1,10 @@
-import { avatarLimits } from 'threepoint/avatar/file/avatar-limits';
-import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { imageSize } from 'threepoint/avatar/file/image-size';
-import { inspectAvatar } from 'threepoint/avatar/file/inspect-avatar';
-import { gltfFaults } from 'threepoint/avatar/file/validate-gltf';
-import { parseAvatar, parseChecked } from 'threepoint/avatar/load-avatar';
 import { afterAll, describe, expect, test } from 'vitest';
+import { avatarLimits } from '../../../src/threepoint/avatar/file/avatar-limits';
+import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
+import { imageSize } from '../../../src/threepoint/avatar/file/image-size';
+import { inspectAvatar } from '../../../src/threepoint/avatar/file/inspect-avatar';
+import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
+import { parseAvatar, parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { reportFigures } from '../../reliability/report-figures';
 import { changed, type GltfJson, mannequin } from './glb';
 import { largeAvatar } from './large-avatar';

@@ -1,10 +1,10 @@
-import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
-import { wrapAngle } from 'threepoint/core/math/angle';
-import { fromAxisAngle, multiply, rotate } from 'threepoint/core/math/quat';
-import { add, distance, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { yawOf } from 'threepoint/core/tracking/heading';
 import { describe, expect, test } from 'vitest';
+import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
+import { wrapAngle } from '../../../src/threepoint/core/math/angle';
+import { fromAxisAngle, multiply, rotate } from '../../../src/threepoint/core/math/quat';
+import { add, distance, up, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { yawOf } from '../../../src/threepoint/core/tracking/heading';
 import { eyeHeight, proportions, standing, walking } from './walking-person';
 
 const rateHz = 72;

@@ -1,8 +1,8 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
 import { describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { trackerAtJoint } from '../../../src/threepoint/core/body/tracker-offsets';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../src/threepoint/core/estimation/pinning';
 import { postures, trackedPostures } from '../../../tools/avatars/try/postures';
 import { printFigures } from '../../print-figures';
 import { builtInBody } from './drawn-skin';

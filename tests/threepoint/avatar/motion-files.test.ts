@@ -1,12 +1,12 @@
 import { deflateSync } from 'node:zlib';
 import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
-import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
-import { readGltfMotion } from 'threepoint/avatar/file/read-gltf-motion';
-import type { BoneName } from 'threepoint/core/humanoid/bones';
-import { prepareMocap, readTruthMotion } from 'threepoint/core/mocap/prepare-mocap';
-import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
-import { finishWork } from 'threepoint/core/motion/work';
 import { expect, test } from 'vitest';
+import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
+import { readGltfMotion } from '../../../src/threepoint/avatar/file/read-gltf-motion';
+import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
+import { prepareMocap, readTruthMotion } from '../../../src/threepoint/core/mocap/prepare-mocap';
+import { truthJoints } from '../../../src/threepoint/core/mocap/skeleton-map';
+import { finishWork } from '../../../src/threepoint/core/motion/work';
 import { type BoneTurns, builtFbx } from './built-fbx';
 import { rigJoints } from './built-rig';
 import { fbxBinary, fbxText } from './fbx-file';

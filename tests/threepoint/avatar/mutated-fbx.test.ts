@@ -1,8 +1,8 @@
 import { deflateSync } from 'node:zlib';
-import { convertToGlb } from 'threepoint/avatar/file/convert-to-glb';
-import type { SceneParts } from 'threepoint/avatar/file/fbx/glb-of-scene';
-import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
+import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
+import type { SceneParts } from '../../../src/threepoint/avatar/file/fbx/glb-of-scene';
+import { createRandom } from '../../../src/threepoint/core/math/random';
 import { releaseMemory } from '../../collect-garbage';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';

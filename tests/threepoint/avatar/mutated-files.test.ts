@@ -1,9 +1,9 @@
 import type { Object3D } from 'three';
-import { untrustedAvatarLimits } from 'threepoint/avatar/file/avatar-limits';
-import { checkAvatar } from 'threepoint/avatar/file/check-avatar';
-import { parseChecked } from 'threepoint/avatar/load-avatar';
-import { createRandom } from 'threepoint/core/math/random';
 import { expect, onTestFinished, test, vi } from 'vitest';
+import { untrustedAvatarLimits } from '../../../src/threepoint/avatar/file/avatar-limits';
+import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
+import { parseChecked } from '../../../src/threepoint/avatar/load-avatar';
+import { createRandom } from '../../../src/threepoint/core/math/random';
 import { reportFigures } from '../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../mutated-files';
 import { builtRig } from './built-rig';

@@ -1,7 +1,7 @@
 import { MeshoptEncoder } from 'meshoptimizer';
-import { decoders } from 'threepoint/avatar/decoders/decoders';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
 import { describe, expect, test } from 'vitest';
+import { decoders } from '../../../src/threepoint/avatar/decoders/decoders';
+import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { builtRig } from './built-rig';
 import { glbOf, padded, partsOf } from './glb';
 import { vroid } from './rig-namings';

@@ -1,5 +1,5 @@
-import { FramePacer, reflectionSize } from 'threepoint/avatar/mirror';
 import { describe, expect, test } from 'vitest';
+import { FramePacer, reflectionSize } from '../../../src/threepoint/avatar/mirror';
 
 /** Height to width of the page's mirror. */
 const standing = 2.15 / 1.5;

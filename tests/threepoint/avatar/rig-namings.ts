@@ -1,4 +1,4 @@
-import type { BoneName } from 'threepoint/core/humanoid/bones';
+import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
 
 /** What a file calls a bone. */
 export type NameOf = (bone: BoneName) => string;

@@ -1,7 +1,7 @@
 import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from 'three';
-import { seesRectangle } from 'threepoint/avatar/mirror';
-import { nextRandom } from 'threepoint/core/math/random';
 import { expect, test } from 'vitest';
+import { seesRectangle } from '../../../src/threepoint/avatar/mirror';
+import { nextRandom } from '../../../src/threepoint/core/math/random';
 
 const width = 1.5;
 const height = 2.15;

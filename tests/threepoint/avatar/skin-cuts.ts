@@ -1,5 +1,5 @@
 import { SkinnedMesh, Vector3 } from 'three';
-import type { Avatar } from 'threepoint/avatar/avatar';
+import type { Avatar } from '../../../src/threepoint/avatar/avatar';
 
 /** Crossings of a cut through the skin at rest with its triangles' edges: which vertices, and how far between them. */
 export interface Crossing {

@@ -1,15 +1,15 @@
-import { createAvatar } from 'threepoint/avatar/avatar';
-import { LegPosture } from 'threepoint/avatar/legs/leg-posture';
-import { parseAvatar } from 'threepoint/avatar/load-avatar';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import { type Pose, transformPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply, rotate } from 'threepoint/core/math/quat';
-import { distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { describe, expect, test } from 'vitest';
+import { createAvatar } from '../../../src/threepoint/avatar/avatar';
+import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
+import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { trackerAtJoint } from '../../../src/threepoint/core/body/tracker-offsets';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../src/threepoint/core/estimation/pinning';
+import { type Pose, transformPose } from '../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, multiply, rotate } from '../../../src/threepoint/core/math/quat';
+import { distance, right, up, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { mannequin } from './glb';
 import { eyeHeight, proportions, standing, walking } from './walking-person';
 

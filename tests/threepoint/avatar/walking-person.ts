@@ -1,7 +1,7 @@
-import type { LegProportions } from 'threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
-import { fromAxisAngle, identity } from 'threepoint/core/math/quat';
-import { up, vec3 } from 'threepoint/core/math/vec3';
+import type { LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
+import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
+import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
+import { up, vec3 } from '../../../src/threepoint/core/math/vec3';
 
 export const eyeHeight = 1.6;
 export const proportions: LegProportions = {

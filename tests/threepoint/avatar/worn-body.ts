@@ -1,15 +1,15 @@
 import { type SkinnedMesh, Vector3 } from 'three';
-import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import { type LoadedAvatar, parseAvatar } from 'threepoint/avatar/load-avatar';
-import { handBoneRotation } from 'threepoint/core/body/arm-rotations';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import type { BoneName } from 'threepoint/core/humanoid/bones';
-import { rotate } from 'threepoint/core/math/quat';
-import { distance, down, vec3 } from 'threepoint/core/math/vec3';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect } from 'vitest';
+import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
+import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
+import { handBoneRotation } from '../../../src/threepoint/core/body/arm-rotations';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
+import { rotate } from '../../../src/threepoint/core/math/quat';
+import { distance, down, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
 import { boxHalf, builtRig, type RigOptions } from './built-rig';
 

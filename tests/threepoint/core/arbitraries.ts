@@ -1,6 +1,6 @@
 import fc from 'fast-check';
-import { fromAxisAngle, multiply, normaliseQuat, type Quat } from 'threepoint/core/math/quat';
-import { normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { fromAxisAngle, multiply, normaliseQuat, type Quat } from '../../../src/threepoint/core/math/quat';
+import { normalise, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 
 /** Every property of core starts from this seed, so that a failure can be repeated. */
 export const seed = 2460;

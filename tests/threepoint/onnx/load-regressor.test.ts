@@ -1,10 +1,10 @@
 import { readFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { loadPlainRegressor } from 'threepoint/onnx/load-plain-regressor';
-import { loadRegressor } from 'threepoint/onnx/load-regressor';
-import { parseContract } from 'threepoint/onnx/model-contract';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { loadPlainRegressor } from '../../../src/threepoint/onnx/load-plain-regressor';
+import { loadRegressor } from '../../../src/threepoint/onnx/load-regressor';
+import { parseContract } from '../../../src/threepoint/onnx/model-contract';
 
 const model = (name: string) => readFileSync(new URL(`../../../public/models/${name}`, import.meta.url));
 const contract = JSON.parse(model('learned.json').toString()) as Record<string, unknown>;

@@ -1,6 +1,6 @@
-import type { InferenceSession } from 'threepoint/onnx/session';
-import { SessionRegressor } from 'threepoint/onnx/session-regressor';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import type { InferenceSession } from '../../../src/threepoint/onnx/session';
+import { SessionRegressor } from '../../../src/threepoint/onnx/session-regressor';
 import { readShipped } from '../core/estimation/shipped-models';
 
 const { contract } = readShipped('learned');

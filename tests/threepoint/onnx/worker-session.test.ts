@@ -1,6 +1,6 @@
-import { startRegressor } from 'threepoint/onnx/load-regressor';
-import type { WorkerRequest, WorkerResponse } from 'threepoint/onnx/worker-session';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { startRegressor } from '../../../src/threepoint/onnx/load-regressor';
+import type { WorkerRequest, WorkerResponse } from '../../../src/threepoint/onnx/worker-session';
 import { readShipped } from '../core/estimation/shipped-models';
 
 beforeEach(() => {

@@ -1,11 +1,11 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { identity } from 'threepoint/core/math/quat';
-import { vec3 } from 'threepoint/core/math/vec3';
-import { XRBodyPoser } from 'threepoint/core/motion/xr-body';
-import { deviceJoint, deviceJointNames } from 'threepoint/core/tracking/device-body';
-import { DeviceBodyReader } from 'threepoint/xr/device-body-reader';
-import { TrackedSession } from 'threepoint/xr/tracked-session';
 import { describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { identity } from '../../../src/threepoint/core/math/quat';
+import { vec3 } from '../../../src/threepoint/core/math/vec3';
+import { XRBodyPoser } from '../../../src/threepoint/core/motion/xr-body';
+import { deviceJoint, deviceJointNames } from '../../../src/threepoint/core/tracking/device-body';
+import { DeviceBodyReader } from '../../../src/threepoint/xr/device-body-reader';
+import { TrackedSession } from '../../../src/threepoint/xr/tracked-session';
 import { fakeHeadset, type Seen } from './fake-headset';
 
 /** The specification's joints, as a device lists them. */

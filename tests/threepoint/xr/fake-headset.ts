@@ -1,10 +1,10 @@
-import { composeTransforms, invertTransform, type Pose, transformPose } from 'threepoint/core/math/pose';
-import { identity, type Quat, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { type Vec3, vec3, zero } from 'threepoint/core/math/vec3';
-import { Pointing } from 'threepoint/xr/pointing';
-import { type DrawingSpace, TrackedSession } from 'threepoint/xr/tracked-session';
 import { vi } from 'vitest';
+import { composeTransforms, invertTransform, type Pose, transformPose } from '../../../src/threepoint/core/math/pose';
+import { identity, type Quat, rotate } from '../../../src/threepoint/core/math/quat';
+import type { Side } from '../../../src/threepoint/core/math/side';
+import { type Vec3, vec3, zero } from '../../../src/threepoint/core/math/vec3';
+import { Pointing } from '../../../src/threepoint/xr/pointing';
+import { type DrawingSpace, TrackedSession } from '../../../src/threepoint/xr/tracked-session';
 
 type Place = Pose<'floor'>;
 export type Seen = (Place & { readonly emulated?: boolean }) | null;

@@ -1,8 +1,8 @@
-import { fingerNames, type HandShape, relaxedHand } from 'threepoint/core/body/hand-shape';
-import type { Pose } from 'threepoint/core/math/pose';
-import { fromAxisAngle } from 'threepoint/core/math/quat';
-import { normalise, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { fingerNames, type HandShape, relaxedHand } from '../../../src/threepoint/core/body/hand-shape';
+import type { Pose } from '../../../src/threepoint/core/math/pose';
+import { fromAxisAngle } from '../../../src/threepoint/core/math/quat';
+import { normalise, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { controller, type Input, trackedHeadset } from './fake-headset';
 import { recordedHands, trackedHand } from './recorded-hands';
 

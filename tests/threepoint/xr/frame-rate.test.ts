@@ -1,5 +1,5 @@
-import { FrameRateControl, type Savings } from 'threepoint/xr/frame-rate';
 import { describe, expect, test } from 'vitest';
+import { FrameRateControl, type Savings } from '../../../src/threepoint/xr/frame-rate';
 
 /**
  * A headset and a page in it, in simulated time. `fastest`: the rate [Hz] up to which the page draws every frame in

@@ -1,6 +1,6 @@
 import { WebXRController } from 'three/src/renderers/webxr/WebXRController.js';
-import { addFramesToEvents } from 'threepoint/xr/draw-session';
 import { expect, test } from 'vitest';
+import { addFramesToEvents } from '../../../src/threepoint/xr/draw-session';
 import { reportFigures } from '../../reliability/report-figures';
 
 /**

@@ -1,8 +1,14 @@
 import fc from 'fast-check';
-import { rotate } from 'threepoint/core/math/quat';
-import { distance, dot, vec3 } from 'threepoint/core/math/vec3';
-import { bareHandFit, genericFit, gripFromWrist, handleFit, wristFromGrip } from 'threepoint/xr/grip-offsets';
 import { describe, expect, test } from 'vitest';
+import { rotate } from '../../../src/threepoint/core/math/quat';
+import { distance, dot, vec3 } from '../../../src/threepoint/core/math/vec3';
+import {
+  bareHandFit,
+  genericFit,
+  gripFromWrist,
+  handleFit,
+  wristFromGrip,
+} from '../../../src/threepoint/xr/grip-offsets';
 import { fromEulerYxz } from '../core/euler-angles';
 
 const angle = fc.double({ min: -3, max: 3, noNaN: true });

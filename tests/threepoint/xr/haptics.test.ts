@@ -1,5 +1,5 @@
-import { playPulses } from 'threepoint/xr/haptics';
 import { expect, test } from 'vitest';
+import { playPulses } from '../../../src/threepoint/xr/haptics';
 import { controller, fakeHeadset } from './fake-headset';
 
 const right = { position: { x: 0.25, y: 1.1, z: -0.35 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };

@@ -1,10 +1,10 @@
 import { pinchHandPose } from 'iwer/lib/device/configs/hand/pinch.js';
 import { pointHandPose } from 'iwer/lib/device/configs/hand/point.js';
 import { relaxedHandPose } from 'iwer/lib/device/configs/hand/relaxed.js';
-import { type Pose, transformPoint, transformPose, untransformPoint } from 'threepoint/core/math/pose';
-import { conjugate, fromAxes, multiply, type Quat, slerp } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { lerp, vec3 } from 'threepoint/core/math/vec3';
+import { type Pose, transformPoint, transformPose, untransformPoint } from '../../../src/threepoint/core/math/pose';
+import { conjugate, fromAxes, multiply, type Quat, slerp } from '../../../src/threepoint/core/math/quat';
+import type { Side } from '../../../src/threepoint/core/math/side';
+import { lerp, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { controller, type Input } from './fake-headset';
 
 type Place = Pose<'floor'>;

@@ -1,6 +1,6 @@
-import { requestVrSession } from 'threepoint/xr/request-session';
-import { describeXrSupport } from 'threepoint/xr/session-support';
 import { describe, expect, test, vi } from 'vitest';
+import { requestVrSession } from '../../../src/threepoint/xr/request-session';
+import { describeXrSupport } from '../../../src/threepoint/xr/session-support';
 import { reportFigures } from '../../reliability/report-figures';
 
 /** A browser with this much of WebXR. */

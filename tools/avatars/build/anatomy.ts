@@ -1,4 +1,4 @@
-import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
+import { fingerBoneSuffixes } from 'threepoint/core';
 import type { BodyRig } from './rig';
 import {
   boxOf,

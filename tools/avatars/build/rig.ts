@@ -1,8 +1,6 @@
-import { fingerBoneSuffixes } from 'threepoint/core/body/finger-bone-names';
-import averageHand from 'threepoint/core/body/hand-geometry.json';
-import type { FingerName } from 'threepoint/core/body/hand-shape';
-import { type JointName, parentOf } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { type FingerName, fingerBoneSuffixes, skeletonFromCalibration } from 'threepoint/core';
+import averageHand from '../../../src/threepoint/core/body/hand-geometry.json';
+import { type JointName, parentOf } from '../../../src/threepoint/core/body/joints';
 import type { Point } from './signed-distance';
 
 /** A bone of the humanoid: its VRM name, its parent's, and where its joint is in T-pose [m], facing +Z, left = +X. */

@@ -1,5 +1,5 @@
 import { MeshoptSimplifier } from 'meshoptimizer';
-import { bisect } from 'threepoint/core/math/bisection';
+import { bisect } from 'threepoint/math';
 import { type DistanceField, gradient, type Point } from './signed-distance';
 
 /** Triangles over points: positions are xyz triples [m]. */

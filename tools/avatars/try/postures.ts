@@ -1,19 +1,22 @@
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxes, fromAxisAngle, identity, type Quat } from 'threepoint/core/math/quat';
+import type { TrackingFrame } from 'threepoint/core';
 import {
   backward,
   cross,
   down,
   forward,
+  fromAxes,
+  fromAxisAngle,
+  identity,
   normalise,
+  type Quat,
   reject,
   right,
   scale,
+  type TrackedPose,
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+} from 'threepoint/math';
 
 const left = scale(right, -1);
 

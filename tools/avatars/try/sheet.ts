@@ -1,16 +1,11 @@
 // The page of `npm run avatars:try`: one file in, a sheet of pictures out.
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
-import { type Avatar, createAvatar } from 'threepoint/avatar/avatar';
-import { decoders } from 'threepoint/avatar/decoders/decoders';
-import { checkInWorker } from 'threepoint/avatar/file/check-in-worker';
-import { parseChecked } from 'threepoint/avatar/load-avatar';
-import { thirdPersonOnlyLayer } from 'threepoint/avatar/rig/body-meshes';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { defaultCalibration, reasonOf, type TrackingFrame } from 'threepoint/core';
+import { type Avatar, checkInWorker, decoders, parseChecked, thirdPersonOnlyLayer } from 'threepoint/three';
+import { createAvatar } from '../../../src/threepoint/avatar/avatar';
+import { trackerAtJoint } from '../../../src/threepoint/core/body/tracker-offsets';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../src/threepoint/core/estimation/pinning';
 import { postures, trackedPostures } from './postures';
 
 /** A picture [pixels] on the sheet, and the line of text above all. */

@@ -1,8 +1,7 @@
 import { Group } from 'three';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { fullScore } from 'threepoint-games/archery/rules';
-import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
+import type { Vec3 } from 'threepoint/math';
+import { type ArcheryState, fullScore } from 'threepoint-games/archery';
+import { drawText, textWidth } from 'threepoint-ui/vr';
 import { ink, paintCard } from '../../scene/boards/board-style';
 import { buttonUnder, createSheet, paintButton, type SheetContent, type SheetSize } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';

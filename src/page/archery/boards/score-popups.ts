@@ -1,6 +1,6 @@
 import { Group } from 'three';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryState } from 'threepoint-games/archery/archery-state';
+import type { Vec3 } from 'threepoint/math';
+import type { ArcheryState } from 'threepoint-games/archery';
 import { ink } from '../../scene/boards/board-style';
 import { FloatingText } from '../../scene/floating-text';
 import type { Quality } from '../../scene/renderer';

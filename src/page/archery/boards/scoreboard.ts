@@ -1,7 +1,6 @@
 import { Group } from 'three';
-import type { ArcheryState } from 'threepoint-games/archery/archery-state';
-import { fullScore, secondsLeft } from 'threepoint-games/archery/rules';
-import { drawText } from 'threepoint-ui/canvas-drawing';
+import { type ArcheryState, fullScore, secondsLeft } from 'threepoint-games/archery';
+import { drawText } from 'threepoint-ui/vr';
 import { ink, paintGround } from '../../scene/boards/board-style';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';

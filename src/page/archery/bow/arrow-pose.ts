@@ -1,16 +1,6 @@
-import {
-  addScaled,
-  cross,
-  type MutableVec3,
-  normalise,
-  right,
-  scale,
-  up,
-  type Vec3,
-  vec3,
-} from 'threepoint/core/math/vec3';
-import type { Arrow } from 'threepoint-games/archery/archery-state';
-import { positionAt, velocityAt } from 'threepoint-games/ballistics';
+import { addScaled, cross, type MutableVec3, normalise, right, scale, up, type Vec3, vec3 } from 'threepoint/math';
+import { positionAt, velocityAt } from 'threepoint-games';
+import type { Arrow } from 'threepoint-games/archery';
 
 /** The pose of a drawn arrow: its tip and its unit direction, arena frame. */
 export interface ArrowPose {

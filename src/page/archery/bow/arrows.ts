@@ -10,7 +10,7 @@ import {
   Quaternion,
   Vector3,
 } from 'three';
-import type { Arrow } from 'threepoint-games/archery/archery-state';
+import type { Arrow } from 'threepoint-games/archery';
 import { merged, painted } from '../../scene/painted-geometry';
 import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
 

@@ -12,9 +12,8 @@ import {
   ShaderMaterial,
   Vector3,
 } from 'three';
-import { conjugate, quat, rotate } from 'threepoint/core/math/quat';
-import { distance, lerp, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BowView } from 'threepoint-games/archery/archery-state';
+import { conjugate, distance, lerp, quat, rotate, subtract, type Vec3, vec3 } from 'threepoint/math';
+import type { BowView } from 'threepoint-games/archery';
 import type { Quality } from '../../scene/renderer';
 import { bendLimb, limbPoints, limbRoot, type MutableLimbPoint, makeLimb, stringBow } from './limb-shape';
 

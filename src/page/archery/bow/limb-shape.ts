@@ -1,7 +1,5 @@
-import { bisect } from 'threepoint/core/math/bisection';
-import { smoothstep } from 'threepoint/core/math/damper';
-import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
+import type { Mutable } from 'threepoint/core';
+import { bisect, distance, type MutableVec3, setVec3, smoothstep, type Vec3, vec3 } from 'threepoint/math';
 
 /**
  * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that

@@ -1,5 +1,4 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, ShaderMaterial } from 'three';
-import { smoothstep } from 'threepoint/core/math/damper';
 import {
   add,
   addScaled,
@@ -7,12 +6,13 @@ import {
   distance,
   normalise,
   scale,
+  smoothstep,
   subtract,
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import type { Arrow } from 'threepoint-games/archery/archery-state';
+} from 'threepoint/math';
+import type { Arrow } from 'threepoint-games/archery';
 import { doubleSided } from '../../scene/double-sided';
 import { arrowPose, makeArrowPose } from './arrow-pose';
 

@@ -14,8 +14,8 @@ import {
   TubeGeometry,
   Vector3,
 } from 'three';
-import { clamp } from 'threepoint/core/math/damper';
-import { walls } from 'threepoint-games/archery/rules';
+import { clamp } from 'threepoint/math';
+import { walls } from 'threepoint-games/archery';
 import { createDataTexture } from '../../scene/data-texture';
 import { doubleSided } from '../../scene/double-sided';
 import { woodColor } from '../../scene/outdoors/wood-color';

@@ -1,6 +1,6 @@
 import { BoxGeometry, type BufferGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
-import { drawText } from 'threepoint-ui/canvas-drawing';
+import { drawText } from 'threepoint-ui/vr';
 import { createLabelQuad } from '../../scene/boards/label-quad';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import { woodColor } from '../../scene/outdoors/wood-color';

@@ -1,4 +1,4 @@
-import { walls, zone } from 'threepoint-games/archery/rules';
+import { walls, zone } from 'threepoint-games/archery';
 
 const back = Math.min(...walls.filter(({ axis }) => axis === 'z').map(({ at }) => at));
 

@@ -1,5 +1,5 @@
 import { Group, Vector3 } from 'three';
-import { makeTransform } from 'threepoint/core/math/pose';
+import { makeTransform } from 'threepoint/math';
 import { mergeMeshes } from '../../scene/merge-meshes';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';

@@ -15,9 +15,9 @@ import {
   TorusGeometry,
   Vector3,
 } from 'three';
-import { clamp } from 'threepoint/core/math/damper';
-import type { ArcheryState, Target } from 'threepoint-games/archery/archery-state';
-import { drawText } from 'threepoint-ui/canvas-drawing';
+import { clamp } from 'threepoint/math';
+import type { ArcheryState, Target } from 'threepoint-games/archery';
+import { drawText } from 'threepoint-ui/vr';
 import { ink } from '../../scene/boards/board-style';
 import { createLabelQuad } from '../../scene/boards/label-quad';
 import { createCanvasTexture, type DrawableTexture } from '../../scene/canvas-texture';

@@ -8,7 +8,7 @@ import {
   Quaternion,
   Vector3,
 } from 'three';
-import { walls } from 'threepoint-games/archery/rules';
+import { walls } from 'threepoint-games/archery';
 import { createRandomRange } from '../../scene/random-range';
 import { field } from './field';
 

@@ -1,6 +1,5 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import type { ArcheryEvent, Landing, Target } from 'threepoint-games/archery/archery-state';
-import type { BowCue } from 'threepoint-games/archery/gestures';
+import type { Pose } from 'threepoint/math';
+import type { ArcheryEvent, BowCue, Landing, Target } from 'threepoint-games/archery';
 import { directionText } from '../../scene/direction-text';
 
 /** Targets have numbers, from the nearest. */

@@ -1,6 +1,6 @@
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { ArcheryEvent } from 'threepoint-games/archery/archery-state';
-import { pulseBothHands } from 'threepoint-games/both-hands-pulse';
+import type { HapticPulse } from 'threepoint/core';
+import { pulseBothHands } from 'threepoint-games';
+import type { ArcheryEvent } from 'threepoint-games/archery';
 
 /**
  * Returns the haptic pulses of events: a hit in the bow hand, stronger for more points, a warning and the bell in both

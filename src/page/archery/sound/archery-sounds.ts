@@ -1,10 +1,6 @@
-import { clamp } from 'threepoint/core/math/damper';
-import type { Pose } from 'threepoint/core/math/pose';
-import { length, lerp, vec3 } from 'threepoint/core/math/vec3';
-import type { ArcheryEvent, ArcheryState, Arrow } from 'threepoint-games/archery/archery-state';
-import { maximumDraw } from 'threepoint-games/archery/bow';
-import type { BowCue } from 'threepoint-games/archery/gestures';
-import { positionAt } from 'threepoint-games/ballistics';
+import { clamp, length, lerp, type Pose, vec3 } from 'threepoint/math';
+import { positionAt } from 'threepoint-games';
+import { type ArcheryEvent, type ArcheryState, type Arrow, type BowCue, maximumDraw } from 'threepoint-games/archery';
 import {
   createSoundStage,
   type Recipe,

@@ -9,8 +9,8 @@ import {
   Mesh,
   MeshLambertMaterial,
 } from 'three';
-import { clamp } from 'threepoint/core/math/damper';
-import { ballRadius } from 'threepoint-games/ball/flight';
+import { clamp } from 'threepoint/math';
+import { ballRadius } from 'threepoint-games/ball';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
 import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted, paintedBox } from '../../scene/painted-geometry';

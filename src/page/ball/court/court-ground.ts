@@ -1,5 +1,5 @@
 import { Color, type Mesh, type MeshLambertMaterial, type PlaneGeometry, type Texture } from 'three';
-import { stations } from 'threepoint-games/ball/stations';
+import { stations } from 'threepoint-games/ball';
 import { createPaintedGround } from '../../scene/outdoors/painted-ground';
 import { seatLooks } from '../seat-looks';
 import { court } from './court-plan';

@@ -1,4 +1,4 @@
-import { ballsPerRack, rackPosition } from 'threepoint-games/ball/stations';
+import { ballsPerRack, rackPosition } from 'threepoint-games/ball';
 
 /** Positions on the court, arena frame [m]. The throwers stand around the origin and throw along −Z. */
 export const court = {

@@ -1,5 +1,5 @@
 import { Group, Vector3 } from 'three';
-import type { Transform } from 'threepoint/core/math/pose';
+import type { Transform } from 'threepoint/math';
 import { mergeMeshes } from '../../scene/merge-meshes';
 import { daylight } from '../../scene/outdoors/daylight';
 import { createLandscape } from '../../scene/outdoors/landscape';

@@ -1,7 +1,6 @@
 import { Mesh, MeshBasicMaterial, RingGeometry } from 'three';
-import { clamp } from 'threepoint/core/math/damper';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import { zoneRadius } from 'threepoint-games/ball/stations';
+import { clamp, type Vec3 } from 'threepoint/math';
+import { zoneRadius } from 'threepoint-games/ball';
 import { doubleSided } from '../../scene/double-sided';
 
 /** The ring becomes visible at this distance from the edge [m]. */

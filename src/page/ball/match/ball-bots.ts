@@ -1,11 +1,6 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import type { BallBot } from 'threepoint-games/ball/ball-bot';
-import type { BallConnection } from 'threepoint-games/ball/ball-client';
-import type { BallState } from 'threepoint-games/ball/ball-state';
-import type { BallGestures } from 'threepoint-games/ball/gestures';
-import type { Visitor } from 'threepoint-rooms/client/connection';
+import { type Calibration, createEstimator, type PoseEstimator } from 'threepoint/core';
+import type { BallBot, BallConnection, BallGestures, BallState } from 'threepoint-games/ball';
+import type { Visitor } from 'threepoint-rooms/room';
 import {
   type BotKnowledge,
   createGestures,

@@ -1,10 +1,8 @@
-import { type BallConnection, ballClientPolicy, createBallLoopbackHost } from 'threepoint-games/ball/ball-client';
-import type { BallTerms } from 'threepoint-games/ball/ball-room-kind';
-import type { AvatarExchange } from 'threepoint-rooms/client/avatar-exchange';
-import type { LocalClock, Visitor } from 'threepoint-rooms/client/connection';
-import { fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
-import type { SignedSeat } from 'threepoint-study/model/progress/study-api';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { type BallConnection, ballClientPolicy, createBallLoopbackHost, type BallTerms } from 'threepoint-games/ball';
+import { type AvatarExchange, fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms';
+import type { LocalClock, Visitor } from 'threepoint-rooms/room';
+import type { SignedSeat } from 'threepoint-study';
+import { pageFolder } from 'threepoint-ui';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
 export type Connect = (visitor: Visitor, time: number) => BallConnection;
@@ -23,7 +21,7 @@ export interface BallPlace {
  * same avatar there.
  */
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
-  const [{ RoomAddress }, first] = await Promise.all([import('threepoint-rooms/client/room-address'), seat()]);
+  const [{ RoomAddress }, first] = await Promise.all([import('threepoint-rooms/socket'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   const address = new RoomAddress(ballClientPolicy, { url: pageFolder(), room: first.room, clock, pass });
   return { connect: (visitor) => address.connect(visitor), avatars: null, voiceTerms: null };
@@ -41,10 +39,7 @@ export async function connectionsFor(
     const host = createBallLoopbackHost({ seed, ball: terms });
     return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
   }
-  const [{ RoomAddress }, { tabStorage }] = await Promise.all([
-    import('threepoint-rooms/client/room-address'),
-    import('threepoint-rooms/client/room-pass'),
-  ]);
+  const { RoomAddress, tabStorage } = await import('threepoint-rooms/socket');
   const storage = tabStorage();
   const address = new RoomAddress(ballClientPolicy, {
     ...{ url: pageFolder(), room, clock, terms },

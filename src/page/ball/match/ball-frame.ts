@@ -1,12 +1,9 @@
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { Side } from 'threepoint/core/math/side';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { BallEvent, BallRole, BallState } from 'threepoint-games/ball/ball-state';
-import type { Opening } from 'threepoint-games/ball/basket';
-import type { BallCue } from 'threepoint-games/ball/gestures';
-import type { Launch } from 'threepoint-games/ballistics';
-import type { ConnectionStatus } from 'threepoint-rooms/client/connection';
-import type { RemotePerson } from 'threepoint-rooms/client/room-client';
+import type { HapticPulse } from 'threepoint/core';
+import type { Side, Vec3 } from 'threepoint/math';
+import type { Launch } from 'threepoint-games';
+import type { BallCue, BallEvent, BallRole, BallState, Opening } from 'threepoint-games/ball';
+import type { RemotePerson } from 'threepoint-rooms';
+import type { ConnectionStatus } from 'threepoint-rooms/room';
 
 /**
  * A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay.

@@ -1,20 +1,18 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { AvatarRef } from 'threepoint/core/body/avatar-ref';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Fingers } from 'threepoint/core/body/hand-shape';
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { Transform } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallGame } from 'threepoint-games/ball/ball-policy';
-import type { BallEvent } from 'threepoint-games/ball/ball-state';
-import type { BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
-import { displayedSeconds } from 'threepoint-games/ball/state-selectors';
-import type { BallSteering } from 'threepoint-games/ball/steered-players';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
-import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/client/connection';
-import { RoomClient } from 'threepoint-rooms/client/room-client';
+import type { AvatarPose, AvatarRef, Buttons, Calibration, Fingers, TrackingFrame } from 'threepoint/core';
+import type { Side, Transform } from 'threepoint/math';
+import type { SimulatedInput } from 'threepoint-games';
+import {
+  type BallConnection,
+  type BallEvent,
+  type BallGame,
+  type BallGestureFrame,
+  type BallGestures,
+  type BallRoomView,
+  type BallSteering,
+  displayedSeconds,
+} from 'threepoint-games/ball';
+import { RoomClient } from 'threepoint-rooms';
+import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/room';
 import { BallBots, readyAfter } from './ball-bots';
 import type { BallFrame } from './ball-frame';
 import type { BallProbe } from './ball-probe';

@@ -1,9 +1,7 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { length, type Vec3 } from 'threepoint/core/math/vec3';
-import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallPlace } from 'threepoint-games/ball/ball-state';
-import { ballsLeft, catchesOf } from 'threepoint-games/ball/state-selectors';
-import type { RoomBodies } from 'threepoint-rooms/drawing/room-bodies';
+import { defaultAvatar } from 'threepoint/core';
+import { length, type Vec3 } from 'threepoint/math';
+import { type BallConnection, type BallPlace, type BallRoomView, ballsLeft, catchesOf } from 'threepoint-games/ball';
+import type { RoomBodies } from 'threepoint-rooms/three';
 import type { PlayerProbe } from '../../activity/activity';
 import type { BallFrame } from './ball-frame';
 

@@ -1,24 +1,27 @@
-import { defaultAvatar } from 'threepoint/core/body/built-in-bodies';
-import { unknownFingers } from 'threepoint/core/body/hand-shape';
+import { defaultAvatar, type Mutable, type TrackingFrame, unknownFingers } from 'threepoint/core';
 import {
+  type MutableVec3,
   makePose,
   makeTransform,
+  type Side,
   type TrackedPose,
   type Transform,
   transformPoint,
   transformTracked,
-} from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import { type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallState } from 'threepoint-games/ball/ball-state';
-import { basketInHands, type Opening } from 'threepoint-games/ball/basket';
-import { ballRadius } from 'threepoint-games/ball/flight';
-import { isInZone } from 'threepoint-games/ball/stations';
-import { ballInPalm } from 'threepoint-games/fist';
-import type { RemotePerson } from 'threepoint-rooms/client/room-client';
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import { ballInPalm } from 'threepoint-games';
+import {
+  type BallConnection,
+  type BallRoomView,
+  type BallState,
+  ballRadius,
+  basketInHands,
+  isInZone,
+  type Opening,
+} from 'threepoint-games/ball';
+import type { RemotePerson } from 'threepoint-rooms';
 import { seatLooks } from '../seat-looks';
 import type { BodyFrame, PlayerFrame } from './ball-frame';
 import { proximityFade } from './proximity-fade';

@@ -1,7 +1,5 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { clamp, smoothstep } from 'threepoint/core/math/damper';
-import { type Transform, transformPoint } from 'threepoint/core/math/pose';
-import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { AvatarPose } from 'threepoint/core';
+import { clamp, smoothstep, type Transform, transformPoint, type Vec3, vec3 } from 'threepoint/math';
 
 /** Nearer to the own eyes than the first [m] another body begins to fade; at the second it is gone. */
 const fadesFrom = 0.5;

@@ -1,19 +1,18 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import { zero } from 'threepoint/core/math/vec3';
-import type { BallBot } from 'threepoint-games/ball/ball-bot';
-import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallCue, BallGestures } from 'threepoint-games/ball/gestures';
-import { holderStation } from 'threepoint-games/ball/stations';
+import { type Calibration, createEstimator, type HapticPulse } from 'threepoint/core';
+import { zero } from 'threepoint/math';
+import type { Launch, SimulatedInput } from 'threepoint-games';
 import {
+  type BallBot,
+  type BallConnection,
+  type BallCue,
+  type BallGestures,
+  type BallRoomView,
   type BallSteering,
   createSteeredHolder,
   createSteeredThrower,
+  holderStation,
   type SteeredPlayer,
-} from 'threepoint-games/ball/steered-players';
-import type { Launch } from 'threepoint-games/ballistics';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
+} from 'threepoint-games/ball';
 import type { BotKnowledge } from './simulated-seat';
 import {
   bodyAt,

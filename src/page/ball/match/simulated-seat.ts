@@ -1,21 +1,28 @@
-import { fingersFromButtons } from 'threepoint/avatar/hands/button-fingers';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { chestSpaceBody } from 'threepoint/core/body/skeleton';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import { identity } from 'threepoint/core/math/quat';
-import { zero } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { BallBot } from 'threepoint-games/ball/ball-bot';
-import type { BallConnection, BallRoomView } from 'threepoint-games/ball/ball-client';
-import type { BallInput, BallState } from 'threepoint-games/ball/ball-state';
-import type { Opening } from 'threepoint-games/ball/basket';
-import { type BallGestureFrame, BallGestures } from 'threepoint-games/ball/gestures';
-import type { PlayerBody } from 'threepoint-games/ball/player-postures';
-import { createSimulatedHolder } from 'threepoint-games/ball/simulated-holder';
-import { createSimulatedThrower } from 'threepoint-games/ball/simulated-thrower';
-import { holderStation, stations } from 'threepoint-games/ball/stations';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
+import {
+  type Buttons,
+  type Calibration,
+  chestSpaceBody,
+  type PoseEstimator,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { identity, zero } from 'threepoint/math';
+import { fingersFromButtons } from 'threepoint/three';
+import type { SimulatedInput } from 'threepoint-games';
+import {
+  type BallBot,
+  type BallConnection,
+  type BallGestureFrame,
+  BallGestures,
+  type BallInput,
+  type BallRoomView,
+  type BallState,
+  createSimulatedHolder,
+  createSimulatedThrower,
+  holderStation,
+  type Opening,
+  type PlayerBody,
+  stations,
+} from 'threepoint-games/ball';
 
 /** The least rate at which a simulated player moves, even if pictures are slower: a throw takes a fifth of a second. */
 const movesPerSecond = 60;

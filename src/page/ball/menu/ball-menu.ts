@@ -1,5 +1,4 @@
-import { linkTo } from 'threepoint-ui/invitation';
-import { qrCode } from 'threepoint-ui/qr-code';
+import { linkTo, qrCode } from 'threepoint-ui';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../../activity/activity-menu';
 import type { BallPlay } from '../match/ball-play';

@@ -1,6 +1,5 @@
-import { drawText, drawTextLines, vrColors } from 'threepoint-ui/canvas-drawing';
-import type { RoomLink } from 'threepoint-ui/invitation';
-import { drawQrCode, type QrCode } from 'threepoint-ui/qr-code';
+import { drawQrCode, type QrCode, type RoomLink } from 'threepoint-ui';
+import { drawText, drawTextLines, vrColors } from 'threepoint-ui/vr';
 import { bottomButton, fullWidth, type MenuSheet, menuMargin } from '../../activity/activity-menu';
 
 /** The link to a room with its QR code. */

@@ -1,9 +1,5 @@
-import type { ServerState } from 'threepoint-http/server-presence';
-import { button, element } from 'threepoint-ui/element';
-import { ballRulesText, rulesList } from 'threepoint-ui/game-rules-text';
-import { createRoomLink } from 'threepoint-ui/invitation';
-import { isTouchFirst } from 'threepoint-ui/mouse-aim';
-import { toggle } from 'threepoint-ui/toggle';
+import type { ServerState } from 'threepoint-http';
+import { button, element, ballRulesText, rulesList, createRoomLink, isTouchFirst, toggle } from 'threepoint-ui';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';

@@ -1,4 +1,4 @@
-import { createInvitation, type Invitation } from 'threepoint-ui/invitation';
+import { createInvitation, type Invitation } from 'threepoint-ui';
 import type { ActivityPanel } from '../../activity/activity';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { CourtCamera } from '../court-camera';

@@ -1,6 +1,5 @@
-import type { BallState } from 'threepoint-games/ball/ball-state';
-import { ballsLeft } from 'threepoint-games/ball/state-selectors';
-import { bannerText, connectionText } from 'threepoint-rooms/client/connection-text';
+import { type BallState, ballsLeft } from 'threepoint-games/ball';
+import { bannerText, connectionText } from 'threepoint-rooms';
 import type { BallFrame } from '../match/ball-frame';
 import type { BallPlay } from '../match/ball-play';
 import { roleTexts } from '../seat-looks';

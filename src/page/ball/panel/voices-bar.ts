@@ -1,5 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { toggle } from 'threepoint-ui/toggle';
+import { button, element, toggle } from 'threepoint-ui';
 import { seatLooks } from '../seat-looks';
 import { consentText, type VoicesState } from '../voices/voices-state';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type SeatRow } from './other-players';

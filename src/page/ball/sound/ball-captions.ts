@@ -1,7 +1,5 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import type { BallEvent, Refusal } from 'threepoint-games/ball/ball-state';
-import type { BallCue } from 'threepoint-games/ball/gestures';
+import type { Pose, Vec3 } from 'threepoint/math';
+import type { BallEvent, Refusal, BallCue } from 'threepoint-games/ball';
 import { directionText } from '../../scene/direction-text';
 import type { DisplayedPlayer } from '../view/displayed-match';
 import { markedName } from '../view/displayed-match';

@@ -1,6 +1,6 @@
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { BallEvent, BallRole } from 'threepoint-games/ball/ball-state';
-import { pulseBothHands } from 'threepoint-games/both-hands-pulse';
+import type { HapticPulse } from 'threepoint/core';
+import { pulseBothHands } from 'threepoint-games';
+import type { BallEvent, BallRole } from 'threepoint-games/ball';
 
 /**
  * Haptic pulses of events away from the user's hands. The holder feels a catch in both hands, the thrower lightly; the

@@ -1,11 +1,26 @@
-import { clamp } from 'threepoint/core/math/damper';
-import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from 'threepoint/core/math/pose';
-import { add, length, lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { BallEvent, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
-import { ballInAir } from 'threepoint-games/ball/flight';
-import type { BallCue } from 'threepoint-games/ball/gestures';
-import { ballSecondsLeft } from 'threepoint-games/ball/state-selectors';
-import { holderStation, stations } from 'threepoint-games/ball/stations';
+import {
+  add,
+  clamp,
+  invertTransform,
+  length,
+  lerp,
+  type Pose,
+  type Transform,
+  transformPoint,
+  transformPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
+import {
+  type BallCue,
+  type BallEvent,
+  type BallState,
+  ballInAir,
+  ballSecondsLeft,
+  holderStation,
+  stations,
+  type TimedLaunch,
+} from 'threepoint-games/ball';
 import {
   createSoundStage,
   type Recipe,

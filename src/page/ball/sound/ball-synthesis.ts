@@ -1,4 +1,4 @@
-import { clamp } from 'threepoint/core/math/damper';
+import { clamp } from 'threepoint/math';
 import {
   lowPass,
   noiseFrom,

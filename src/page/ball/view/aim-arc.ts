@@ -9,8 +9,8 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import { basketRadius, landsIn, type Opening } from 'threepoint-games/ball/basket';
-import { fallTime, type Launch, positionAt } from 'threepoint-games/ballistics';
+import { fallTime, type Launch, positionAt } from 'threepoint-games';
+import { basketRadius, landsIn, type Opening } from 'threepoint-games/ball';
 import { doubleSided } from '../../scene/double-sided';
 
 const dots = 36;

@@ -21,13 +21,18 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import type { BallPlace, BallState, TimedLaunch } from 'threepoint-games/ball/ball-state';
-import type { Opening } from 'threepoint-games/ball/basket';
-import { basketDepth, basketRadius } from 'threepoint-games/ball/basket';
-import { ballRadius } from 'threepoint-games/ball/flight';
-import { ballPosition } from 'threepoint-games/ball/state-selectors';
-import { ballsPerRack } from 'threepoint-games/ball/stations';
+} from 'threepoint/math';
+import {
+  type BallPlace,
+  type BallState,
+  ballPosition,
+  ballRadius,
+  ballsPerRack,
+  basketDepth,
+  basketRadius,
+  type Opening,
+  type TimedLaunch,
+} from 'threepoint-games/ball';
 import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';

@@ -1,6 +1,6 @@
 import { Group } from 'three';
-import { ballsLeft } from 'threepoint-games/ball/state-selectors';
-import { drawText } from 'threepoint-ui/canvas-drawing';
+import { ballsLeft } from 'threepoint-games/ball';
+import { drawText } from 'threepoint-ui/vr';
 import { ink, paintGround } from '../../scene/boards/board-style';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';

@@ -1,5 +1,5 @@
 import { Group } from 'three';
-import { copyVec3, type MutableVec3, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { copyVec3, type MutableVec3, type Vec3, vec3 } from 'threepoint/math';
 import { ink } from '../../scene/boards/board-style';
 import { FloatingText } from '../../scene/floating-text';
 import type { Quality } from '../../scene/renderer';

@@ -1,4 +1,4 @@
-import type { BallState } from 'threepoint-games/ball/ball-state';
+import type { BallState } from 'threepoint-games/ball';
 import type { PlayerFrame } from '../match/ball-frame';
 import { seatLooks } from '../seat-looks';
 

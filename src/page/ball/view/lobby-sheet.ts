@@ -1,6 +1,6 @@
 import { Group } from 'three';
-import { catchesOf } from 'threepoint-games/ball/state-selectors';
-import { drawText, type TextStyle, textWidth } from 'threepoint-ui/canvas-drawing';
+import { catchesOf } from 'threepoint-games/ball';
+import { drawText, type TextStyle, textWidth } from 'threepoint-ui/vr';
 import { ink, paintCard } from '../../scene/boards/board-style';
 import { createSheet, paintButton, type SheetButton } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';

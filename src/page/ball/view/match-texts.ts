@@ -1,5 +1,4 @@
-import type { BallEvent } from 'threepoint-games/ball/ball-state';
-import { rotationForRound } from 'threepoint-games/ball/stations';
+import { type BallEvent, rotationForRound } from 'threepoint-games/ball';
 import { type DisplayedMatch, type DisplayedPlayer, markedName } from './displayed-match';
 
 /** Returns the line of the board for an event; null: none. */

@@ -1,7 +1,6 @@
 import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
-import { clamp } from 'threepoint/core/math/damper';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
+import { clamp, type Vec3 } from 'threepoint/math';
+import { drawText, textWidth } from 'threepoint-ui/vr';
 import { ink } from '../../scene/boards/board-style';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';

@@ -1,6 +1,6 @@
 import { InstancedMesh, Matrix4, PlaneGeometry } from 'three';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import { ballRadius } from 'threepoint-games/ball/flight';
+import type { Vec3 } from 'threepoint/math';
+import { ballRadius } from 'threepoint-games/ball';
 import { createSoftShadowMaterial } from '../../scene/soft-shadow-material';
 
 /**

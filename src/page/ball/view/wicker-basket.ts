@@ -9,8 +9,7 @@ import {
   Vector2,
   Vector3,
 } from 'three';
-import type { Opening } from 'threepoint-games/ball/basket';
-import { basketDepth, basketRadius, rimTube } from 'threepoint-games/ball/basket';
+import { basketDepth, basketRadius, type Opening, rimTube } from 'threepoint-games/ball';
 import { merged, painted } from '../../scene/painted-geometry';
 
 const stakes = 20;

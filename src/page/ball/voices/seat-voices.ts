@@ -1,7 +1,5 @@
-import { smoothstep } from 'threepoint/core/math/damper';
-import { transformPoint } from 'threepoint/core/math/pose';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { BallRoomView } from 'threepoint-games/ball/ball-client';
+import { smoothstep, transformPoint, vec3 } from 'threepoint/math';
+import type { BallRoomView } from 'threepoint-games/ball';
 import type { BodyFrame } from '../match/ball-frame';
 import type { BlockList } from './block-list';
 import type { VoiceCall } from './voice-call';

@@ -1,5 +1,5 @@
-import type { SignalBody } from 'threepoint-rooms/protocol/voice-messages';
-import { VoiceMesh } from 'threepoint-rooms/voices/voice-mesh';
+import { VoiceMesh } from 'threepoint-rooms';
+import type { SignalBody } from 'threepoint-rooms/room';
 import { VoiceSound } from '../../scene/sound/voice-sound';
 
 export interface VoiceCallOptions {

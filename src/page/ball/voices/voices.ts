@@ -1,8 +1,6 @@
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { VoiceChannel } from 'threepoint-rooms/client/connection';
-import { IceServerCache } from 'threepoint-rooms/voices/ice-server-cache';
-import { Microphone } from 'threepoint-rooms/voices/microphone';
-import { hasRelay, type VoiceSettings } from 'threepoint-rooms/voices/voice-settings';
+import { firstLine, reasonOf } from 'threepoint/core';
+import { hasRelay, IceServerCache, Microphone, type VoiceSettings } from 'threepoint-rooms';
+import type { VoiceChannel } from 'threepoint-rooms/room';
 import type { BallPlay } from '../match/ball-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';

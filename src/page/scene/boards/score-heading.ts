@@ -1,4 +1,4 @@
-import { drawText, textWidth } from 'threepoint-ui/canvas-drawing';
+import { drawText, textWidth } from 'threepoint-ui/vr';
 import { ink } from './board-style';
 
 export interface ScoreHeading {

@@ -1,6 +1,6 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import { drawText } from 'threepoint-ui/canvas-drawing';
+import type { Vec3 } from 'threepoint/math';
+import { drawText } from 'threepoint-ui/vr';
 import { createCanvasTexture } from '../canvas-texture';
 import type { Quality } from '../renderer';
 import { ink } from './board-style';

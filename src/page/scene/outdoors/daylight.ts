@@ -1,5 +1,5 @@
 import { Quaternion, Vector3 } from 'three';
-import type { Transform } from 'threepoint/core/math/pose';
+import type { Transform } from 'threepoint/math';
 import type { Quality } from '../renderer';
 import type { Lighting } from '../surroundings';
 import { createEnvironmentScene } from './environment-scene';

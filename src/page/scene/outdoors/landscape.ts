@@ -12,7 +12,7 @@ import {
   MeshLambertMaterial,
   Vector3,
 } from 'three';
-import { clamp } from 'threepoint/core/math/damper';
+import { clamp } from 'threepoint/math';
 import { merged, painted } from '../painted-geometry';
 import { createRandomRange } from '../random-range';
 import type { Quality } from '../renderer';

@@ -1,6 +1,4 @@
-import type { Pose } from 'threepoint/core/math/pose';
-import { rotate } from 'threepoint/core/math/quat';
-import { forward, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { forward, type Pose, rotate, up, type Vec3, vec3 } from 'threepoint/math';
 
 /** Makes a sound's samples at a rate [1/s]. */
 export type Recipe = (rate: number) => Float32Array<ArrayBuffer>;

@@ -1,4 +1,4 @@
-import { clamp } from 'threepoint/core/math/damper';
+import { clamp } from 'threepoint/math';
 import { createRandomRange } from '../random-range';
 
 /** Sounds as samples in [−1, 1], made here; rate in samples per second. The same arguments make the same sound. */

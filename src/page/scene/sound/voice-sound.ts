@@ -1,5 +1,4 @@
-import { clamp, damp } from 'threepoint/core/math/damper';
-import type { Vec3 } from 'threepoint/core/math/vec3';
+import { clamp, damp, type Vec3 } from 'threepoint/math';
 
 /** At this distance [m] a voice is as loud as it was spoken; with each doubling beyond, it loses 6 dB at most. */
 const near = 1;

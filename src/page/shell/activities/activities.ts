@@ -1,15 +1,17 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import { ObjectHolds } from 'threepoint/avatar/hands/hold-object';
-import type { HandGeometry } from 'threepoint/core/body/hand-geometry';
-import type { MutableHandShape } from 'threepoint/core/body/hand-shape';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { Buttons } from 'threepoint/core/input/button-presses';
-import type { HapticPulse } from 'threepoint/core/input/haptic-pulse';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { Side } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
-import type { TaskPlace } from 'threepoint-study/participant/trial/task-runner';
+import type { BodySolver } from 'threepoint';
+import {
+  type Buttons,
+  firstLine,
+  type HandGeometry,
+  type HapticPulse,
+  type MutableHandShape,
+  reasonOf,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { Pose, Side } from 'threepoint/math';
+import { ObjectHolds } from 'threepoint/three';
+import type { SimulatedInput } from 'threepoint-games';
+import type { TaskPlace } from 'threepoint-study/participant';
 import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
 import type { Recorder } from '../../studio/recorder';

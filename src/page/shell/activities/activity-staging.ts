@@ -1,5 +1,5 @@
-import type { Side } from 'threepoint/core/math/side';
-import type { MouseAim } from 'threepoint-ui/mouse-aim';
+import type { Side } from 'threepoint/math';
+import type { MouseAim } from 'threepoint-ui';
 import type { OpenActivity } from '../../activity/activity';
 import type { ActivityServices } from '../../activity/activity-context';
 import { type CameraScene, studioScene } from '../../scene/desktop-view';

@@ -1,4 +1,4 @@
-import { button, element, pageElement } from 'threepoint-ui/element';
+import { button, element, pageElement } from 'threepoint-ui';
 import type { ActivityPanel, OpenActivity } from '../../activity/activity';
 import { home } from '../activity-registry';
 import type { Activities } from './activities';

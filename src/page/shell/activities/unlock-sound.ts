@@ -1,5 +1,5 @@
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { Notices } from 'threepoint-ui/notices';
+import { firstLine, reasonOf } from 'threepoint/core';
+import type { Notices } from 'threepoint-ui';
 import type { ActivitySound } from '../../activity/activity';
 
 /** The events that count as a user gesture. */

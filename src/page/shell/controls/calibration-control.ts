@@ -1,13 +1,13 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import { withForearm } from 'threepoint/core/body/calibration';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BodySolver } from 'threepoint';
+import { type TrackingFrame, withForearm } from 'threepoint/core';
 import {
   type CalibrationDialog,
+  type CalibrationGuide,
   type CalibrationStep,
   createCalibrationDialog,
-} from 'threepoint-ui/calibration-dialog';
-import { type CalibrationGuide, createCalibrationGuide } from 'threepoint-ui/calibration-guide';
-import type { Notices } from 'threepoint-ui/notices';
+  createCalibrationGuide,
+  type Notices,
+} from 'threepoint-ui';
 import type { Recorder } from '../../studio/recorder';
 import { Emitter } from '../emitter';
 import type { Headset } from '../headset';

@@ -1,7 +1,6 @@
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { pageElement } from 'threepoint-ui/element';
-import { createFrameTimesOverlay, type FrameReport } from 'threepoint-ui/frame-times-overlay';
-import { createVrPointers } from 'threepoint-ui/vr-pointers';
+import type { TrackingFrame } from 'threepoint/core';
+import { createFrameTimesOverlay, type FrameReport, pageElement } from 'threepoint-ui';
+import { createVrPointers } from 'threepoint-ui/vr';
 import { createPlayBar, type PlayBar } from '../activities/play-bar';
 import { estimatorTexts } from '../estimator-texts';
 import { stageNames } from '../frame-timing';

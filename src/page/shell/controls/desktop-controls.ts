@@ -1,12 +1,12 @@
-import { palettes } from 'threepoint/avatar/palettes';
 import {
   armSpanRange,
   fingertipSpanFromArmSpan,
   forearmRange,
   statureFromEyeHeight,
   statureRange,
-} from 'threepoint/core/body/calibration';
-import { listenToShortcuts, type Shortcuts } from 'threepoint-ui/shortcuts';
+} from 'threepoint/core';
+import { palettes } from 'threepoint/three';
+import { listenToShortcuts, type Shortcuts } from 'threepoint-ui';
 import { viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../estimator-texts';
 import type { PageParts } from '../page-parts';

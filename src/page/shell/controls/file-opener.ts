@@ -1,9 +1,7 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
-import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BodySolver } from 'threepoint';
+import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
+import { isSkeletonMap } from 'threepoint/motion';
+import { type FileKind, fileNameOf, type Notices, readLimited } from 'threepoint-ui';
 import type { Recorder } from '../../studio/recorder';
 import type { LazyMocap } from '../lazy-mocap';
 import type { UserAvatar } from '../user-avatar';

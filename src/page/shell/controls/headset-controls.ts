@@ -1,9 +1,7 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { FrameReport } from 'threepoint-ui/frame-times-overlay';
-import type { Notices } from 'threepoint-ui/notices';
-import type { VrPointers } from 'threepoint-ui/vr-pointers';
+import type { BodySolver } from 'threepoint';
+import type { Pointer, TrackingFrame } from 'threepoint/core';
+import type { FrameReport, Notices } from 'threepoint-ui';
+import type { VrPointers } from 'threepoint-ui/vr';
 import type { Activities } from '../activities/activities';
 import type { Pointers } from '../frame/pointers';
 import type { Headset } from '../headset';

@@ -1,7 +1,7 @@
-import type { MotionFormat, MotionWriter } from 'threepoint/api/motion-file';
-import { decoders } from 'threepoint/avatar/decoders/decoders';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import { offerDownload } from 'threepoint-ui/downloads';
+import { firstLine, reasonOf } from 'threepoint/core';
+import { exportMotion, type MotionFormat, type MotionWriter } from 'threepoint/motion';
+import { avatarMotionWriter, decoders } from 'threepoint/three';
+import { offerDownload } from 'threepoint-ui';
 import { estimatorTexts } from '../estimator-texts';
 import type { PageParts } from '../page-parts';
 import type { ExportChoice, ExportState } from '../panel/panel-state';
@@ -41,8 +41,7 @@ export class MotionExport {
     const { signal } = this.#cancellation;
     this.#setState({ name: stem, method: label, fraction: 0, secondsLeft: null });
     try {
-      const { writeMotionFile } = await import('threepoint/api/write-motion-file');
-      const { extension, type, parts } = await writeMotionFile(recording, {
+      const { extension, type, parts } = await exportMotion(recording, {
         format: await this.#formatOf(choice),
         unit: choice === 'bvh-cm' ? 'cm' : 'm',
         estimator,
@@ -64,8 +63,7 @@ export class MotionExport {
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
     const { avatar } = this.#parts;
-    const { createAvatarMotionWriter } = await import('threepoint/avatar/avatar-motion-writer');
-    return createAvatarMotionWriter(await avatar.file(), avatar.name, { decoders });
+    return avatarMotionWriter(new File([await avatar.file()], avatar.name), { decoders });
   }
 
   #setState(state: ExportState | null): void {

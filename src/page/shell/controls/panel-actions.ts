@@ -1,5 +1,5 @@
-import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } from 'threepoint/core/body/calibration';
-import { offerDownload } from 'threepoint-ui/downloads';
+import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } from 'threepoint/core';
+import { offerDownload } from 'threepoint-ui';
 import type { PageParts } from '../page-parts';
 import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from '../panel/panel-state';

@@ -1,6 +1,6 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import { clamp } from 'threepoint/core/math/damper';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BodySolver } from 'threepoint';
+import type { TrackingFrame } from 'threepoint/core';
+import { clamp } from 'threepoint/math';
 import type { Headset } from '../headset';
 import type { UserCalibration } from '../user-calibration';
 

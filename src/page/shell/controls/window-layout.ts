@@ -1,4 +1,4 @@
-import { pageElement } from 'threepoint-ui/element';
+import { pageElement } from 'threepoint-ui';
 import type { Settings } from '../settings';
 import type { Stage } from '../stage';
 

@@ -1,12 +1,16 @@
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { createJointPoses, forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
-import { type Skeleton, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { smoothingFactor } from 'threepoint/core/math/damper';
-import { distance, vec3 } from 'threepoint/core/math/vec3';
-import { deviceJoint } from 'threepoint/core/tracking/device-body';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import {
+  type AvatarPose,
+  type Calibration,
+  createJointPoses,
+  deviceJoint,
+  type EstimatedJoint,
+  estimatedJoints,
+  forwardKinematics,
+  type Skeleton,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { distance, smoothingFactor, vec3 } from 'threepoint/math';
 
 /** Half-life of the mean [s]: long enough to read. */
 const halfLife = 0.5;

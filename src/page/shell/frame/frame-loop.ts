@@ -1,6 +1,5 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { BodySolver } from 'threepoint';
+import type { AvatarPose, TrackingFrame } from 'threepoint/core';
 import type { FrameTiming } from '../frame-timing';
 
 /** The page's steps of a frame. The loop calls each once, in this order, all with the same time on the body's clock. */

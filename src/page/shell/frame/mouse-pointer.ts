@@ -1,5 +1,5 @@
-import { MutablePointer, type Pointer } from 'threepoint/core/input/pointer';
-import type { MouseAim } from 'threepoint-ui/mouse-aim';
+import { MutablePointer, type Pointer } from 'threepoint/core';
+import type { MouseAim } from 'threepoint-ui';
 import type { DesktopView } from '../../scene/desktop-view';
 import type { PageParts } from '../page-parts';
 

@@ -1,12 +1,16 @@
-import { ReplayedBody } from 'threepoint/api/replayed-body';
-import { handShapeFromButtons } from 'threepoint/avatar/hands/button-fingers';
-import type { AvatarPose } from 'threepoint/core/body/avatar-pose';
-import { type HandShape, makeHandShape } from 'threepoint/core/body/hand-shape';
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
-import type { Side } from 'threepoint/core/math/side';
-import type { Mutable } from 'threepoint/core/records';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { defaultSavings } from 'threepoint/xr/frame-rate';
+import { ReplayedBody } from 'threepoint';
+import {
+  type AvatarPose,
+  firstLine,
+  type HandShape,
+  type Mutable,
+  makeHandShape,
+  reasonOf,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { Side } from 'threepoint/math';
+import { handShapeFromButtons } from 'threepoint/three';
+import { defaultSavings } from 'threepoint/webxr';
 import type { Controls } from '../controls/controls';
 import type { PageParts } from '../page-parts';
 import type { PassthroughHost } from '../session/passthrough-host';

@@ -1,7 +1,6 @@
-import { GazePointer } from 'threepoint/core/input/gaze-pointer';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { TrackedSession } from 'threepoint/xr/tracked-session';
+import { GazePointer, type Pointer } from 'threepoint/core';
+import type { Pose } from 'threepoint/math';
+import type { TrackedSession } from 'threepoint/webxr';
 import type { Settings } from '../settings';
 
 /** Hands that have not been seen for this time [s] do not play: a pointer does. */

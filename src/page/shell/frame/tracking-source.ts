@@ -1,10 +1,8 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { type Buttons, nothingPressed } from 'threepoint/core/input/button-presses';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import type { TrackedSession } from 'threepoint/xr/tracked-session';
-import type { SimulatedInput } from 'threepoint-games/simulated-input';
-import type { StudyRun } from 'threepoint-study/participant/study-run';
+import type { BodySolver } from 'threepoint';
+import { type Buttons, type Calibration, nothingPressed, type TrackingFrame } from 'threepoint/core';
+import type { TrackedSession } from 'threepoint/webxr';
+import type { SimulatedInput } from 'threepoint-games';
+import type { StudyRun } from 'threepoint-study/participant';
 import type { Actor } from '../../emulator/actor';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';

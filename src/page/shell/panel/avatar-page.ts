@@ -1,10 +1,6 @@
-import { bodyLabels } from 'threepoint/avatar/built-in-body-labels';
-import { skinColors } from 'threepoint/avatar/palettes';
-import { defaultAvatar, skinTones } from 'threepoint/core/body/built-in-bodies';
-import { button, element } from 'threepoint-ui/element';
-import { fileButton } from 'threepoint-ui/file-button';
-import { createStatusLine } from 'threepoint-ui/status-line';
-import { toggle } from 'threepoint-ui/toggle';
+import { defaultAvatar, skinTones } from 'threepoint/core';
+import { bodyLabels, skinColors } from 'threepoint/three';
+import { button, createStatusLine, element, fileButton, toggle } from 'threepoint-ui';
 import { createLazyBonesForm } from '../../bones/lazy-bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 

@@ -1,6 +1,5 @@
-import type { MeasureRange } from 'threepoint/core/body/calibration';
-import { button, element } from 'threepoint-ui/element';
-import { toggle } from 'threepoint-ui/toggle';
+import type { MeasureRange } from 'threepoint/core';
+import { button, element, toggle } from 'threepoint-ui';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { BodyActions, PanelPage, PanelState } from './panel-state';
 

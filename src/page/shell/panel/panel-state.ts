@@ -1,6 +1,4 @@
-import type { BuiltInBody, SkinTone } from 'threepoint/core/body/built-in-bodies';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
+import type { BoneMap, BuiltInBody, EstimatorName, SkinTone } from 'threepoint/core';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { ViewName } from '../../scene/desktop-view';
 import type { Recorder } from '../../studio/recorder';

@@ -1,4 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element } from 'threepoint-ui';
 import { createAvatarPage, type PaletteChoice } from './avatar-page';
 import { createBodyPage, type MeasureRanges } from './body-page';
 import {

@@ -1,7 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { fileButton } from 'threepoint-ui/file-button';
-import { createStatusLine } from 'threepoint-ui/status-line';
-import { toggle } from 'threepoint-ui/toggle';
+import { button, createStatusLine, element, fileButton, toggle } from 'threepoint-ui';
 import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
 
 const seconds = (value: number): string => `${value.toFixed(1)} s`;

@@ -1,5 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { toggle } from 'threepoint-ui/toggle';
+import { button, element, toggle } from 'threepoint-ui';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../estimator-texts';
 import type { PanelPage, ViewActions } from './panel-state';

@@ -1,4 +1,4 @@
-import { firstLine, reasonOf } from 'threepoint/core/errors/reasons';
+import { firstLine, reasonOf } from 'threepoint/core';
 import type { PassthroughOptions, PassthroughRoom } from '../../passthrough/passthrough-room';
 import type { Activities } from '../activities/activities';
 import type { Headset } from '../headset';

@@ -1,4 +1,4 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
+import type { BodySolver } from 'threepoint';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities/activities';
 import type { Controls } from '../controls/controls';

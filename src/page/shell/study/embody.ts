@@ -1,7 +1,6 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { TrackingDegradation } from 'threepoint/core/tracking/tracking-degradation';
-import { PhrasedError } from 'threepoint-study/model/phrases/phrases';
-import type { Embodiment } from 'threepoint-study/model/plan/embodiment';
+import type { BodySolver } from 'threepoint';
+import type { TrackingDegradation } from 'threepoint/core';
+import { type Embodiment, PhrasedError } from 'threepoint-study';
 import type { SettingsWriter } from '../settings';
 import type { UserAvatar } from '../user-avatar';
 

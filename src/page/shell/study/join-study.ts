@@ -31,7 +31,7 @@ export async function createRunners({
 /** Joins a study, which decides from then on what is played and with which body. */
 export async function joinStudy(parts: PageParts, asked: NonNullable<Switches['study']>): Promise<void> {
   const { switches, settings, writer, headset, timing, body, userCalibration, study, stage } = parts;
-  const { createStudyRun } = await import('threepoint-study/participant/study-run');
+  const { createStudyRun } = await import('threepoint-study/participant');
   writer.change({ startSignal: true });
   study.runners = await createRunners(parts);
   study.run = createStudyRun(asked, {

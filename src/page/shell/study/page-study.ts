@@ -1,4 +1,4 @@
-import type { StudyRun } from 'threepoint-study/participant/study-run';
+import type { StudyRun } from 'threepoint-study/participant';
 import type { ActivityRunner } from '../../activity/activity';
 
 /** The study that the user of this page takes part in. */

@@ -1,4 +1,4 @@
-import { drawText, vrColors } from 'threepoint-ui/canvas-drawing';
+import { drawText, vrColors } from 'threepoint-ui/vr';
 import {
   bottomButton,
   inColumns,

@@ -1,9 +1,7 @@
 import { Vector3 } from 'three';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { Pose } from 'threepoint/core/math/pose';
-import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
-import { createVrPanel } from 'threepoint-ui/vr-panel';
-import { createPanelTouch } from 'threepoint-ui/vr-touch';
+import type { Pointer } from 'threepoint/core';
+import type { Pose } from 'threepoint/math';
+import { createPanelTouch, createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr';
 
 const [width, height] = [720, 200];
 /** Before the eyes, and below them there [m]. */

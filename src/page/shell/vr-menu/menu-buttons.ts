@@ -1,13 +1,13 @@
-import { bodyLabelOf } from 'threepoint/avatar/built-in-body-labels';
 import {
   type BuiltInBody,
   builtInBodies,
   defaultAvatar,
+  type EstimatorName,
   type SkinTone,
   skinTones,
-} from 'threepoint/core/body/built-in-bodies';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+} from 'threepoint/core';
+import { bodyLabelOf } from 'threepoint/three';
+import type { CalibrationStep } from 'threepoint-ui';
 import {
   type ActivityMenu,
   bottomButton,

@@ -1,6 +1,13 @@
-import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from 'threepoint-ui/calibration-dialog';
-import { drawText, drawTextLines, fillRoundedRect, type TextStyle, vrColors } from 'threepoint-ui/canvas-drawing';
-import { differenceLines, type FrameReport, milliseconds, missedFrames } from 'threepoint-ui/frame-times-overlay';
+import {
+  type CalibrationStep,
+  calibrationHeadline,
+  calibrationInstruction,
+  differenceLines,
+  type FrameReport,
+  milliseconds,
+  missedFrames,
+} from 'threepoint-ui';
+import { drawText, drawTextLines, fillRoundedRect, type TextStyle, vrColors } from 'threepoint-ui/vr';
 import { type MenuButton, menuHeight, menuMargin, menuWidth } from '../../activity/activity-menu';
 import { noticesTop, type VrMenuState } from './menu-buttons';
 

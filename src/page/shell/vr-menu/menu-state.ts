@@ -1,5 +1,5 @@
-import type { BodySolver } from 'threepoint/api/body-solver';
-import type { Notices } from 'threepoint-ui/notices';
+import type { BodySolver } from 'threepoint';
+import type { Notices } from 'threepoint-ui';
 import type { ActivityMenu, MenuSheet } from '../../activity/activity-menu';
 import type { Activities } from '../activities/activities';
 import type { CalibrationControl } from '../controls/calibration-control';

@@ -1,9 +1,8 @@
 import { Group, Vector3 } from 'three';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import type { Pose } from 'threepoint/core/math/pose';
-import type { FrameReport } from 'threepoint-ui/frame-times-overlay';
-import { createVrPanel } from 'threepoint-ui/vr-panel';
-import { createPanelTouch } from 'threepoint-ui/vr-touch';
+import type { Pointer } from 'threepoint/core';
+import type { Pose } from 'threepoint/math';
+import type { FrameReport } from 'threepoint-ui';
+import { createPanelTouch, createVrPanel } from 'threepoint-ui/vr';
 import { type MenuButton, menuHeight, menuWidth } from '../../activity/activity-menu';
 import { menuButtons, type VrMenuActions, type VrMenuState } from './menu-buttons';
 import { drawFrameTimes, drawMenu, frameTimesHeight, frameTimesWidth } from './menu-drawing';

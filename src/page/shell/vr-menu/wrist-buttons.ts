@@ -1,11 +1,7 @@
 import { Group, Matrix4, Quaternion, Vector3 } from 'three';
-import { sideSign } from 'threepoint/core/body/skeleton';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import { type Side, sides } from 'threepoint/core/math/side';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
-import { createVrPanel } from 'threepoint-ui/vr-panel';
-import { createPanelTouch } from 'threepoint-ui/vr-touch';
+import { type Pointer, sideSign, type TrackingFrame } from 'threepoint/core';
+import { type Side, sides } from 'threepoint/math';
+import { createPanelTouch, createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr';
 
 const [width, height] = [240, 120];
 /**

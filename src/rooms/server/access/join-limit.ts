@@ -1,8 +1,7 @@
 import type { IncomingMessage } from 'node:http';
 import type { Redis } from 'ioredis';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis } from 'rate-limiter-flexible';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
+import { clientAddressOf, consumePoint, tooManyRequests } from 'threepoint-http';
 import type { RelayContext } from '../relay-context';
 
 const joinsPerMinuteHere = 120;

@@ -1,8 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
-import { isObject } from 'threepoint/core/json';
-import { HttpError } from 'threepoint-http/http-error';
-import type { Call } from 'threepoint-http/router';
+import { isObject } from 'threepoint/core';
+import { HttpError, type Call } from 'threepoint-http';
 import * as v from 'valibot';
 import { maxSeats } from '../../protocol/messages';
 import type { RoomKinds } from '../../room/room-kind';

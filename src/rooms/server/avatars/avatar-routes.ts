@@ -1,13 +1,19 @@
 import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory } from 'rate-limiter-flexible';
-import { avatarHashPattern, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/http-error';
-import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
-import { readBody } from 'threepoint-http/request-body';
-import { type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
-import type { Call, Route } from 'threepoint-http/router';
+import { avatarHashPattern, maxAvatarBytes } from 'threepoint/core';
+import {
+  type Call,
+  clientAddressOf,
+  consumePoint,
+  HttpError,
+  type HttpResponse,
+  jsonResponse,
+  noContent,
+  type Route,
+  readBody,
+  tooManyRequests,
+} from 'threepoint-http';
 import { requirePass } from '../access/room-tokens';
 import type { RelayContext } from '../relay-context';
 import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';

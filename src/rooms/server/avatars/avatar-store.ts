@@ -1,4 +1,4 @@
-import { type AvatarHash, type AvatarRef, maxAvatarBytes } from 'threepoint/core/body/avatar-ref';
+import { type AvatarHash, type AvatarRef, maxAvatarBytes } from 'threepoint/core';
 
 export interface AvatarStoreOptions {
   /** The most bytes of all files, uploads under way included; 0: no file is accepted. */

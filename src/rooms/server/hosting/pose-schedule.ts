@@ -1,5 +1,5 @@
 import { performance } from 'node:perf_hooks';
-import { clamp } from 'threepoint/core/math/damper';
+import { clamp } from 'threepoint/math';
 
 /** A room that may have poses to send. */
 export interface ScheduledRoom {

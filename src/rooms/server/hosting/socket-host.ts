@@ -1,6 +1,6 @@
 import { RateLimiterMemory } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
-import { consumePoint } from 'threepoint-http/rate-limit';
+import { consumePoint } from 'threepoint-http';
 import { messageEvent } from '../../protocol/socket-parsers';
 import { allowedTerms } from '../access/room-tokens';
 import type { RelayContext } from '../relay-context';

@@ -1,4 +1,4 @@
-import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { ConfigurationError } from 'threepoint-http';
 
 export type Environment = Readonly<Record<string, string | undefined>>;
 

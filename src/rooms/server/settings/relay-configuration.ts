@@ -1,5 +1,4 @@
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { secretWeakness } from 'threepoint-http/secret-strength';
+import { ConfigurationError, secretWeakness } from 'threepoint-http';
 import { type Environment, invalidVariable, numberFrom, splitList } from './environment';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 

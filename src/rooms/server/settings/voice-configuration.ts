@@ -1,4 +1,4 @@
-import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { ConfigurationError } from 'threepoint-http';
 import { type Environment, invalidVariable, splitList } from './environment';
 
 /** The servers by which pages connect their voices. */

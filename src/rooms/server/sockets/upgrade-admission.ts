@@ -1,8 +1,5 @@
 import type { IncomingMessage } from 'node:http';
-import { clientAddressOf } from 'threepoint-http/client-address';
-import { createSlotCounter } from 'threepoint-http/connection-limiter';
-import { HttpError } from 'threepoint-http/http-error';
-import { createSitePolicy } from 'threepoint-http/site-policy';
+import { clientAddressOf, createSitePolicy, createSlotCounter, HttpError } from 'threepoint-http';
 import type { RelayContext } from '../relay-context';
 
 /** Returns why a request is not one for a WebSocket of the relay's protocol; null: it is one. */

@@ -1,6 +1,5 @@
 import { createHash, createHmac } from 'node:crypto';
-import { jsonResponse } from 'threepoint-http/response';
-import type { Route } from 'threepoint-http/router';
+import { jsonResponse, type Route } from 'threepoint-http';
 import { type RoomTokens, requirePass } from '../access/room-tokens';
 import type { VoiceConfiguration } from '../settings/voice-configuration';
 

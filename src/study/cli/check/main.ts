@@ -1,6 +1,6 @@
 import { existsSync, readFileSync } from 'node:fs';
-import { ValidationError } from 'threepoint/core/validation/validation';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { ValidationError } from 'threepoint/core';
+import { ConfigurationError } from 'threepoint-http';
 import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, participantsOf, readPlan, type StudyPlan, studyTitle, taskTitle } from '../../model/plan/plan';
 import { durationOf, outlineOf } from '../../model/plan/plan-outline';

@@ -1,4 +1,4 @@
-import { checked, integerBetween, numberBetween, ValidationError } from 'threepoint/core/validation/validation';
+import { checked, integerBetween, numberBetween, ValidationError } from 'threepoint/core';
 import * as v from 'valibot';
 import { maxSimulated, type PowerRow, powerTable } from '../../statistics/power';
 

@@ -1,9 +1,8 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { ValidationError } from 'threepoint/core/validation/validation';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
-import { readSoftwareVersion } from 'threepoint-http/software-version';
+import { ValidationError } from 'threepoint/core';
+import { ConfigurationError, readSoftwareVersion } from 'threepoint-http';
 import { checkedPlan, parsePlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { compareCohorts } from '../../model/results/compare-cohorts';

@@ -1,8 +1,8 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { readSoftwareVersion } from 'threepoint-http/software-version';
+import { reasonOf } from 'threepoint/core';
+import { readSoftwareVersion } from 'threepoint-http';
 import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { verifyExport } from './verify-export';
 

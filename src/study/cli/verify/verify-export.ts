@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import { strFromU8, unzipSync } from 'fflate';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import type { Software } from 'threepoint-http/software-version';
+import { reasonOf } from 'threepoint/core';
+import type { Software } from 'threepoint-http';
 import { openStudyFile } from '../../pages/study-file';
 import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../../server/export/export-zip';
 import { csvRows } from './csv-rows';

@@ -1,4 +1,4 @@
-import { calibrationFaults } from 'threepoint/core/tracking/calibration-faults';
+import { calibrationFaults } from 'threepoint/core';
 
 /**
  * The phrases of the page for participants, by key. Names in braces are filled in. A phrase with a number has the

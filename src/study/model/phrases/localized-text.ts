@@ -1,4 +1,4 @@
-import { text } from 'threepoint/core/validation/validation';
+import { text } from 'threepoint/core';
 import * as v from 'valibot';
 
 /** A text for participants: one for all languages, or one for each. */

@@ -1,4 +1,4 @@
-import { text, ValidationError } from 'threepoint/core/validation/validation';
+import { text, ValidationError } from 'threepoint/core';
 import * as v from 'valibot';
 import { english, type GivenPhrases, type Phrase, type PhraseKey } from './english';
 import { languageTag } from './localized-text';

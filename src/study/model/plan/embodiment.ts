@@ -1,7 +1,4 @@
-import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
-import { type ThreePointName, threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { maxLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
-import { numberBetween } from 'threepoint/core/validation/validation';
+import { builtInBodies, maxLatencyMs, numberBetween, type ThreePointName, threePointNames } from 'threepoint/core';
 import * as v from 'valibot';
 
 /** An estimator by its name in plans. */

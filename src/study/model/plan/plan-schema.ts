@@ -1,4 +1,4 @@
-import { identifier, integerBetween, numberBetween, text } from 'threepoint/core/validation/validation';
+import { identifier, integerBetween, numberBetween, text } from 'threepoint/core';
 import * as v from 'valibot';
 import { languageTag, words } from '../phrases/localized-text';
 import { phrasesSchema } from '../phrases/phrase-schema';

@@ -1,4 +1,4 @@
-import { checked, complaintsAbout, ValidationError } from 'threepoint/core/validation/validation';
+import { checked, complaintsAbout, ValidationError } from 'threepoint/core';
 import type * as v from 'valibot';
 import { inLanguage, type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import { refusePhrases } from '../phrases/phrase-schema';

@@ -1,4 +1,4 @@
-import { numberBetween, text } from 'threepoint/core/validation/validation';
+import { numberBetween, text } from 'threepoint/core';
 import * as v from 'valibot';
 import type { Phrases } from '../phrases/phrases';
 

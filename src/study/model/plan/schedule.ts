@@ -1,4 +1,4 @@
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import { type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
 import type { StoppingRule } from '../questionnaires/stopping-rule';
 import { cohortsByParticipant, groupsOf, ordersByGroup } from './allocation';

@@ -1,4 +1,4 @@
-import { nextRandom, type RandomState } from 'threepoint/core/math/random';
+import { nextRandom, type RandomState } from 'threepoint/math';
 
 /** Returns a generator for one purpose, so that a new task does not change what is drawn for others. */
 export function randomFor(seed: number, purpose: string): RandomState {

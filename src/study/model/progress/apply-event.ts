@@ -1,5 +1,4 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { checked, text, ValidationError } from 'threepoint/core/validation/validation';
+import { type Calibration, checked, text, ValidationError } from 'threepoint/core';
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep, trialOf } from '../plan/schedule';
 import type { Answer } from '../questionnaires/question-kind';
 import { checkedAnswers, checkedDraft } from '../questionnaires/questionnaires';

@@ -6,7 +6,7 @@ import {
   participantId,
   text,
   ValidationError,
-} from 'threepoint/core/validation/validation';
+} from 'threepoint/core';
 import * as v from 'valibot';
 import { languageTag } from '../phrases/localized-text';
 import type { Schedule, StudyStep } from '../plan/schedule';

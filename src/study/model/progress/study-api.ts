@@ -1,4 +1,4 @@
-import { identifier, integerBetween, text } from 'threepoint/core/validation/validation';
+import { identifier, integerBetween, text } from 'threepoint/core';
 import * as v from 'valibot';
 import type { StudyPlan } from '../plan/plan';
 import type { ParticipantProfile } from '../records/participant-profile';

@@ -32,7 +32,7 @@ export const answerFormSchema = v.variant(
  * that removes the kind; throws an Error if the name is taken.
  *
  * @example
- * declare module 'threepoint-study/model/questionnaires/question-kind' {
+ * declare module './question-kind' {
  *   interface AnswerForms { agreement: { kind: 'agreement'; yes: Words; no: Words } }
  * }
  * registerQuestionKind({

@@ -1,4 +1,4 @@
-import { identifier, text } from 'threepoint/core/validation/validation';
+import { identifier, text } from 'threepoint/core';
 import * as v from 'valibot';
 import { words } from '../phrases/localized-text';
 import { code, flag, limitedNumber } from './kinds/limits';

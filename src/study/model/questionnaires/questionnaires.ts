@@ -1,4 +1,4 @@
-import { checked, ValidationError } from 'threepoint/core/validation/validation';
+import { checked, ValidationError } from 'threepoint/core';
 import * as v from 'valibot';
 import { type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import type { Answer, AnswerForm } from './question-kind';

@@ -1,4 +1,4 @@
-import { identifier, numberBetween, ValidationError } from 'threepoint/core/validation/validation';
+import { identifier, numberBetween, ValidationError } from 'threepoint/core';
 import * as v from 'valibot';
 import { scaleScore } from './questionnaire-scores';
 import { type Answers, isNumeric, type Questionnaire } from './questionnaires';

@@ -1,4 +1,4 @@
-import { checked, integerBetween, text } from 'threepoint/core/validation/validation';
+import { checked, integerBetween, text } from 'threepoint/core';
 import * as v from 'valibot';
 import type { PlainKey } from '../phrases/phrases';
 

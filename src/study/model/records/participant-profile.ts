@@ -1,5 +1,5 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Side } from 'threepoint/core/math/side';
+import type { Calibration } from 'threepoint/core';
+import type { Side } from 'threepoint/math';
 import type { Demographics } from './demographics';
 import type { StudyRecord } from './study-record';
 

@@ -1,4 +1,3 @@
-import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
 import {
   checked,
   identifier,
@@ -6,8 +5,9 @@ import {
   numberBetween,
   participantId,
   text,
+  threePointNames,
   ValidationError,
-} from 'threepoint/core/validation/validation';
+} from 'threepoint/core';
 import * as v from 'valibot';
 import { languageTag } from '../phrases/localized-text';
 import type { StudyPlan } from '../plan/plan';

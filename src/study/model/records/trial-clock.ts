@@ -1,4 +1,4 @@
-import { numberBetween } from 'threepoint/core/validation/validation';
+import { numberBetween } from 'threepoint/core';
 import * as v from 'valibot';
 
 /** The most pauses of a trial; a trial with more has no clock, because gaps would make the conversion wrong. */

@@ -1,5 +1,4 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { checked, handTiltsSchema, integerBetween, numberBetween, text } from 'threepoint/core/validation/validation';
+import { type Calibration, checked, handTiltsSchema, integerBetween, numberBetween, text } from 'threepoint/core';
 import * as v from 'valibot';
 import { type TrialClock, trialClockSchema } from './trial-clock';
 

@@ -1,6 +1,4 @@
-import { builtInBodies } from 'threepoint/core/body/built-in-bodies';
-import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
-import { maxLatencyMs } from 'threepoint/core/tracking/tracking-degradation';
+import { builtInBodies, maxLatencyMs, threePointNames } from 'threepoint/core';
 import { inLanguage, type LocalizedText } from '../phrases/localized-text';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
 import { questionKind, questionKindNames } from '../questionnaires/question-kinds';

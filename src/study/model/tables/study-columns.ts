@@ -1,4 +1,4 @@
-import { threePointNames } from 'threepoint/core/estimation/pose-estimator';
+import { threePointNames } from 'threepoint/core';
 import { type Demographics, demographicFields } from '../records/demographics';
 import { eventTypes } from '../records/study-record';
 import { boolean, number, text } from './tidy-csv';

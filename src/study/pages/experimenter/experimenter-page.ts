@@ -1,7 +1,6 @@
 import 'threepoint-ui/styles/document.css';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { element, pageElement } from 'threepoint-ui/element';
-import { formatSentence } from 'threepoint-ui/text-format';
+import { reasonOf } from 'threepoint/core';
+import { element, formatSentence, pageElement } from 'threepoint-ui';
 import { type ExperimenterClient, ServerRefusal } from '../../client/study-client';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyInfo } from '../../model/progress/study-api';

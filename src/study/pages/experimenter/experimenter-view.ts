@@ -1,7 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { fileField } from 'threepoint-ui/fields';
-import { pageFolder } from 'threepoint-ui/page-folder';
-import { storePreviewPlan } from 'threepoint-ui/preview-plan';
+import { button, element, fileField, pageFolder, storePreviewPlan } from 'threepoint-ui';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { remarksOn } from '../../model/plan/plan-remarks';
 import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';

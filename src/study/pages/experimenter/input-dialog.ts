@@ -1,5 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { labelled } from 'threepoint-ui/fields';
+import { button, element, labelled } from 'threepoint-ui';
 
 /** The content of a dialog and the button that confirms it. */
 interface DialogContent {

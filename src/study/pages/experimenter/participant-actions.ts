@@ -1,5 +1,4 @@
-import { offerDownload } from 'threepoint-ui/downloads';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { offerDownload, pageFolder } from 'threepoint-ui';
 import type { ExperimenterClient } from '../../client/study-client';
 import { type OpenStudy, receiptText } from './experimenter-view';
 import { askForSentence, type SentenceDialog } from './input-dialog';

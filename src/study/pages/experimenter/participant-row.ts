@@ -1,4 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element } from 'threepoint-ui';
 import { studyLink } from '../../client/study-link';
 import type { StudyPlan } from '../../model/plan/plan';
 import { type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';

@@ -1,5 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
-import { labelled } from 'threepoint-ui/fields';
+import { button, element, labelled } from 'threepoint-ui';
 import type { StudyPlan } from '../../model/plan/plan';
 import { askInDialog } from './input-dialog';
 import type { Simulation } from './store-simulation';

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { scheduleFor } from '../../model/plan/schedule';
 import type { TargetBlock } from '../../model/progress/study-api';
 import { type OpenStudy, planOf } from './experimenter-view';

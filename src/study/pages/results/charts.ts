@@ -1,6 +1,5 @@
 import * as Plot from '@observablehq/plot';
-import { offerDownload } from 'threepoint-ui/downloads';
-import { button, element } from 'threepoint-ui/element';
+import { button, element, offerDownload } from 'threepoint-ui';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { swarmOffsets } from './swarm-layout';
 

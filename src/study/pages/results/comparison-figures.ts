@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { cohortLookup } from '../../model/results/exported-results';
 import { frameTimes } from '../../model/results/frame-times';
 import { frameTimeTable } from '../../model/results/result-tables';

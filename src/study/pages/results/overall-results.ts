@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import type { OverallComparison } from '../../model/results/compare-all';
 import { hasOverallAnalysis, overallComparisons } from '../../model/results/exported-results';
 import { effectsOf, overallTable } from '../../model/results/result-tables';

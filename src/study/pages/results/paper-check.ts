@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../../model/results/paper-tables';
 import { paperTable } from '../../model/results/result-tables';
 import { tableNode } from '../table';

@@ -1,5 +1,4 @@
-import { offerDownload } from 'threepoint-ui/downloads';
-import { button, element } from 'threepoint-ui/element';
+import { button, element, offerDownload } from 'threepoint-ui';
 import { shippedQuestionnaires } from '../../model/questionnaires/questionnaires';
 import { isPlanned, type MeasureName } from '../../model/results/measures';
 import { type Table, tidyCsv } from '../../model/tables/tidy-csv';

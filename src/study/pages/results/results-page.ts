@@ -1,8 +1,7 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import { studyTitle } from '../../model/plan/plan';
 import 'threepoint-ui/styles/document.css';
-import { button, element, pageElement } from 'threepoint-ui/element';
-import { chooser, fileField } from 'threepoint-ui/fields';
+import { button, chooser, element, fileField, pageElement } from 'threepoint-ui';
 import { ExperimenterAccess } from '../experimenter-access';
 import { openStudyFile } from '../study-file';
 import { paperCheck } from './paper-check';

@@ -1,5 +1,4 @@
-import { element } from 'threepoint-ui/element';
-import { type Choice, chooser } from 'threepoint-ui/fields';
+import { type Choice, chooser, element } from 'threepoint-ui';
 import type { StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { cohortViews, hasOverallAnalysis } from '../../model/results/exported-results';

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { type ComparedCohorts, compareCohorts } from '../../model/results/compare-cohorts';
 import { type Comparison, compareConditions, type Results } from '../../model/results/compare-conditions';
 import type { ByFamily } from '../../model/results/exported-results';

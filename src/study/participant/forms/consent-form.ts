@@ -1,4 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element } from 'threepoint-ui';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { complaintLine, type FormOf, languageChoice, paragraphs, row } from './form-parts';

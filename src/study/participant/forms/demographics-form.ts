@@ -1,4 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element } from 'threepoint-ui';
 import type { Phrases } from '../../model/phrases/phrases';
 import { type DemographicField, demographicFields } from '../../model/records/demographics';
 import { complaintLine, type FormOf, heading, row } from './form-parts';

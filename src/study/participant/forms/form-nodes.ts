@@ -1,5 +1,4 @@
-import { offerDownload } from 'threepoint-ui/downloads';
-import { button, element } from 'threepoint-ui/element';
+import { button, element, offerDownload } from 'threepoint-ui';
 import { inLanguage } from '../../model/phrases/localized-text';
 import type { Phrases } from '../../model/phrases/phrases';
 import { consentForm } from './consent-form';

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import type { StudyForm } from './study-form';
 
 export type FormOf<Kind extends StudyForm['kind']> = Extract<StudyForm, { kind: Kind }>;

@@ -1,4 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element } from 'threepoint-ui';
 import type { Phrases } from '../../model/phrases/phrases';
 import { questionView } from '../questions/question-views';
 import type { ScreenQuestion, StudyScreen } from '../questions/study-screen';

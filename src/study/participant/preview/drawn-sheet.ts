@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { height, type Target, width } from '../questions/sheet-target';
 import type { StudyScreen } from '../questions/study-screen';
 import { paintSheet, targetsOf } from '../sheet/study-sheet';

@@ -1,9 +1,17 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { button, element, pageElement } from 'threepoint-ui/element';
-import { type Choice, chooser, fileField } from 'threepoint-ui/fields';
-import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui/limited-files';
-import { pageFolder } from 'threepoint-ui/page-folder';
-import { loadPreviewPlan } from 'threepoint-ui/preview-plan';
+import { reasonOf } from 'threepoint/core';
+import {
+  button,
+  type Choice,
+  chooser,
+  element,
+  type FileKind,
+  fileField,
+  fileNameOf,
+  loadPreviewPlan,
+  pageElement,
+  pageFolder,
+  readLimited,
+} from 'threepoint-ui';
 import { withdrawalLink } from '../../client/study-link';
 import { languagesOf, participantsOf, readPlan, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import { durationOf } from '../../model/plan/plan-outline';

@@ -1,4 +1,4 @@
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { CalibrationStep } from 'threepoint-ui';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
 import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, type StudyPlan, taskTitle } from '../../model/plan/plan';

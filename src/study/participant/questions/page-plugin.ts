@@ -1,4 +1,4 @@
-import { button, element } from 'threepoint-ui/element';
+import { button, element } from 'threepoint-ui';
 import { installStudyPlugin, type StudyPluginTools } from '../../model/questionnaires/study-plugin';
 import type { QuestionView } from './question-view';
 import { registerQuestionView } from './question-views';

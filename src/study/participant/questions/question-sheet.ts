@@ -1,4 +1,4 @@
-import { vrColors, vrFont, wrapText } from 'threepoint-ui/canvas-drawing';
+import { vrColors, vrFont, wrapText } from 'threepoint-ui/vr';
 import { questionView } from './question-views';
 import { inner, margin, type Target, width } from './sheet-target';
 import type { ScreenQuestion } from './study-screen';

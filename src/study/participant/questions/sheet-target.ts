@@ -1,4 +1,4 @@
-import type { PanelTarget } from 'threepoint-ui/vr-touch';
+import type { PanelTarget } from 'threepoint-ui/vr';
 
 /** The size of the sheet [pixels], and how many pixels are a metre. */
 export const width = 1200;

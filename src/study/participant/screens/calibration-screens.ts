@@ -1,4 +1,4 @@
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { CalibrationStep } from 'threepoint-ui';
 import type { Phrases } from '../../model/phrases/phrases';
 import type { RemoteTerms } from '../../model/plan/remote-setup';
 import type { StudyScreen } from '../questions/study-screen';

@@ -1,4 +1,4 @@
-import type { CalibrationStep } from 'threepoint-ui/calibration-dialog';
+import type { CalibrationStep } from 'threepoint-ui';
 import type { ProgressEvent } from '../../model/progress/apply-event';
 import type { Answer } from '../../model/questionnaires/question-kind';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';

@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 import type { StudyRecord } from '../../model/records/study-record';
 import { type KeptMotion, type KeptSession, SessionForgotten, type StudyVault } from './study-vault';
 

@@ -1,4 +1,4 @@
-import { fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/canvas-drawing';
+import { fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr';
 import { paintQuestion, questionTargets } from '../questions/question-sheet';
 import { height, inner, margin, type Target, width } from '../questions/sheet-target';
 import type { ScreenButton, StudyScreen } from '../questions/study-screen';

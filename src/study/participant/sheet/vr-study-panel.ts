@@ -1,8 +1,7 @@
 import { Group, Vector3 } from 'three';
-import type { Pointer } from 'threepoint/core/input/pointer';
-import { wrapAngle } from 'threepoint/core/math/angle';
-import { createVrPanel } from 'threepoint-ui/vr-panel';
-import { createPanelTouch } from 'threepoint-ui/vr-touch';
+import type { Pointer } from 'threepoint/core';
+import { wrapAngle } from 'threepoint/math';
+import { createPanelTouch, createVrPanel } from 'threepoint-ui/vr';
 import { height, pixelsPerMetre, type Target, width } from '../questions/sheet-target';
 import type { StudyScreen } from '../questions/study-screen';
 import { paintSheet, targetsOf } from './study-sheet';

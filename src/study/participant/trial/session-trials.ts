@@ -1,4 +1,4 @@
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { TrackingFrame } from 'threepoint/core';
 import { PhrasedError } from '../../model/phrases/phrases';
 import { isPlayed, type PlayedStep } from '../../model/plan/schedule';
 import { randomFor } from '../../model/plan/shuffle';

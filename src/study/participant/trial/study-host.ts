@@ -1,5 +1,5 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { Side } from 'threepoint/core/math/side';
+import type { Calibration } from 'threepoint/core';
+import type { Side } from 'threepoint/math';
 import type { Embodiment } from '../../model/plan/embodiment';
 import type { DeviceFault } from '../../model/plan/remote-setup';
 import type { TrialHost } from './study-trial';

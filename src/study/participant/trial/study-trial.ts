@@ -1,7 +1,4 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { EstimatorName } from 'threepoint/core/estimation/pose-estimator';
-import { writeRecordingWithin } from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { type Calibration, type EstimatorName, type TrackingFrame, writeRecordingWithin } from 'threepoint/core';
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import { TrialStopwatch } from '../../model/records/trial-clock';

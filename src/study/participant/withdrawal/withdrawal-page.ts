@@ -1,9 +1,6 @@
 import 'threepoint-ui/styles/document.css';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { offerDownload } from 'threepoint-ui/downloads';
-import { button, element, pageElement } from 'threepoint-ui/element';
-import { labelled } from 'threepoint-ui/fields';
-import { pageFolder } from 'threepoint-ui/page-folder';
+import { reasonOf } from 'threepoint/core';
+import { button, element, labelled, offerDownload, pageElement, pageFolder } from 'threepoint-ui';
 import { createWithdrawalClient, ServerRefusal, ServerUnreachable } from '../../client/study-client';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';

@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { parseRecording, type Recording, reasonOf } from 'threepoint/core';
 import {
   bidsChannelFrames,
   bidsChannels,
@@ -6,8 +6,7 @@ import {
   bidsMotionSidecar,
   bidsTable,
   bidsVersion,
-} from 'threepoint/core/motion/write-bids';
-import { parseRecording, type Recording } from 'threepoint/core/tracking/recording';
+} from 'threepoint/motion';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { DemographicsRecord, StudyRecord, TrialRecord } from '../../model/records/study-record';
 import { recordingTime } from '../../model/records/trial-clock';

@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { strToU8, type Zippable, zipSync } from 'fflate';
-import type { Software } from 'threepoint-http/software-version';
+import type { Software } from 'threepoint-http';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { resultTables } from '../../model/results/exported-results';

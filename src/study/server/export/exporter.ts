@@ -1,7 +1,6 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
-import { shortageOf } from 'threepoint-http/resource-shortage';
-import type { Software } from 'threepoint-http/software-version';
+import { type Software, shortageOf } from 'threepoint-http';
 import { StoreRefusal } from '../storage/store-refusal';
 
 /** The parameters of an export, whose process reads the content from the database. */

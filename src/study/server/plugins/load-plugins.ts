@@ -1,6 +1,6 @@
 import { pathToFileURL } from 'node:url';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { ConfigurationError } from 'threepoint-http/configuration-error';
+import { reasonOf } from 'threepoint/core';
+import { ConfigurationError } from 'threepoint-http';
 import { installStudyPlugin } from '../../model/questionnaires/study-plugin';
 import { studyPluginPaths } from './plugin-paths';
 

@@ -1,7 +1,5 @@
-import { checked, identifier, participantId } from 'threepoint/core/validation/validation';
-import { HttpError } from 'threepoint-http/http-error';
-import type { HttpResponse } from 'threepoint-http/response';
-import { refusalOf as knownRefusalOf } from 'threepoint-http/router';
+import { checked, identifier, participantId } from 'threepoint/core';
+import { HttpError, type HttpResponse, refusalOf as knownRefusalOf } from 'threepoint-http';
 import { StoreRefusal } from '../storage/store-refusal';
 import type { StudyStore } from '../storage/study-store';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';

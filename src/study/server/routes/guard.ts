@@ -2,13 +2,15 @@ import { createHash, timingSafeEqual } from 'node:crypto';
 import { RateLimiterMemory } from 'rate-limiter-flexible';
 import {
   type AuthAttempt,
+  type ClientAddress,
+  consumePoint,
   createAuthThrottle,
   type FailedAttempt,
+  HttpError,
+  requiredAddress,
   TooManyAttempts,
-} from 'threepoint-http/auth-throttle';
-import { type ClientAddress, requiredAddress } from 'threepoint-http/client-address';
-import { HttpError } from 'threepoint-http/http-error';
-import { consumePoint, tooManyRequests } from 'threepoint-http/rate-limit';
+  tooManyRequests,
+} from 'threepoint-http';
 import { normalisedCode } from '../storage/schema';
 import type { StudyStore } from '../storage/study-store';
 

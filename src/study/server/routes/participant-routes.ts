@@ -1,8 +1,5 @@
-import { parseRecording } from 'threepoint/core/tracking/recording';
-import { checked, integerBetween, text, ValidationError } from 'threepoint/core/validation/validation';
-import { HttpError } from 'threepoint-http/http-error';
-import { jsonResponse, noContent } from 'threepoint-http/response';
-import { jsonOf, textOf } from 'threepoint-http/router';
+import { checked, integerBetween, parseRecording, text, ValidationError } from 'threepoint/core';
+import { HttpError, jsonOf, jsonResponse, noContent, textOf } from 'threepoint-http';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';

@@ -1,7 +1,4 @@
-import type { ClientAddress } from 'threepoint-http/client-address';
-import type { HttpResponse } from 'threepoint-http/response';
-import type { Route } from 'threepoint-http/router';
-import type { Software } from 'threepoint-http/software-version';
+import type { ClientAddress, HttpResponse, Route, Software } from 'threepoint-http';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
 import type { StudyStore } from '../storage/study-store';

@@ -1,5 +1,5 @@
 import { createHmac, randomBytes } from 'node:crypto';
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import type { StudyPlan } from '../../model/plan/plan';
 import { isPlayed, scheduleFor } from '../../model/plan/schedule';
 import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';

@@ -1,6 +1,5 @@
-import { checked, integerBetween, participantId, text } from 'threepoint/core/validation/validation';
-import { type HttpResponse, jsonResponse, noContent } from 'threepoint-http/response';
-import { jsonOf } from 'threepoint-http/router';
+import { checked, integerBetween, participantId, text } from 'threepoint/core';
+import { type HttpResponse, jsonOf, jsonResponse, noContent } from 'threepoint-http';
 import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';

@@ -1,4 +1,4 @@
-import type { Software } from 'threepoint-http/software-version';
+import type { Software } from 'threepoint-http';
 import type { StudyDatabase } from './study-database';
 
 /** Software and the time since which it served the studies, in seconds since 1970. */

@@ -1,4 +1,4 @@
-import { reasonOf } from 'threepoint/core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 
 /** An operation that the store refuses; the message is for the person who asked for it. */
 export class StoreRefusal extends Error {

@@ -2,8 +2,8 @@ import { closeSync, existsSync, fdatasync, openSync, type Stats, statSync } from
 import { stat } from 'node:fs/promises';
 import { promisify } from 'node:util';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
-import { reasonOf } from 'threepoint/core/errors/reasons';
-import { GroupCommit } from 'threepoint-http/group-commit';
+import { reasonOf } from 'threepoint/core';
+import { GroupCommit } from 'threepoint-http';
 import { migrate } from './schema';
 import { refusalOfSqlite, StoreRefusal } from './store-refusal';
 

@@ -1,4 +1,4 @@
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';

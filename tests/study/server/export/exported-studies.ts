@@ -1,8 +1,8 @@
-import { checkedPlan, type StudyPlan } from 'threepoint-study/model/plan/plan';
-import type { ExportContent } from 'threepoint-study/server/export/export-zip';
-import { answerModelWith } from 'threepoint-study/simulation/answer-model';
-import { statedPerformanceModel } from 'threepoint-study/simulation/performance-model';
-import { simulatedPlan, simulateStudy } from 'threepoint-study/simulation/simulate-study';
+import { checkedPlan, type StudyPlan } from '../../../../src/study/model/plan/plan';
+import type { ExportContent } from '../../../../src/study/server/export/export-zip';
+import { answerModelWith } from '../../../../src/study/simulation/answer-model';
+import { statedPerformanceModel } from '../../../../src/study/simulation/performance-model';
+import { simulatedPlan, simulateStudy } from '../../../../src/study/simulation/simulate-study';
 import { examplePlan, paperPlan } from '../../model/studies';
 import { now, testSoftware } from '../running-studies';
 

@@ -2,10 +2,10 @@
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { exportFiles } from 'threepoint-study/server/export/export-zip';
 import { describe, expect, test } from 'vitest';
+import { csvRows } from '../../../../src/study/cli/verify/csv-rows';
+import type { StudyRecord } from '../../../../src/study/model/records/study-record';
+import { exportFiles } from '../../../../src/study/server/export/export-zip';
 import { installed } from '../../../server/installed';
 import { directoryWith } from '../../../temporary-directory';
 import { designs, exportedStudy } from './exported-studies';

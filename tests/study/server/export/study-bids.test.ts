@@ -1,11 +1,11 @@
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { parseRecording, type Recording } from 'threepoint/core/tracking/recording';
-import { scheduleFor } from 'threepoint-study/model/plan/schedule';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { bidsDataset } from 'threepoint-study/server/export/bids';
+import { parseRecording, type Recording } from 'threepoint/core';
 import { beforeAll, describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../../src/study/model/plan/schedule';
+import type { StudyRecord } from '../../../../src/study/model/records/study-record';
+import { bidsDataset } from '../../../../src/study/server/export/bids';
 import { installed } from '../../../server/installed';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan, session } from '../../model/studies';

@@ -1,8 +1,8 @@
 import { strFromU8, unzipSync } from 'fflate';
-import { exportZip } from 'threepoint-study/server/export/export-zip';
-import { unpacked } from 'threepoint-study/server/storage/study-motion';
-import type { StudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, test } from 'vitest';
+import { exportZip } from '../../../../src/study/server/export/export-zip';
+import { unpacked } from '../../../../src/study/server/storage/study-motion';
+import type { StudyStore } from '../../../../src/study/server/storage/study-store';
 import { now, testSoftware } from '../running-studies';
 import { completed, withPaperStudy } from '../stored-studies';
 

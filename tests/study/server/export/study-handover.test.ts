@@ -1,9 +1,9 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate';
-import { csvRows } from 'threepoint-study/cli/verify/csv-rows';
-import { verifyExport } from 'threepoint-study/cli/verify/verify-export';
-import type { StudyRecord } from 'threepoint-study/model/records/study-record';
-import { type ExportContent, exportFiles, exportZip } from 'threepoint-study/server/export/export-zip';
 import { beforeAll, describe, expect, test } from 'vitest';
+import { csvRows } from '../../../../src/study/cli/verify/csv-rows';
+import { verifyExport } from '../../../../src/study/cli/verify/verify-export';
+import type { StudyRecord } from '../../../../src/study/model/records/study-record';
+import { type ExportContent, exportFiles, exportZip } from '../../../../src/study/server/export/export-zip';
 import { playedRound } from '../../participant/played-round';
 import { designs, exportedStudy } from './exported-studies';
 

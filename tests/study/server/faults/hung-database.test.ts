@@ -1,9 +1,9 @@
 import { spawn } from 'node:child_process';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
+import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
+import { openStudyStore } from '../../../../src/study/server/storage/study-store';
 import { isNightly } from '../../../nightly';
 import { reportFigures } from '../../../reliability/report-figures';
 import { arrive, pause, until } from '../../../rooms/server/running-relay';

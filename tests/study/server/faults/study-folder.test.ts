@@ -1,8 +1,8 @@
 import { chmodSync, existsSync, mkdirSync, renameSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
 import { describe, expect, onTestFinished, test } from 'vitest';
+import { openStudyStore } from '../../../../src/study/server/storage/study-store';
 import { hasFileModes, movesOpenFiles } from '../../../platform';
 import { reportFigures } from '../../../reliability/report-figures';
 import { directoryWith } from '../../../temporary-directory';

@@ -1,7 +1,7 @@
 // A process with the service of the studies, to be killed. Its argument is the folder of its files.
-import { createRouter, noPage } from 'threepoint-http/router';
-import { serve } from 'threepoint-http/web-server';
-import { openStudyService } from 'threepoint-study/server/service';
+import { createRouter, noPage } from 'threepoint-http';
+import { serve } from '../../../../src/http/web-server';
+import { openStudyService } from '../../../../src/study/server/service';
 
 const secret = 'a secret of the tests, long enough for them';
 const { service } = await openStudyService({

@@ -1,8 +1,8 @@
 // Stores one record after the other for as long as it lives and says which were acknowledged, one id per line.
 // node --import tsx tests/study/server/faults/study-writer.ts DATABASE FIRST
 import { writeSync } from 'node:fs';
-import { recordVersion, type StudyRecord } from 'threepoint-study/model/records/study-record';
-import { openStudyStore } from 'threepoint-study/server/storage/study-store';
+import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
+import { openStudyStore } from '../../../../src/study/server/storage/study-store';
 
 const [file, first] = process.argv.slice(2) as [string, string];
 const store = openStudyStore(file);

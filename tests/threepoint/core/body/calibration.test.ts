@@ -1,4 +1,5 @@
 import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
 import {
   armSpanFromFingertipSpan,
   type Calibration,
@@ -12,9 +13,8 @@ import {
   sameCalibration,
   statureFromEyeHeight,
   withForearm,
-} from 'threepoint/core/body/calibration';
-import { trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/body/calibration';
+import { trackerAtJoint } from '../../../../src/threepoint/core/body/tracker-offsets';
 import { number, seed } from '../arbitraries';
 
 describe('measures of people', () => {

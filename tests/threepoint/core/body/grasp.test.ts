@@ -1,8 +1,13 @@
-import { closeAround, distanceToBall, distanceToRod } from 'threepoint/core/body/grasp';
-import { averageHand, fingerPoints, makeFingerPoints } from 'threepoint/core/body/hand-geometry';
-import { closedHand, type FingerName, fingerNames, makeHandShape } from 'threepoint/core/body/hand-shape';
-import { lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { closeAround, distanceToBall, distanceToRod } from '../../../../src/threepoint/core/body/grasp';
+import { averageHand, fingerPoints, makeFingerPoints } from '../../../../src/threepoint/core/body/hand-geometry';
+import {
+  closedHand,
+  type FingerName,
+  fingerNames,
+  makeHandShape,
+} from '../../../../src/threepoint/core/body/hand-shape';
+import { lerp, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 
 const hand = averageHand(1.59);
 

@@ -1,10 +1,10 @@
 import fc from 'fast-check';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames, parentOf } from 'threepoint/core/body/joints';
-import { armBones, armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { fromAxisAngle, identity, type Quat } from 'threepoint/core/math/quat';
-import { add, distance, length, up, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { jointNames, parentOf } from '../../../../src/threepoint/core/body/joints';
+import { armBones, armLength, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { fromAxisAngle, identity, type Quat } from '../../../../src/threepoint/core/math/quat';
+import { add, distance, length, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { evenly, rotation, seed, vector } from '../arbitraries';
 
 const body = fc

@@ -1,5 +1,6 @@
 import fc from 'fast-check';
-import type { LimbBones } from 'threepoint/core/body/two-bone-ik';
+import { describe, expect, test } from 'vitest';
+import type { LimbBones } from '../../../../src/threepoint/core/body/two-bone-ik';
 import {
   type ArmDirections,
   type ArmGoal,
@@ -8,8 +9,8 @@ import {
   makeArmDirections,
   makeArmTransition,
   startTransition,
-} from 'threepoint/core/estimation/arms/arm-transition';
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
+} from '../../../../src/threepoint/core/estimation/arms/arm-transition';
+import { fromAxisAngle, rotate } from '../../../../src/threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -22,8 +23,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/vec3';
 import { evenly, seed } from '../arbitraries';
 
 const bones: LimbBones = { upper: 0.28, lower: 0.26 };

@@ -1,10 +1,12 @@
 import fc from 'fast-check';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
-import { fromAxisAngle, multiply, twistAngle } from 'threepoint/core/math/quat';
+import { describe, expect, test } from 'vitest';
+import { swivelAngle } from '../../../../bench/evaluate/measures';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { estimatedJoints } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
+import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { fromAxisAngle, multiply, twistAngle } from '../../../../src/threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -16,9 +18,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import { describe, expect, test } from 'vitest';
-import { swivelAngle } from '../../../../bench/evaluate/measures';
+} from '../../../../src/threepoint/core/math/vec3';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { standing, wristOrientation } from './moving-person';

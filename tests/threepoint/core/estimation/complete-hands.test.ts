@@ -1,18 +1,18 @@
 import fc from 'fast-check';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
+import { describe, expect, test } from 'vitest';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
 import {
   type CompletedHand,
   completeHands,
   makeCompleteHandsState,
   resetCompleteHands,
-} from 'threepoint/core/estimation/complete-hands';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { copyQuat, fromAxisAngle, identity, multiply, rotate } from 'threepoint/core/math/quat';
-import { add, copyVec3, distance, length, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/estimation/complete-hands';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
+import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
+import { copyQuat, fromAxisAngle, identity, multiply, rotate } from '../../../../src/threepoint/core/math/quat';
+import { add, copyVec3, distance, length, up, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
 

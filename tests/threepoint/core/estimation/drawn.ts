@@ -1,20 +1,20 @@
-import { type AvatarPose, copyAvatarPose, makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { headJointOf } from 'threepoint/core/body/head-joint';
-import type { JointName } from 'threepoint/core/body/joints';
-import { writeLocalRotations } from 'threepoint/core/body/local-rotations';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { armBones, fitArms, makeFitArmsState } from 'threepoint/core/estimation/arms/fit-arms';
-import type { CompletedFrame, CompletedHand } from 'threepoint/core/estimation/complete-hands';
-import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import { fitTorso, makeFitTorsoState, torsoBones } from 'threepoint/core/estimation/trunk/fit-torso';
-import type { Pose } from 'threepoint/core/math/pose';
-import { copyQuat, identity } from 'threepoint/core/math/quat';
-import { copyVec3, normalise, vec3 } from 'threepoint/core/math/vec3';
-import { readHeading } from 'threepoint/core/tracking/heading';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { type AvatarPose, copyAvatarPose, makeUpperBodyPose } from '../../../../src/threepoint/core/body/avatar-pose';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { headJointOf } from '../../../../src/threepoint/core/body/head-joint';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
+import { writeLocalRotations } from '../../../../src/threepoint/core/body/local-rotations';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { armBones, fitArms, makeFitArmsState } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
+import type { CompletedFrame, CompletedHand } from '../../../../src/threepoint/core/estimation/complete-hands';
+import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import type { PoseEstimator } from '../../../../src/threepoint/core/estimation/pose-estimator';
+import { fitTorso, makeFitTorsoState, torsoBones } from '../../../../src/threepoint/core/estimation/trunk/fit-torso';
+import type { Pose } from '../../../../src/threepoint/core/math/pose';
+import { copyQuat, identity } from '../../../../src/threepoint/core/math/quat';
+import { copyVec3, normalise, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { readHeading } from '../../../../src/threepoint/core/tracking/heading';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 
 /** Every joint of a body, floor frame. */
 export type Joints = Readonly<Record<JointName, Pose<'floor'>>>;

@@ -1,9 +1,17 @@
 import fc from 'fast-check';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { armBones } from 'threepoint/core/estimation/arms/fit-arms';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { multiply, rotate, rotateInverse, rotationBetween, twistAngle, twistOf } from 'threepoint/core/math/quat';
+import { describe, expect, test } from 'vitest';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
+import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
+import {
+  multiply,
+  rotate,
+  rotateInverse,
+  rotationBetween,
+  twistAngle,
+  twistOf,
+} from '../../../../src/threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -18,9 +26,8 @@ import {
   up,
   type Vec3,
   vec3,
-} from 'threepoint/core/math/vec3';
-import { headingOf } from 'threepoint/core/tracking/heading';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/vec3';
+import { headingOf } from '../../../../src/threepoint/core/tracking/heading';
 import { evenly, rotation, vector } from '../arbitraries';
 import { bodies, jointsOf, openSubject, person, rate, showSecond, times } from './contract-subjects';
 import { type Joints, show } from './drawn';

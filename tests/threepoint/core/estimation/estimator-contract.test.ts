@@ -1,10 +1,10 @@
 import fc from 'fast-check';
-import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { type TrackedPose, transformPoint } from 'threepoint/core/math/pose';
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
-import { add, distance, length, up, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { type JointName, jointNames, parentOf } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { type TrackedPose, transformPoint } from '../../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, rotate } from '../../../../src/threepoint/core/math/quat';
+import { add, distance, length, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { isNightly } from '../../../nightly';
 import { rotation, standpoint, vector } from '../arbitraries';
 import { numbersIn } from '../numbers-in';

@@ -1,12 +1,16 @@
-import { type AvatarPose, copyAvatarPose } from 'threepoint/core/body/avatar-pose';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator, createWithNetwork, needsRegressor } from 'threepoint/core/estimation/estimators';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
-import type { Pipeline } from 'threepoint/core/estimation/pipeline';
-import { distance } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { type AvatarPose, copyAvatarPose } from '../../../../src/threepoint/core/body/avatar-pose';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { jointNames } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import {
+  createEstimator,
+  createWithNetwork,
+  needsRegressor,
+} from '../../../../src/threepoint/core/estimation/estimators';
+import type { PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
+import type { Pipeline } from '../../../../src/threepoint/core/estimation/pipeline';
+import { distance } from '../../../../src/threepoint/core/math/vec3';
 import { poseOf, show, showAll } from './drawn';
 import { movingPerson } from './moving-person';
 import { openShippedModel } from './shipped-models';

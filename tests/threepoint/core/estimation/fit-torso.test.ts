@@ -1,12 +1,22 @@
 import fc from 'fast-check';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { armBones } from 'threepoint/core/estimation/arms/fit-arms';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { fromAxisAngle, rotate } from 'threepoint/core/math/quat';
-import { add, addScaled, copyVec3, distance, lerp, normalise, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { estimatedJoints } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
+import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
+import { fromAxisAngle, rotate } from '../../../../src/threepoint/core/math/quat';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  distance,
+  lerp,
+  normalise,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
 import { standing, transformFrame } from './moving-person';

@@ -1,7 +1,7 @@
-import { type EstimatedJoint, estimatedJoints } from 'threepoint/core/body/joints';
-import { mapJoints } from 'threepoint/core/estimation/joint-positions';
-import { distance } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { type EstimatedJoint, estimatedJoints } from '../../../../src/threepoint/core/body/joints';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { distance } from '../../../../src/threepoint/core/math/vec3';
 import { completedFrame, fitted as fitBody } from './drawn';
 import { type GoldenFit, quat, readGolden, vec } from './golden';
 

@@ -1,6 +1,6 @@
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
 import { expect, test } from 'vitest';
+import { defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
+import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
 import { numbersIn } from '../numbers-in';
 import { poseOf } from './drawn';
 import { movingPerson } from './moving-person';

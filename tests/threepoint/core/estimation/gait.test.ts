@@ -1,8 +1,8 @@
-import { Gait, shippedGait } from 'threepoint/core/estimation/gait/gait';
-import { GaitFeatures, type GaitPoints } from 'threepoint/core/estimation/gait/gait-features';
-import type { Quat } from 'threepoint/core/math/quat';
-import { type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { Gait, shippedGait } from '../../../../src/threepoint/core/estimation/gait/gait';
+import { GaitFeatures, type GaitPoints } from '../../../../src/threepoint/core/estimation/gait/gait-features';
+import type { Quat } from '../../../../src/threepoint/core/math/quat';
+import { type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { eyeHeight, standing, walking } from '../../avatar/walking-person';
 
 type Person = (time: number) => GaitPoints;

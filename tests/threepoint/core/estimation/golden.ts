@@ -1,12 +1,17 @@
 import { readFileSync } from 'node:fs';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import type { CompletedHand } from 'threepoint/core/estimation/complete-hands';
-import { type HandTurns, makeThreePoints, type ThreePoints, turnHands } from 'threepoint/core/estimation/ik/solve-ik';
-import type { SeenHands } from 'threepoint/core/estimation/networks/frame-features';
-import { makePose, type Pose, transformPose } from 'threepoint/core/math/pose';
-import type { Quat } from 'threepoint/core/math/quat';
-import type { Vec3 } from 'threepoint/core/math/vec3';
-import { headingFromFloor } from 'threepoint/core/tracking/heading';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import type { CompletedHand } from '../../../../src/threepoint/core/estimation/complete-hands';
+import {
+  type HandTurns,
+  makeThreePoints,
+  type ThreePoints,
+  turnHands,
+} from '../../../../src/threepoint/core/estimation/ik/solve-ik';
+import type { SeenHands } from '../../../../src/threepoint/core/estimation/networks/frame-features';
+import { makePose, type Pose, transformPose } from '../../../../src/threepoint/core/math/pose';
+import type { Quat } from '../../../../src/threepoint/core/math/quat';
+import type { Vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { headingFromFloor } from '../../../../src/threepoint/core/tracking/heading';
 
 type Numbers = readonly number[];
 

@@ -1,19 +1,32 @@
-import { type Calibration, calibrationFromHeadHeight } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { makeIkSolution, makeThreePoints } from 'threepoint/core/estimation/ik/solve-ik';
+import { describe, expect, test } from 'vitest';
+import { type Calibration, calibrationFromHeadHeight } from '../../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
+import { makeIkSolution, makeThreePoints } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import {
   estimateHeadsetRise,
   makeHeadsetRiseState,
-} from 'threepoint/core/estimation/online-calibration/estimate-headset-rise';
-import { unremarkable, usualReach } from 'threepoint/core/estimation/online-calibration/headset-rise.json';
-import { transformPoint } from 'threepoint/core/math/pose';
-import { fromAxisAngle } from 'threepoint/core/math/quat';
-import { sides } from 'threepoint/core/math/side';
-import { addScaled, distance, down, length, right, setVec3, subtract, up, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/estimation/online-calibration/estimate-headset-rise';
+import {
+  unremarkable,
+  usualReach,
+} from '../../../../src/threepoint/core/estimation/online-calibration/headset-rise.json';
+import { transformPoint } from '../../../../src/threepoint/core/math/pose';
+import { fromAxisAngle } from '../../../../src/threepoint/core/math/quat';
+import { sides } from '../../../../src/threepoint/core/math/side';
+import {
+  addScaled,
+  distance,
+  down,
+  length,
+  right,
+  setVec3,
+  subtract,
+  up,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { poseOf } from './drawn';
 import { type GoldenHeadsetRise, goldenHand, readGolden, vec } from './golden';
 import { movingPerson, standing } from './moving-person';

@@ -1,8 +1,8 @@
 import fc from 'fast-check';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
-import type { PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
+import { createPlainRegressor } from '../../../../src/threepoint/core/estimation/networks/learned-network';
+import type { PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
 import { type GoldenModel, readGolden } from './golden';
 import { movingPerson } from './moving-person';
 import { type NetworkName, openPlainModel, openShippedModel, readShipped } from './shipped-models';

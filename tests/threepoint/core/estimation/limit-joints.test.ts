@@ -1,8 +1,12 @@
-import { copyJoints, type JointPositions, mapJoints } from 'threepoint/core/estimation/joint-positions';
-import { limitJoints, makeLimitJointsState, resetLimitJoints } from 'threepoint/core/estimation/limit-joints';
-import { fromAxisAngle, identity, type Quat, rotate } from 'threepoint/core/math/quat';
-import { add, distance, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
+import { copyJoints, type JointPositions, mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
+import {
+  limitJoints,
+  makeLimitJointsState,
+  resetLimitJoints,
+} from '../../../../src/threepoint/core/estimation/limit-joints';
+import { fromAxisAngle, identity, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import { add, distance, subtract, up, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { fromEulerYxz } from '../euler-angles';
 import { completedFrame } from './drawn';
 

@@ -1,6 +1,6 @@
-import { estimatedJoints } from 'threepoint/core/body/joints';
-import { learnedInputCount } from 'threepoint/core/estimation/methods/residual';
 import { describe, expect, test } from 'vitest';
+import { estimatedJoints } from '../../../../src/threepoint/core/body/joints';
+import { learnedInputCount } from '../../../../src/threepoint/core/estimation/methods/residual';
 import { type GoldenModel, readGolden } from './golden';
 import { type NetworkName, openShippedModel } from './shipped-models';
 

@@ -1,11 +1,21 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { chestSpaceBody, sideSign } from 'threepoint/core/body/skeleton';
-import { type Frame, type TrackedPose, type Transform, transformPose } from 'threepoint/core/math/pose';
-import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import { createRandom } from 'threepoint/core/math/random';
-import type { Side } from 'threepoint/core/math/side';
-import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { chestSpaceBody, sideSign } from '../../../../src/threepoint/core/body/skeleton';
+import { type Frame, type TrackedPose, type Transform, transformPose } from '../../../../src/threepoint/core/math/pose';
+import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import { createRandom } from '../../../../src/threepoint/core/math/random';
+import type { Side } from '../../../../src/threepoint/core/math/side';
+import {
+  add,
+  addScaled,
+  cross,
+  normalise,
+  right,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 
 /** The initial position and yaw of a person on the floor. */

@@ -1,20 +1,20 @@
-import { tiltRotation } from 'threepoint/core/body/hand-tilt';
-import { estimatedJoints, type JointName } from 'threepoint/core/body/joints';
-import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { solveIk } from 'threepoint/core/estimation/ik/solve-ik';
-import { transformJoints } from 'threepoint/core/estimation/joint-positions';
-import { chestFeatureCount, chestFeatures } from 'threepoint/core/estimation/networks/chest-features';
-import { FeatureWindow } from 'threepoint/core/estimation/networks/feature-window';
-import { featureCount, frameFeatures } from 'threepoint/core/estimation/networks/frame-features';
-import { paperFeatures } from 'threepoint/core/estimation/networks/paper-features';
+import { describe, expect, test } from 'vitest';
+import { tiltRotation } from '../../../../src/threepoint/core/body/hand-tilt';
+import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
+import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
+import { transformJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { chestFeatureCount, chestFeatures } from '../../../../src/threepoint/core/estimation/networks/chest-features';
+import { FeatureWindow } from '../../../../src/threepoint/core/estimation/networks/feature-window';
+import { featureCount, frameFeatures } from '../../../../src/threepoint/core/estimation/networks/frame-features';
+import { paperFeatures } from '../../../../src/threepoint/core/estimation/networks/paper-features';
 import {
   estimateHandTilts,
   makeHandTiltsState,
-} from 'threepoint/core/estimation/online-calibration/estimate-hand-tilts';
-import { type Side, sides } from 'threepoint/core/math/side';
-import { distance, subtract, type Vec3 } from 'threepoint/core/math/vec3';
-import { floorFromHeading } from 'threepoint/core/tracking/heading';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/estimation/online-calibration/estimate-hand-tilts';
+import { type Side, sides } from '../../../../src/threepoint/core/math/side';
+import { distance, subtract, type Vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { floorFromHeading } from '../../../../src/threepoint/core/tracking/heading';
 import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
 
 const tolerance = 1e-5;

@@ -1,16 +1,17 @@
 import fc from 'fast-check';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { headJointOf } from 'threepoint/core/body/head-joint';
-import { type JointName, jointNames, parentOf } from 'threepoint/core/body/joints';
-import { chestSpaceBody, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { type TrackerOffsets, trackerAtJoint } from 'threepoint/core/body/tracker-offsets';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import type { TrackerMismatch } from 'threepoint/core/estimation/tracker-watch';
-import { type Pose, type TrackedPose, transformPoint } from 'threepoint/core/math/pose';
-import { angleBetween, identity, multiply, rotate } from 'threepoint/core/math/quat';
-import { createRandom } from 'threepoint/core/math/random';
+import { describe, expect, test } from 'vitest';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { headJointOf } from '../../../../src/threepoint/core/body/head-joint';
+import { type JointName, jointNames, parentOf } from '../../../../src/threepoint/core/body/joints';
+import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { type TrackerOffsets, trackerAtJoint } from '../../../../src/threepoint/core/body/tracker-offsets';
+import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../../src/threepoint/core/estimation/pinning';
+import type { TrackerMismatch } from '../../../../src/threepoint/core/estimation/tracker-watch';
+import { type Pose, type TrackedPose, transformPoint } from '../../../../src/threepoint/core/math/pose';
+import { angleBetween, identity, multiply, rotate } from '../../../../src/threepoint/core/math/quat';
+import { createRandom } from '../../../../src/threepoint/core/math/random';
 import {
   add,
   addScaled,
@@ -21,9 +22,8 @@ import {
   type Vec3,
   vec3,
   zero,
-} from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { cases } from '../../../nightly';
 import { evenly, seed, standpoint } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';

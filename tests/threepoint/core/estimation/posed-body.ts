@@ -1,11 +1,11 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import type { JointName } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { createEstimator } from 'threepoint/core/estimation/estimators';
-import type { Side } from 'threepoint/core/math/side';
-import { dot, lerp, normalise, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
+import type { Side } from '../../../../src/threepoint/core/math/side';
+import { dot, lerp, normalise, subtract, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { type Joints, poseOf } from './drawn';
 
 export const calibration: Calibration = { eyeHeight: 1.62, armSpan: 1.53 };

@@ -1,8 +1,8 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import * as ort from 'onnxruntime-web/wasm';
-import { createPlainRegressor } from 'threepoint/core/estimation/networks/learned-network';
-import type { ModelContract, PoseRegressor } from 'threepoint/core/estimation/networks/pose-regressor';
+import { createPlainRegressor } from '../../../../src/threepoint/core/estimation/networks/learned-network';
+import type { ModelContract, PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
 
 export type NetworkName = ModelContract['name'];
 

@@ -1,13 +1,22 @@
 import fc from 'fast-check';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { jointNames } from 'threepoint/core/body/joints';
-import { chestSpaceBody, sideSign } from 'threepoint/core/body/skeleton';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import type { Side } from 'threepoint/core/math/side';
-import { add, addScaled, distance, lerp, normalise, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { expect } from 'vitest';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { jointNames } from '../../../../src/threepoint/core/body/joints';
+import { chestSpaceBody, sideSign } from '../../../../src/threepoint/core/body/skeleton';
+import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import type { Side } from '../../../../src/threepoint/core/math/side';
+import {
+  add,
+  addScaled,
+  distance,
+  lerp,
+  normalise,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, rotation, standpoint } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 import { apart, calibrationOf } from './contract-subjects';

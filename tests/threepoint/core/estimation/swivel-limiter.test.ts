@@ -1,9 +1,13 @@
 import fc from 'fast-check';
-import { elbowCircle, makeElbowCircle } from 'threepoint/core/body/two-bone-ik';
-import { type EstimatedPole, estimatedPole, limitSwivel } from 'threepoint/core/estimation/arms/swivel-limiter';
-import { makeFitTorsoState } from 'threepoint/core/estimation/trunk/fit-torso';
-import { copyVec3, distance, down, normalise, scale, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { describe, expect, test } from 'vitest';
+import { elbowCircle, makeElbowCircle } from '../../../../src/threepoint/core/body/two-bone-ik';
+import {
+  type EstimatedPole,
+  estimatedPole,
+  limitSwivel,
+} from '../../../../src/threepoint/core/estimation/arms/swivel-limiter';
+import { makeFitTorsoState } from '../../../../src/threepoint/core/estimation/trunk/fit-torso';
+import { copyVec3, distance, down, normalise, scale, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { number, seed } from '../arbitraries';
 
 const bones = { upper: 0.28, lower: 0.26 };

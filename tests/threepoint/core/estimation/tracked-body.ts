@@ -1,12 +1,22 @@
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { type TrackerOffset, type TrackerOffsets, trackerNames } from 'threepoint/core/body/tracker-offsets';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import type { PoseEstimator } from 'threepoint/core/estimation/pose-estimator';
-import { invertTransform, type MutablePose, makeTransform, type Pose, transformPose } from 'threepoint/core/math/pose';
-import { vec3 } from 'threepoint/core/math/vec3';
-import type { Mutable } from 'threepoint/core/records';
-import type { BodyTrackers } from 'threepoint/core/tracking/tracking-frame';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import {
+  type TrackerOffset,
+  type TrackerOffsets,
+  trackerNames,
+} from '../../../../src/threepoint/core/body/tracker-offsets';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../../src/threepoint/core/estimation/pinning';
+import type { PoseEstimator } from '../../../../src/threepoint/core/estimation/pose-estimator';
+import {
+  invertTransform,
+  type MutablePose,
+  makeTransform,
+  type Pose,
+  transformPose,
+} from '../../../../src/threepoint/core/math/pose';
+import { vec3 } from '../../../../src/threepoint/core/math/vec3';
+import type { Mutable } from '../../../../src/threepoint/core/records';
+import type { BodyTrackers } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 
 const offset = (x: number, y: number, z: number, pitch: number, yaw: number, roll: number): TrackerOffset => ({

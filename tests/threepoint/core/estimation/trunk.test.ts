@@ -1,13 +1,23 @@
 import fc from 'fast-check';
-import { estimatedJoints, type JointName } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import type { JointPositions } from 'threepoint/core/estimation/joint-positions';
-import { limitJoints, makeLimitJointsState } from 'threepoint/core/estimation/limit-joints';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { angleBetween, identity, rotate } from 'threepoint/core/math/quat';
-import { add, addScaled, copyVec3, distance, dot, length, subtract, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
 import { describe, expect, test } from 'vitest';
+import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { limitJoints, makeLimitJointsState } from '../../../../src/threepoint/core/estimation/limit-joints';
+import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
+import { angleBetween, identity, rotate } from '../../../../src/threepoint/core/math/quat';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  distance,
+  dot,
+  length,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 import { completedFrame, fitted, type Joints } from './drawn';

@@ -1,6 +1,6 @@
-import type { BoneName } from 'threepoint/core/humanoid/bones';
-import type { SkeletonJoint } from 'threepoint/core/humanoid/joint-tree';
-import { lerp, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import type { BoneName } from '../../../../src/threepoint/core/humanoid/bones';
+import type { SkeletonJoint } from '../../../../src/threepoint/core/humanoid/joint-tree';
+import { lerp, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 
 /** The joints of a person of 1.72 m in T-pose, facing +Z [cm]; the left side. */
 const places: Readonly<Record<string, readonly [number, number, number]>> = {

@@ -1,9 +1,9 @@
-import { filterPose, halfLifeOfCutoff, makeFilteredPose } from 'threepoint/core/math/one-euro';
-import type { Pose } from 'threepoint/core/math/pose';
-import { angleBetween, fromAxisAngle, type Quat } from 'threepoint/core/math/quat';
-import { createRandom } from 'threepoint/core/math/random';
-import { copyVec3, distance, normalise, type Vec3, vec3 } from 'threepoint/core/math/vec3';
 import { expect, test } from 'vitest';
+import { filterPose, halfLifeOfCutoff, makeFilteredPose } from '../../../../src/threepoint/core/math/one-euro';
+import type { Pose } from '../../../../src/threepoint/core/math/pose';
+import { angleBetween, fromAxisAngle, type Quat } from '../../../../src/threepoint/core/math/quat';
+import { createRandom } from '../../../../src/threepoint/core/math/random';
+import { copyVec3, distance, normalise, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 
 const tuning = { restCutoff: 1, cutoffPerSpeed: 15 };
 const axis = normalise(vec3(1, 2, -1));

@@ -1,4 +1,5 @@
 import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
 import {
   composeTransforms,
   invertTransform,
@@ -6,10 +7,9 @@ import {
   type Transform,
   transformPoint,
   transformPose,
-} from 'threepoint/core/math/pose';
-import { fromAxisAngle } from 'threepoint/core/math/quat';
-import { distance, up, vec3 } from 'threepoint/core/math/vec3';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/pose';
+import { fromAxisAngle } from '../../../../src/threepoint/core/math/quat';
+import { distance, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { rotation, seed, vector } from '../arbitraries';
 
 const transform = fc.record({ position: vector(5), orientation: rotation });

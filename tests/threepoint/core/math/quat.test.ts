@@ -1,4 +1,5 @@
 import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
 import {
   alignDirections,
   angleBetween,
@@ -17,9 +18,19 @@ import {
   toEulerYxz,
   twistAngle,
   twistOf,
-} from 'threepoint/core/math/quat';
-import { add, cross, distance, dot, length, right, scale, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/quat';
+import {
+  add,
+  cross,
+  distance,
+  dot,
+  length,
+  right,
+  scale,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
 import { direction, number, rotation, seed, vector } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 

@@ -1,5 +1,5 @@
-import { nextRandom, type RandomState } from 'threepoint/core/math/random';
 import { describe, expect, test } from 'vitest';
+import { nextRandom, type RandomState } from '../../../../src/threepoint/core/math/random';
 
 function draw(seed: number, count: number): number[] {
   const values: number[] = [];

@@ -1,5 +1,5 @@
-import { mean, median, quantile } from 'threepoint/core/math/statistics';
 import { expect, test } from 'vitest';
+import { mean, median, quantile } from '../../../../src/threepoint/core/math/statistics';
 
 test('statistics are those of numpy; of no values they are NaN', () => {
   const values = [10, 2, 4, 8];

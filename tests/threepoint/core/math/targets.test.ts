@@ -1,5 +1,12 @@
 import fc from 'fast-check';
-import { composeTransforms, invertTransform, makePose, transformPoint, transformPose } from 'threepoint/core/math/pose';
+import { describe, expect, test } from 'vitest';
+import {
+  composeTransforms,
+  invertTransform,
+  makePose,
+  transformPoint,
+  transformPose,
+} from '../../../../src/threepoint/core/math/pose';
 import {
   alignDirections,
   conjugate,
@@ -14,7 +21,7 @@ import {
   rotationBetween,
   slerp,
   twistOf,
-} from 'threepoint/core/math/quat';
+} from '../../../../src/threepoint/core/math/quat';
 import {
   add,
   addScaled,
@@ -27,8 +34,7 @@ import {
   subtract,
   up,
   type Vec3,
-} from 'threepoint/core/math/vec3';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/vec3';
 import { rotation, seed, vector } from '../arbitraries';
 
 type OfVectors = (a: Vec3, b: Vec3, target?: Vec3) => Vec3;

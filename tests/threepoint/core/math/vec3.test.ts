@@ -1,4 +1,5 @@
 import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
 import {
   add,
   cross,
@@ -15,8 +16,7 @@ import {
   up,
   vec3,
   zero,
-} from 'threepoint/core/math/vec3';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/math/vec3';
 import { direction, number, seed, vector } from '../arbitraries';
 
 describe('vectors', () => {

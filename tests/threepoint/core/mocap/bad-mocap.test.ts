@@ -1,6 +1,6 @@
-import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
+import { prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { goldenMocap, sourceOf } from './golden-mocap';
 
 const acclaim = goldenMocap.find(({ motion }) => motion.endsWith('.amc'))!;

@@ -1,9 +1,9 @@
-import type { BoneMap } from 'threepoint/core/humanoid/bones';
-import { UnknownBonesError } from 'threepoint/core/humanoid/unknown-bones-error';
-import { distance } from 'threepoint/core/math/vec3';
-import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
+import type { BoneMap } from '../../../../src/threepoint/core/humanoid/bones';
+import { UnknownBonesError } from '../../../../src/threepoint/core/humanoid/unknown-bones-error';
+import { distance } from '../../../../src/threepoint/core/math/vec3';
+import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { goldenMocap, sourceOf } from './golden-mocap';
 import { madeBvh } from './made-bvh';
 

@@ -1,5 +1,5 @@
 import { readFileSync } from 'node:fs';
-import type { MocapSource } from 'threepoint/core/mocap/prepare-mocap';
+import type { MocapSource } from '../../../../src/threepoint/core/mocap/prepare-mocap';
 
 /** A file of a generated person, and what the evaluation makes of it. */
 export interface GoldenMocap {

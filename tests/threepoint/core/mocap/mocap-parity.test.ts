@@ -1,8 +1,8 @@
-import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { trackedWidth } from 'threepoint/core/mocap/simulate-trackers';
-import { truthJoints } from 'threepoint/core/mocap/skeleton-map';
-import { finishWork } from 'threepoint/core/motion/work';
 import { expect, test } from 'vitest';
+import { prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { trackedWidth } from '../../../../src/threepoint/core/mocap/simulate-trackers';
+import { truthJoints } from '../../../../src/threepoint/core/mocap/skeleton-map';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { goldenMocap, sourceOf } from './golden-mocap';
 
 test.each(goldenMocap)('$motion becomes the recordings that the evaluation makes of it', (golden) => {

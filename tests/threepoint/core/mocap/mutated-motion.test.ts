@@ -1,9 +1,9 @@
-import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
-import { createRandom } from 'threepoint/core/math/random';
-import { type MocapSource, prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
-import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { expect, test } from 'vitest';
+import { readGlbChunks } from '../../../../src/threepoint/avatar/file/glb-chunks';
+import { createRandom } from '../../../../src/threepoint/core/math/random';
+import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
+import { writeVrma } from '../../../../src/threepoint/core/motion/write-vrma';
 import { reportFigures } from '../../../reliability/report-figures';
 import { mutatedFiles, ReadingCosts } from '../../mutated-files';
 import { actingPerson, bytesOf } from '../motion/moved-person';

@@ -1,8 +1,8 @@
-import { isSkeletonMap } from 'threepoint/core/mocap/is-skeleton-map';
-import { acclaim } from 'threepoint/core/mocap/mocap-rules.json';
-import { prepareMocap } from 'threepoint/core/mocap/prepare-mocap';
-import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
+import { isSkeletonMap } from '../../../../src/threepoint/core/mocap/is-skeleton-map';
+import { acclaim } from '../../../../src/threepoint/core/mocap/mocap-rules.json';
+import { prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { goldenMocap, sourceOf } from './golden-mocap';
 
 const folded = goldenMocap.find(({ motion }) => motion === 'folded_1.bvh')!;

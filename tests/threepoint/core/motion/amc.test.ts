@@ -1,9 +1,9 @@
-import { distance, vec3 } from 'threepoint/core/math/vec3';
-import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
-import { readAmc } from 'threepoint/core/motion/read-amc';
-import { readAsf } from 'threepoint/core/motion/read-asf';
-import { finishWork } from 'threepoint/core/motion/work';
 import { describe, expect, test } from 'vitest';
+import { distance, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { createSkeletonPose } from '../../../../src/threepoint/core/motion/imported-motion';
+import { readAmc } from '../../../../src/threepoint/core/motion/read-amc';
+import { readAsf } from '../../../../src/threepoint/core/motion/read-asf';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 
 /** One bone, two long and upright at rest, whose axes are turned about Z by this angle. */
 const skeleton = (unit: string, angle: number) => `:units

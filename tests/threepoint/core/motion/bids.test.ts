@@ -1,6 +1,6 @@
-import { bidsMotion } from 'threepoint/core/motion/write-bids';
-import type { Recording } from 'threepoint/core/tracking/recording';
 import { expect, test } from 'vitest';
+import { bidsMotion } from '../../../../src/threepoint/core/motion/write-bids';
+import type { Recording } from '../../../../src/threepoint/core/tracking/recording';
 
 test('a hand that the device only guessed has no value, as one that was not seen', () => {
   const at = (x: number, tracking: 'tracked' | 'emulated') => ({

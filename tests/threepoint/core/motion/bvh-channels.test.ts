@@ -1,10 +1,10 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
-import { createRandom } from 'threepoint/core/math/random';
-import { distance } from 'threepoint/core/math/vec3';
-import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
-import { poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
-import { finishWork } from 'threepoint/core/motion/work';
 import { expect, test } from 'vitest';
+import { createRandom } from '../../../../src/threepoint/core/math/random';
+import { distance } from '../../../../src/threepoint/core/math/vec3';
+import { createSkeletonPose } from '../../../../src/threepoint/core/motion/imported-motion';
+import { poseBvh, readBvh } from '../../../../src/threepoint/core/motion/read-bvh';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 
 /** Parent, axes of position and of rotation channels: every order, positions on inner joints, joints that are still. */
 const joints: readonly (readonly [number, string, string])[] = [

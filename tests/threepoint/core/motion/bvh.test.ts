@@ -1,13 +1,13 @@
 import { Quaternion, Vector3 } from 'three';
 import { BVHLoader } from 'three/addons/loaders/BVHLoader.js';
-import type { Quat } from 'threepoint/core/math/quat';
-import { distance, type Vec3 } from 'threepoint/core/math/vec3';
-import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
-import { turnPoint, turnRotation } from 'threepoint/core/motion/motion-bones';
-import { type BvhMotion, poseBvh, readBvh } from 'threepoint/core/motion/read-bvh';
-import { finishWork } from 'threepoint/core/motion/work';
-import { writeBvh } from 'threepoint/core/motion/write-bvh';
 import { describe, expect, test } from 'vitest';
+import type { Quat } from '../../../../src/threepoint/core/math/quat';
+import { distance, type Vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { createSkeletonPose } from '../../../../src/threepoint/core/motion/imported-motion';
+import { turnPoint, turnRotation } from '../../../../src/threepoint/core/motion/motion-bones';
+import { type BvhMotion, poseBvh, readBvh } from '../../../../src/threepoint/core/motion/read-bvh';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
+import { writeBvh } from '../../../../src/threepoint/core/motion/write-bvh';
 import { actingPerson, contortedPerson, rateHz, type Truth, textOf } from './moved-person';
 import { playerOf } from './play-clip';
 

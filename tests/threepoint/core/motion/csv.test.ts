@@ -1,6 +1,6 @@
-import { distance } from 'threepoint/core/math/vec3';
-import { writeCsv } from 'threepoint/core/motion/write-csv';
 import { expect, test } from 'vitest';
+import { distance } from '../../../../src/threepoint/core/math/vec3';
+import { writeCsv } from '../../../../src/threepoint/core/motion/write-csv';
 import { actingPerson, contortedPerson, textOf } from './moved-person';
 
 const people = { contorted: contortedPerson(), acting: actingPerson(1) };

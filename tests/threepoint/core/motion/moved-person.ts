@@ -1,21 +1,39 @@
 import fc from 'fast-check';
-import { makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import { type Calibration, defaultCalibration } from 'threepoint/core/body/calibration';
-import { fingerBoneNames } from 'threepoint/core/body/finger-bone-names';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { averageHand, fingerPoints, makeFingerPoints, mirrorPoint } from 'threepoint/core/body/hand-geometry';
-import { closedHand, fingerNames, flatHand, type HandShape, lerpHandShape } from 'threepoint/core/body/hand-shape';
-import { jointNames } from 'threepoint/core/body/joints';
-import { skeletonFromCalibration, wristFromHandBone } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { conjugate, copyQuat, fromAxisAngle, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import { add, copyVec3, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import type { Motion } from 'threepoint/core/motion/motion';
-import { MotionTaker } from 'threepoint/core/motion/take-motion';
-import { finishWork } from 'threepoint/core/motion/work';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
+import { makeUpperBodyPose } from '../../../../src/threepoint/core/body/avatar-pose';
+import { type Calibration, defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
+import { fingerBoneNames } from '../../../../src/threepoint/core/body/finger-bone-names';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import {
+  averageHand,
+  fingerPoints,
+  makeFingerPoints,
+  mirrorPoint,
+} from '../../../../src/threepoint/core/body/hand-geometry';
+import {
+  closedHand,
+  fingerNames,
+  flatHand,
+  type HandShape,
+  lerpHandShape,
+} from '../../../../src/threepoint/core/body/hand-shape';
+import { jointNames } from '../../../../src/threepoint/core/body/joints';
+import { skeletonFromCalibration, wristFromHandBone } from '../../../../src/threepoint/core/body/skeleton';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
+import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
+import {
+  conjugate,
+  copyQuat,
+  fromAxisAngle,
+  multiply,
+  type Quat,
+  rotate,
+} from '../../../../src/threepoint/core/math/quat';
+import { add, copyVec3, up, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import type { Motion } from '../../../../src/threepoint/core/motion/motion';
+import { MotionTaker } from '../../../../src/threepoint/core/motion/take-motion';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
+import { actorFrame } from '../../../../src/threepoint/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { rotation, seed } from '../arbitraries';
 
 export const rateHz = 72;

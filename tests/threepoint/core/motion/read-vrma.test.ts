@@ -1,12 +1,12 @@
-import { readGlbChunks } from 'threepoint/avatar/file/glb-chunks';
-import { distance } from 'threepoint/core/math/vec3';
-import { createSkeletonPose } from 'threepoint/core/motion/imported-motion';
-import { resampleMotion } from 'threepoint/core/motion/motion';
-import { turnPoint, turnRotation } from 'threepoint/core/motion/motion-bones';
-import { readVrma } from 'threepoint/core/motion/read-vrma';
-import { finishWork } from 'threepoint/core/motion/work';
-import { writeVrma } from 'threepoint/core/motion/write-vrma';
 import { describe, expect, test } from 'vitest';
+import { readGlbChunks } from '../../../../src/threepoint/avatar/file/glb-chunks';
+import { distance } from '../../../../src/threepoint/core/math/vec3';
+import { createSkeletonPose } from '../../../../src/threepoint/core/motion/imported-motion';
+import { resampleMotion } from '../../../../src/threepoint/core/motion/motion';
+import { turnPoint, turnRotation } from '../../../../src/threepoint/core/motion/motion-bones';
+import { readVrma } from '../../../../src/threepoint/core/motion/read-vrma';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
+import { writeVrma } from '../../../../src/threepoint/core/motion/write-vrma';
 import { actingPerson, bytesOf, rateHz } from './moved-person';
 
 const { motion, truth } = actingPerson();

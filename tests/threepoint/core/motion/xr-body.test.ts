@@ -1,14 +1,23 @@
-import { makeUpperBodyPose } from 'threepoint/core/body/avatar-pose';
-import { defaultCalibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { flatHand } from 'threepoint/core/body/hand-shape';
-import { skeletonFromCalibration, wristFromHandBone } from 'threepoint/core/body/skeleton';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { conjugate, fromAxisAngle, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import { backward, distance, dot, forward, subtract, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
-import { toXRBody } from 'threepoint/core/motion/xr-body';
-import { actorFrame } from 'threepoint/core/tracking/actor-motion';
 import { describe, expect, test } from 'vitest';
+import { makeUpperBodyPose } from '../../../../src/threepoint/core/body/avatar-pose';
+import { defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { flatHand } from '../../../../src/threepoint/core/body/hand-shape';
+import { skeletonFromCalibration, wristFromHandBone } from '../../../../src/threepoint/core/body/skeleton';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
+import { conjugate, fromAxisAngle, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import {
+  backward,
+  distance,
+  dot,
+  forward,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../../src/threepoint/core/math/vec3';
+import { toXRBody } from '../../../../src/threepoint/core/motion/xr-body';
+import { actorFrame } from '../../../../src/threepoint/core/tracking/actor-motion';
 
 const hand = (side: string) => [
   ...['palm', 'wrist', 'thumb-metacarpal', 'thumb-phalanx-proximal', 'thumb-phalanx-distal', 'thumb-tip'],

@@ -1,22 +1,22 @@
 import fc from 'fast-check';
-import type { Calibration } from 'threepoint/core/body/calibration';
-import { forwardKinematics } from 'threepoint/core/body/forward-kinematics';
-import { jointNames } from 'threepoint/core/body/joints';
-import { legProportions } from 'threepoint/core/body/leg-proportions';
-import { armLength, skeletonFromCalibration } from 'threepoint/core/body/skeleton';
-import { trackerNames } from 'threepoint/core/body/tracker-offsets';
-import { createIk } from 'threepoint/core/estimation/estimators';
-import { pinning } from 'threepoint/core/estimation/pinning';
-import { type Frame, type Pose, type TrackedPose, transformPose } from 'threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from 'threepoint/core/math/quat';
-import { add, distance, right, up, type Vec3, vec3 } from 'threepoint/core/math/vec3';
+import { describe, expect, test } from 'vitest';
+import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
+import { jointNames } from '../../../../src/threepoint/core/body/joints';
+import { legProportions } from '../../../../src/threepoint/core/body/leg-proportions';
+import { armLength, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { trackerNames } from '../../../../src/threepoint/core/body/tracker-offsets';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
+import { pinning } from '../../../../src/threepoint/core/estimation/pinning';
+import { type Frame, type Pose, type TrackedPose, transformPose } from '../../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import { add, distance, right, up, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import {
   type GuidedCalibration,
   initialGuidedCalibration,
   stepGuidedCalibration,
-} from 'threepoint/core/tracking/guided-calibration';
-import type { BodyTrackers, TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/tracking/guided-calibration';
+import type { BodyTrackers, TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, seed, standpoint } from '../arbitraries';
 import { trackersOn, wornOffsets } from '../estimation/tracked-body';
 

@@ -1,9 +1,9 @@
 import fc from 'fast-check';
-import { transformPoint } from 'threepoint/core/math/pose';
-import { fromAxisAngle, multiply, rotate } from 'threepoint/core/math/quat';
-import { distance, forward, right, up, vec3 } from 'threepoint/core/math/vec3';
-import { floorFromHeading, headingFromFloor, headingOf } from 'threepoint/core/tracking/heading';
 import { describe, expect, test } from 'vitest';
+import { transformPoint } from '../../../../src/threepoint/core/math/pose';
+import { fromAxisAngle, multiply, rotate } from '../../../../src/threepoint/core/math/quat';
+import { distance, forward, right, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { floorFromHeading, headingFromFloor, headingOf } from '../../../../src/threepoint/core/tracking/heading';
 import { evenly, rotation, seed, vector } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 

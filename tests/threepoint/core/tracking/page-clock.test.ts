@@ -1,6 +1,6 @@
 import fc from 'fast-check';
-import { createPageClock, maxStepSeconds, monotonic } from 'threepoint/core/tracking/page-clock';
 import { describe, expect, test } from 'vitest';
+import { createPageClock, maxStepSeconds, monotonic } from '../../../../src/threepoint/core/tracking/page-clock';
 
 const frameMs = 1000 / 72;
 

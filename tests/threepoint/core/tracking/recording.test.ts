@@ -1,9 +1,10 @@
 import fc from 'fast-check';
-import { flatHand } from 'threepoint/core/body/hand-shape';
-import type { TrackedPose } from 'threepoint/core/math/pose';
-import { slerp } from 'threepoint/core/math/quat';
-import { distance, lerp, vec3 } from 'threepoint/core/math/vec3';
-import { deviceBodySize } from 'threepoint/core/tracking/device-body';
+import { describe, expect, test } from 'vitest';
+import { flatHand } from '../../../../src/threepoint/core/body/hand-shape';
+import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
+import { slerp } from '../../../../src/threepoint/core/math/quat';
+import { distance, lerp, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { deviceBodySize } from '../../../../src/threepoint/core/tracking/device-body';
 import {
   parseRecording,
   type Recording,
@@ -11,9 +12,8 @@ import {
   sampleRecording,
   writeRecording,
   writeRecordingWithin,
-} from 'threepoint/core/tracking/recording';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { describe, expect, test } from 'vitest';
+} from '../../../../src/threepoint/core/tracking/recording';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, number, rotation, seed, vector } from '../arbitraries';
 
 const tracked: fc.Arbitrary<TrackedPose> = fc.record({

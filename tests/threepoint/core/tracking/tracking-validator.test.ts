@@ -1,7 +1,7 @@
-import { identity } from 'threepoint/core/math/quat';
-import type { TrackingFrame } from 'threepoint/core/tracking/tracking-frame';
-import { TrackingValidator, validFrames } from 'threepoint/core/tracking/tracking-validator';
 import { expect, test } from 'vitest';
+import { identity } from '../../../../src/threepoint/core/math/quat';
+import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
+import { TrackingValidator, validFrames } from '../../../../src/threepoint/core/tracking/tracking-validator';
 
 const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
   ...{ position: { x, y: 1.2, z: -0.3 }, orientation: identity, tracking },

@@ -1,4 +1,4 @@
-import { ValidationError } from 'threepoint/core/validation/validation';
+import { ValidationError } from 'threepoint/core';
 import * as v from 'valibot';
 import { words } from '../../phrases/localized-text';
 import type { QuestionKind } from '../question-kind';

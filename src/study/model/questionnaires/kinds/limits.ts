@@ -1,4 +1,4 @@
-import { numberBetween } from 'threepoint/core/validation/validation';
+import { numberBetween } from 'threepoint/core';
 import * as v from 'valibot';
 
 /** The magnitude that no number of a questionnaire exceeds. */

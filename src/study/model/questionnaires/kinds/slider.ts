@@ -1,4 +1,4 @@
-import { numberBetween } from 'threepoint/core/validation/validation';
+import { numberBetween } from 'threepoint/core';
 import * as v from 'valibot';
 import type { QuestionKind } from '../question-kind';
 import { limit, limitedNumber } from './limits';

@@ -1,4 +1,4 @@
-import { integerBetween } from 'threepoint/core/validation/validation';
+import { integerBetween } from 'threepoint/core';
 import * as v from 'valibot';
 import type { QuestionKind } from '../question-kind';
 

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import type { ChoiceForm } from '../../../model/questionnaires/kinds/choice';
 import type { QuestionView } from '../question-view';

@@ -1,4 +1,4 @@
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
 import type { QuestionView } from '../question-view';

@@ -1,5 +1,5 @@
-import { vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
+import { vrColors, vrFont } from 'threepoint-ui/vr';
 import { inner, margin, width } from '../sheet-target';
 
 /** A point that can be chosen. */

@@ -1,5 +1,5 @@
-import { fillRoundedRect, vrColors } from 'threepoint-ui/canvas-drawing';
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
+import { fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
 import type { QuestionView } from '../question-view';

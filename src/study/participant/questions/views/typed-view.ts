@@ -1,5 +1,5 @@
-import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/canvas-drawing';
-import { element } from 'threepoint-ui/element';
+import { element } from 'threepoint-ui';
+import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import type { Phrases } from '../../../model/phrases/phrases';
 import type { NumberForm } from '../../../model/questionnaires/kinds/number';

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import type { RequestListener } from 'node:http';
-import { ServerPresence, type ServerState } from 'threepoint-http/server-presence';
 import { expect, test } from 'vitest';
+import { ServerPresence, type ServerState } from '../../src/ui/server-presence';
 import { answeringHost, says } from '../rooms/client/answering-host';
 
 /** A page from a host that answers so; `states` fills with what it learns of it. */

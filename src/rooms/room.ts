@@ -1,0 +1,17 @@
+// "threepoint-rooms/room": the authority of a room, its messages, and what a game implements. It has no socket.
+export type { ClientPolicy } from './client/client-policy';
+export type {
+  Connection,
+  ConnectionStatus,
+  ConnectionUpdate,
+  LocalClock,
+  RoomView,
+  Visitor,
+  VoiceChannel,
+} from './client/connection';
+export type { LoopbackOptions } from './client/loopback-host';
+export { LoopbackHost } from './client/loopback-host';
+export type { RoomMessage, RoomTerms } from './protocol/messages';
+export { finiteWithin, integerWithin, roomMessageReader, seconds } from './protocol/messages';
+export type { SignalBody } from './protocol/voice-messages';
+export type { HostedMatch, MatchPolicy } from './room/match-policy';
