@@ -6,6 +6,7 @@ import { loadStudyPlugins } from 'threepoint-study/server';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
+import { shippedRoomKinds } from './room-kinds';
 import { startServer } from './start-server';
 import { startupMessage } from './startup-message';
 
@@ -29,6 +30,7 @@ async function main(): Promise<void> {
       : pathInRepository('study-data'),
     experimenterToken,
     relay,
+    games: shippedRoomKinds(process.env),
     secret: relay.secret ?? loadOrCreateSecret(pathInRepository('.cache/relay-secret')),
     host: relay.host ?? (addresses ? '0.0.0.0' : '127.0.0.1'),
     port: configuration.port,

@@ -1,11 +1,7 @@
-import { BallPolicy, ballKind } from 'threepoint-games/ball';
-import type { RoomKinds } from 'threepoint-rooms/server';
+import { ballKind, ballRoomKind } from 'threepoint-games/ball';
+import type { RoomKinds } from 'threepoint-rooms/room';
+import { type Environment, numberFrom } from 'threepoint-rooms/server';
 
-/** Returns the games of this project. `ballSeconds`: length of a round of the ball game whose room has no terms. */
-export const shippedRoomKinds = ({ ballSeconds }: { readonly ballSeconds: number }): RoomKinds =>
-  new Map([
-    [
-      ballKind,
-      ({ pausable: _, ...ball }, assigned) => new BallPolicy({ seconds: ballSeconds, ...ball, everySeat: assigned }),
-    ],
-  ]);
+/** Returns the games of this project. Throws a ConfigurationError. */
+export const shippedRoomKinds = (environment: Environment): RoomKinds =>
+  new Map([[ballKind, ballRoomKind(numberFrom(environment, 'THREEPOINT_BALL_SECONDS', 90, 1, 3600))]]);

@@ -6,10 +6,10 @@ import {
   prepareServer,
   readSoftwareVersion,
 } from 'threepoint-http';
+import type { RoomKinds } from 'threepoint-rooms/room';
 import { attachRooms, type RelayConfiguration } from 'threepoint-rooms/server';
 import { openStudyService } from 'threepoint-study/server';
 import { createPageHandler } from './page-handler';
-import { shippedRoomKinds } from './room-kinds';
 
 export interface StartOptions {
   /** The folder of the built page. */
@@ -18,6 +18,7 @@ export interface StartOptions {
   /** null: the token that is stored with the studies. */
   readonly experimenterToken: string | null;
   readonly relay: RelayConfiguration;
+  readonly games: RoomKinds;
   /** Signs the passes into rooms. */
   readonly secret: string;
   readonly host: string;
@@ -39,7 +40,7 @@ export interface RunningServer {
 
 /** Starts the server of `npm start`. Throws if the page is not built. */
 export async function startServer(options: StartOptions): Promise<RunningServer> {
-  const { relay: relaying, host, port, credentials, log } = options;
+  const { relay: relaying, games, host, port, credentials, log } = options;
   const now = () => Date.now() / 1000;
   const page = createPageHandler(options.pageDirectory, {
     microphone: relaying.voices !== null,
@@ -69,7 +70,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
   const rooms = attachRooms(prepared.http, {
     ...relaying,
     secret: options.secret,
-    games: shippedRoomKinds(relaying),
+    games,
     monitoring: true,
     connections: connectionLimiter,
   });

@@ -1,11 +1,12 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
 import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
-import { relayConfigurationFrom } from 'threepoint-rooms/server';
-import { shippedRoomKinds } from '../../server/room-kinds';
 import { serve } from '../../src/http/web-server';
 import { maxSeats } from '../../src/rooms/protocol/messages';
+import type { RoomKind } from 'threepoint-rooms/room';
 import { createRelay } from '../../src/rooms/server/relay';
-import { countingKind, countingPolicy } from '../../tests/rooms/room/counting-game';
+import { relayConfigurationFrom } from 'threepoint-rooms/server';
+import { shippedRoomKinds } from '../../server/room-kinds';
+import { countingKind, countingRoomKind } from '../../tests/rooms/room/counting-game';
 import { answerAsRelay } from './conversation';
 
 const configuration = relayConfigurationFrom(process.env);
@@ -13,7 +14,7 @@ const connectionLimiter = new ConnectionLimiter({
   perAddress: configuration.connectionsPerAddress,
   behindProxy: configuration.trustProxy,
 });
-const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(maxSeats)]]);
+const kinds = new Map<string, RoomKind>([...shippedRoomKinds(process.env), [countingKind, countingRoomKind(maxSeats)]]);
 const relay = createRelay(configuration, configuration.secret ?? '', connectionLimiter, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
   host: '127.0.0.1',

@@ -36,7 +36,7 @@ test('one person with two bots plays a short match to its end, and again', async
   expect(players.map(({ bot }) => bot)).toEqual([true, true]);
   await keepPicture(page, 'ball-running');
   // A player's buttons stand beside the name.
-  const hide = await page.getByRole('button', { name: 'Hide Kim' }).boundingBox();
+  const hide = await page.getByRole('button', { name: /Hide . · Kim/ }).boundingBox();
   const name = await page
     .getByRole('list', { name: 'Other players' })
     .getByText('Kim (bot)', { exact: true })

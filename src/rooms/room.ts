@@ -11,7 +11,8 @@ export type {
 } from './client/connection';
 export type { LoopbackOptions } from './client/loopback-host';
 export { LoopbackHost } from './client/loopback-host';
-export type { RoomMessage, RoomTerms } from './protocol/messages';
+export type { RoomMessage } from './protocol/messages';
 export { finiteWithin, integerWithin, roomMessageReader, seconds } from './protocol/messages';
 export type { SignalBody } from './protocol/voice-messages';
 export type { HostedMatch, MatchPolicy } from './room/match-policy';
+export type { RoomKind, RoomKinds } from './room/room-kind';

@@ -190,6 +190,50 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
   unknown: { gives: 'nothing', outcome: all('ends') },
 };
 
+/** Who sets the terms of a room. */
+export const termRoles = {
+  stranger: 'anyone, by asking for a pass to a room that is open to all',
+  study: 'the study service, which signs the seats of a trial',
+} as const;
+export type TermRole = keyof typeof termRoles;
+
+/** A term of a room of the ball game, with values inside and outside its range. */
+export interface TermRow {
+  readonly gives: string;
+  readonly inside: readonly unknown[];
+  readonly outside: readonly unknown[];
+  readonly outcome: Readonly<Record<TermRole, 'taken' | 'refused'>>;
+}
+
+const option = (gives: string, ...inside: readonly unknown[]): TermRow => ({
+  gives,
+  inside,
+  outside: [null],
+  outcome: { stranger: 'refused', study: 'refused' },
+});
+
+/** One row for every term of a room of the ball game, and for the other options of its room and its rules. */
+export const termRows: Readonly<Record<string, TermRow>> = {
+  seconds: {
+    gives: 'the length of a round, 1 to 3600 s',
+    inside: [1, 45.5, 3600],
+    outside: [0, 3600.5, -90, '90', null, [90]],
+    outcome: { stranger: 'taken', study: 'taken' },
+  },
+  balls: {
+    gives: 'the number of balls, 1 to 20',
+    inside: [1, 20],
+    outside: [0, 21, 2.5, '6', null],
+    outcome: { stranger: 'taken', study: 'refused' },
+  },
+  pausable: option('a clock that players may pause', true, false),
+  assigned: option('seats that cannot be changed', true, false),
+  voices: option('voices', true, false),
+  everySeat: option('a match only of three', true, false),
+  rotation: option('other roles at the start', 1),
+  seed: option('another order of the balls', 7),
+};
+
 /** Returns a list of rows for each outcome, in the order of its first row. */
 function lists(rows: readonly { readonly name: string; readonly gives: string; readonly outcome: string }[]): string {
   const groups = new Map<string, string[]>();
@@ -227,7 +271,14 @@ export function accessLists(): string {
     gives,
     outcome: byOutcome(Object.keys(socketRoles) as SocketRole[], (role) => outcome[role]),
   }));
-  return `### Requests\n\n${lists(http)}\n\n### Messages\n\n${lists(sockets)}`;
+  const terms = Object.entries(termRows).map(([name, { gives, outcome }]) => ({
+    name,
+    gives,
+    outcome: byOutcome(Object.keys(termRoles) as TermRole[], (role) => outcome[role]),
+  }));
+  return [`### Requests\n\n${lists(http)}`, `### Messages\n\n${lists(sockets)}`, `### Terms\n\n${lists(terms)}`].join(
+    '\n\n',
+  );
 }
 
 export const marks = ['<!-- written by scripts/security-table.ts -->', '<!-- up to here -->'] as const;

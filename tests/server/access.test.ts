@@ -1,18 +1,30 @@
-import { createHash } from 'node:crypto';
+import { createHash, randomUUID } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
+import { type BallState, ballKind, ballRoomKind } from 'threepoint-games/ball';
 import { relayConfigurationFrom } from 'threepoint-rooms/server';
-import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
+import type * as v from 'valibot';
+import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
+import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer as startFromSource } from '../../server/start-server';
 import { poseEvent } from '../../src/rooms/protocol/socket-parsers';
+import { RoomTokens } from '../../src/rooms/server/access/room-tokens';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { begin } from '../../src/study/model/progress/progress';
 import { checkedRecord } from '../../src/study/model/records/study-record';
 import { openStudyStore } from '../../src/study/server/storage/study-store';
 import { reportFigures } from '../reliability/report-figures';
-import { poseBytes, rawGuest, rawSocket, tokenFor, until } from '../rooms/server/running-relay';
+import {
+  poseBytes,
+  type RunningRelay,
+  rawGuest,
+  rawSocket,
+  startRelay,
+  tokenFor,
+  until,
+} from '../rooms/server/running-relay';
 import { guestOfTest } from '../rooms/server/until-finished';
 import { paperPlan, session } from '../study/model/studies';
 import { studySeats } from '../study/server/running-studies';
@@ -27,6 +39,8 @@ import {
   type SocketRole,
   socketRoles,
   socketRows,
+  type TermRole,
+  termRows,
   withLists,
 } from './access-rows';
 import { sharedServer } from './server-child';
@@ -148,6 +162,7 @@ test('every route of the server has a row, and every row a route', async () => {
     studyDirectory: directoryWith(),
     experimenterToken,
     relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
+    games: shippedRoomKinds({}),
     secret: testSecret,
     host: '127.0.0.1',
     port: 0,
@@ -326,5 +341,107 @@ describe('a message to a room', () => {
       expect(await refusal(token, headers), JSON.stringify(headers)).toBe('websocket error');
     }
     reportFigures('other-sites', { 'WebSockets of other sites refused': '5 of 5' });
+  });
+});
+
+describe('the terms of a room', () => {
+  // In this process, because a test reads the rooms of the relay.
+  let relay: RunningRelay;
+  beforeAll(async () => {
+    relay = await startRelay();
+  });
+  afterAll(() => relay.close());
+  const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
+  const trialRoom = `study.${'0'.repeat(24)}`;
+
+  const post = (path: string, body: object) =>
+    fetch(`${relay.url}/api/rooms/${path}`, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify({ kind: ballKind, ...body }),
+    });
+
+  /** Tries to enter a room with a pass that has these terms. */
+  async function outcomeOf(terms: object, role: TermRole): Promise<'taken' | 'refused'> {
+    if (role === 'stranger') return (await post('token', { room: 'meadow', terms })).ok ? 'taken' : 'refused';
+    const assigned = { seat: 0, name: 'P01' };
+    const pass = { identity: randomUUID(), room: trialRoom, kind: ballKind, terms, assigned };
+    const socket = rawSocket(relay.url, await tokens.sign(pass), trialRoom);
+    onTestFinished(() => void socket.disconnect());
+    return new Promise((resolve, reject) => {
+      socket.on('connect', () => resolve('taken'));
+      socket.on('connect_error', ({ message }) => (message === 'refused' ? resolve(message) : reject(message)));
+    });
+  }
+
+  test.each(Object.entries(termRows))('%s: as docs/security.md says', async (term, { inside, outside, outcome }) => {
+    for (const role of Object.keys(outcome) as TermRole[]) {
+      for (const value of inside) expect(await outcomeOf({ [term]: value }, role), `${value}`).toBe(outcome[role]);
+      for (const value of outside) expect(await outcomeOf({ [term]: value }, role), `${value}`).toBe('refused');
+    }
+  });
+
+  test('have a row for every field of their schemas', () => {
+    const { openTerms, assignedTerms } = ballRoomKind(90);
+    for (const schema of [openTerms, assignedTerms]) {
+      const fields = Object.keys((schema as v.StrictObjectSchema<v.ObjectEntries, undefined>).entries);
+      expect(fields.length).toBeGreaterThan(0);
+      expect(Object.keys(termRows)).toEqual(expect.arrayContaining(fields));
+    }
+  });
+
+  test('are refused as a whole where one of them is', async () => {
+    const good = { seconds: 3600, balls: 1 };
+    expect(await outcomeOf(good, 'stranger')).toBe('taken');
+    for (const [term, { inside, outcome }] of Object.entries(termRows)) {
+      if (outcome.stranger === 'refused')
+        expect(await outcomeOf({ ...good, [term]: inside[0] }, 'stranger'), term).toBe('refused');
+    }
+  });
+
+  test('signed by a release that allowed more open no room, and are left out when the pass is renewed', async () => {
+    const room = 'before-the-update';
+    const old = await tokens.sign({
+      ...{ identity: randomUUID(), room, kind: ballKind, assigned: null },
+      terms: { pausable: true, seconds: 3600 },
+    });
+    const refusal = await new Promise((resolve) => {
+      const socket = rawSocket(relay.url, old, room);
+      socket.on('connect', () => resolve('let in'));
+      socket.on('connect_error', ({ message }) => resolve(message));
+    });
+    expect(refusal).toBe('refused');
+    const { token } = (await (await post('token', { room, token: old })).json()) as { token: string };
+    expect((await tokens.verify(token))?.terms).toEqual({});
+    await rawGuest(relay.url, room, token);
+  });
+
+  test('of a stranger lead nobody there by matchmaking, and stop no clock', async () => {
+    const findRoom = async () => (await (await post('match', {})).json()) as { room: string; found: boolean };
+    const enter = async (room: string, terms?: object) => {
+      const { token } = (await (await post('token', { room, terms })).json()) as { token: string };
+      return rawGuest(relay.url, room, token);
+    };
+    const listed = (room: string) => async () => {
+      const { rooms } = (await (await fetch(`${relay.url}/api/rooms`)).json()) as { rooms: { room: string }[] };
+      return rooms.some((each) => each.room === room);
+    };
+    const guests = [await enter('own-terms', { seconds: 3600, balls: 1 })];
+    await vi.waitUntil(listed('own-terms'), 5000);
+    expect((await findRoom()).room).not.toBe('own-terms');
+    guests.push(await enter('usual'), await enter('usual', { seconds: 3600, balls: 1 }));
+    await vi.waitUntil(listed('usual'), 5000);
+    const found = await findRoom();
+    expect(found).toEqual({ room: 'usual', found: true });
+    guests.push(await enter(found.room));
+    const match = relay.relay.rooms.get('usual')?.room.match as BallState | undefined;
+    expect(match?.options).toMatchObject({ seconds: 90, balls: 20 });
+    for (const guest of guests) {
+      guest.say({ type: 'pause', pause: true });
+      guest.say({ type: 'ping', sent: 9 });
+      await until('the answer', () => guest.heard.some(({ type }) => type === 'pong'));
+    }
+    for (const room of ['own-terms', 'usual']) expect(relay.relay.rooms.get(room)?.room.paused).toBe(false);
+    expect(await (await fetch(`${relay.url}/metrics`)).text()).toMatch(/reason="not-pausable".*\} 4$/m);
   });
 });

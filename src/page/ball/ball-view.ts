@@ -58,7 +58,13 @@ const unseenPalms: DrawnPlayer['palms'] = { left: null, right: null };
 
 /** Picks what labels show of a player; a label is redrawn when any of it changes. */
 const writtenOf = (attendant: DrawnPlayer | null): DisplayedPlayer | null =>
-  attendant && { name: attendant.name, bot: attendant.bot, presence: attendant.presence, me: attendant.me };
+  attendant && {
+    name: attendant.name,
+    bot: attendant.bot,
+    presence: attendant.presence,
+    me: attendant.me,
+    station: attendant.station,
+  };
 
 const stationOf = ({ players }: BallState, me: number | null): number | null =>
   me === null ? null : (players[me]?.station ?? null);
@@ -156,14 +162,13 @@ export class BallView {
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }
 
-  #showNames({ state, attendants, voices, hidden }: BallScene, people: readonly (DisplayedPlayer | null)[]): void {
+  #showNames({ attendants, voices, hidden }: BallScene, people: readonly (DisplayedPlayer | null)[]): void {
     this.#names.show(
       attendants.map((attendant, player) => {
         const person = people[player];
         if (!attendant?.head || !person || person.me || hidden.has(player)) return null;
         const { head, opacity } = attendant;
-        const station = state.players[player]?.station ?? player;
-        return { person, station, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };
+        return { person, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };
       }),
     );
   }

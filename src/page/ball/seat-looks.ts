@@ -1,8 +1,10 @@
+import { drawText } from 'threepoint-ui/vr';
+
 /** The look of a seat in paint and words. Two throwers and the holder differ in hue, brightness and mark. */
 interface SeatLook {
   readonly color: string;
   readonly ink: string;
-  /** The mark on the floor and next to the name. */
+  /** The mark next to the name. */
   readonly mark: string;
   /** Colours of the avatar: one of `palettes` in src/threepoint/avatar. */
   readonly palette: string;
@@ -12,7 +14,24 @@ interface SeatLook {
 export const seatLooks: readonly SeatLook[] = [
   { color: '#2a6fd6', ink: '#ffffff', mark: '1', palette: 'porcelain' },
   { color: '#f08a24', ink: '#241200', mark: '2', palette: 'ember' },
-  { color: '#f3efe2', ink: '#1b2430', mark: '●', palette: 'violet' },
+  { color: '#f3efe2', ink: '#1b2430', mark: '3', palette: 'violet' },
 ];
+
+/** Paints the mark of a station on a disc in its colour, around this middle [pixels]. */
+export function paintSeatMark(
+  context: CanvasRenderingContext2D,
+  station: number,
+  [x, y]: readonly [number, number],
+  radius: number,
+): void {
+  const look = seatLooks[station];
+  if (!look) return;
+  context.fillStyle = look.color;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+  const font = `800 ${Math.round((radius * 7) / 6)}px`;
+  drawText(context, look.mark, [x, y + 3], { font, color: look.ink, align: 'center', baseline: 'middle' });
+}
 
 export const roleTexts = ['Thrower 1', 'Thrower 2', 'Basket holder'] as const;

@@ -6,6 +6,7 @@ const endings: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   left: 'You left the room.',
   misbehaved: 'The server closed the connection because of what this page sent. Reload the page to join again.',
   slow: 'This connection is too slow for the room. Reload the page to try again.',
+  full: 'The server is full. Reload the page in a few minutes to try again.',
   closed: 'The room was closed.',
   stopping: 'The server is being restarted.',
   unreachable: 'The server cannot be reached.',

@@ -1,4 +1,3 @@
-import type { RoomTerms } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 import { type AvatarExchange, createAvatarExchange } from './avatar-exchange';
 import type { ClientPolicy } from './client-policy';
@@ -11,8 +10,8 @@ export interface RoomAddressOptions {
   readonly url: string;
   /** The name of the room. */
   readonly room: string;
-  /** The terms of the room, if this page is the first in it. */
-  readonly terms?: RoomTerms;
+  /** The terms of the room, if this page is the first in it; its game defines them. */
+  readonly terms?: object;
   /** Stores the pass, by which a reloaded page gets its seat back. Absent: a reloaded page is a new person. */
   readonly storage?: PassStorage;
   /** A pass that another service issues. Default: the server issues one. */

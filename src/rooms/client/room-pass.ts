@@ -1,5 +1,3 @@
-import type { RoomTerms } from '../protocol/messages';
-
 /** The signed pass that lets a page into a room. */
 export interface RoomPass {
   /**
@@ -34,7 +32,7 @@ export function createRoomPass(
   room: string,
   kind: string,
   keep?: PassStorage,
-  terms: RoomTerms = {},
+  terms: object = {},
 ): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
   let token = keep?.getItem(key) ?? null;

@@ -163,6 +163,7 @@ const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   left: 'the page has left',
   misbehaved: 'the server found fault with the messages',
   slow: 'this page reads too slowly',
+  full: 'the server has no place for another room',
   stopping: 'the server is stopping',
   closed: 'the room was closed',
   'old-page': 'the server has another version of threepoint-rooms',

@@ -91,17 +91,6 @@ export function clientMessageFrom(value: unknown): ClientMessage | null {
 }
 
 /**
- * The terms of a room, which the first person in it sets for good. `seconds` and `balls` are those of a round of the
- * ball game. `pausable`: players may pause the match clock.
- */
-export const roomTerms = v.strictObject({
-  seconds: v.exactOptional(v.pipe(v.number(), v.finite(), v.minValue(1), v.maxValue(3600))),
-  balls: v.exactOptional(v.pipe(v.number(), v.integer(), v.minValue(1), v.maxValue(20))),
-  pausable: v.exactOptional(v.boolean()),
-});
-export type RoomTerms = v.InferOutput<typeof roomTerms>;
-
-/**
  * What others see of a player. away: the page is hidden or the headset is off. gone: the connection is lost, the seat
  * is held.
  */
@@ -161,8 +150,8 @@ export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
 
 /**
  * Why a client is disconnected: the same person connected again (replaced), a person took the bot's seat (yielded), the
- * client asked for it (left), misbehaved or reads too slowly, the room was closed, the server stops, or the page has
- * another version.
+ * client asked for it (left), misbehaved or reads too slowly, the server has no place for another room (full), the room
+ * was closed, the server stops, or the page has another version.
  */
 const disconnectReasons = [
   'replaced',
@@ -170,6 +159,7 @@ const disconnectReasons = [
   'left',
   'misbehaved',
   'slow',
+  'full',
   'stopping',
   'closed',
   'old-page',

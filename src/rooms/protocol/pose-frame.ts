@@ -8,31 +8,21 @@ export interface SeatPose {
   readonly bytes: Uint8Array;
 }
 
-/** Returns the bytes of a frame with the packets of all seats but one (null: of all seats); 0: there are none. */
-export function frameLength(poses: readonly SeatPose[], except: number | null): number {
+/**
+ * Returns a frame of a room: the pose packets since the last frame, except those of one seat (null: of all seats). The
+ * seat replaces the version in each packet. Seats rise; the packets of a seat are in order of arrival.
+ */
+export function encodeFrame(poses: readonly SeatPose[], except: number | null = null): Uint8Array {
   let length = 0;
   for (const { seat, bytes } of poses) if (seat !== except) length += bytes.length;
-  return length;
-}
-
-/**
- * Writes a frame of a room into `target` from byte `at` on: the pose packets since the last frame, except those of one
- * seat. The seat replaces the version in each packet. Seats rise; the packets of a seat are in order of arrival.
- */
-export function writeFrame(poses: readonly SeatPose[], except: number | null, target: Uint8Array, at = 0): void {
-  let to = at;
+  const frame = new Uint8Array(length);
+  let to = 0;
   for (const { seat, bytes } of poses) {
     if (seat === except) continue;
-    target.set(bytes, to);
-    target[to] = (seat << 4) | (bytes[0]! & 0x0f);
+    frame.set(bytes, to);
+    frame[to] = (seat << 4) | (bytes[0]! & 0x0f);
     to += bytes.length;
   }
-}
-
-/** Returns a frame with the packets of all seats. */
-export function encodeFrame(poses: readonly SeatPose[]): Uint8Array {
-  const frame = new Uint8Array(frameLength(poses, null));
-  writeFrame(poses, null, frame);
   return frame;
 }
 

@@ -72,7 +72,7 @@ function decodeText(text: string): SocketPacket {
   return { type, nsp, data, ...(id !== undefined && { id: id as number }) };
 }
 
-/** The relay's encoder, for text alone: frames of poses are written below socket.io. */
+/** The relay's encoder, for text alone: frames of poses pass it by. */
 class RelayEncoder {
   encode(packet: SocketPacket): (string | Uint8Array)[] {
     return [encodeText(packet)];
@@ -87,7 +87,7 @@ class PageEncoder {
 }
 
 /**
- * The relay's decoder, for text alone: poses are read below socket.io. It has the methods of an event emitter that
+ * The relay's decoder, for text alone: poses pass it by. It has the methods of an event emitter that
  * socket.io calls.
  */
 class RelayDecoder {

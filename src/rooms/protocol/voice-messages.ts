@@ -28,16 +28,42 @@ export const maxCandidates = 8;
 const line = /^[\x20-\x7e]*$/;
 const lines = /^[\x20-\x7e\t\r\n]*$/;
 
-/** Returns whether a description has one audio section at most, and no other media. */
+/** The address of a candidate: a number, or a name by which a browser hides one on its own network. */
+const address = String.raw`(?:[\d.]+|[\da-f]*:[\da-f:.]*|[\w-]+\.local)`;
+const udpCandidate = new RegExp(String.raw`^candidate:\S+ \d+ udp \d+ ${address} \d+ typ `, 'i');
+const activeTcpCandidate = new RegExp(
+  String.raw`^candidate:\S+ \d+ tcp \d+ ${address} \d+ typ \S+ (?:raddr \S+ rport \d+ )?tcptype active(?: |$)`,
+  'i',
+);
+
+/**
+ * Returns whether a page may pass an ICE candidate to another one. The other page connects to passive TCP ports, and
+ * looks up names; browsers gather neither for themselves.
+ */
+export const isPassableCandidate = (text: string): boolean =>
+  text === '' || udpCandidate.test(text) || activeTcpCandidate.test(text);
+
+/**
+ * Returns whether a description has one audio section at most, no other media, no other candidates, and no identity
+ * provider, which a page would contact.
+ */
 const isOneVoice = (sdp: string): boolean => {
-  const [first, ...more] = sdp.split(/[\r\n]+/).filter((text) => text.startsWith('m='));
-  return more.length === 0 && (first === undefined || first.startsWith('m=audio '));
+  const parts = sdp.split(/[\r\n]+/).filter(Boolean);
+  const media = parts.filter((text) => text.startsWith('m='));
+  return (
+    media.length <= 1 &&
+    media.every((text) => text.startsWith('m=audio ')) &&
+    // Browsers disagree about lines of another form.
+    parts.every((text) => /^(s=|[a-z]=\S)/.test(text)) &&
+    !parts.some((text) => text.startsWith('a=identity')) &&
+    parts.every((text) => !text.startsWith('a=candidate') || isPassableCandidate(text.slice(2)))
+  );
 };
 
 /** An ICE candidate, as in RTCIceCandidateInit, with its media section. */
 const candidate = v.pipe(
   v.strictObject({
-    candidate: v.pipe(v.string(), v.maxLength(300), v.regex(line)),
+    candidate: v.pipe(v.string(), v.maxLength(300), v.regex(line), v.check(isPassableCandidate)),
     sdpMid: v.nullable(v.pipe(v.string(), v.maxLength(16), v.regex(line))),
     sdpMLineIndex: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(7))),
     usernameFragment: v.nullable(v.pipe(v.string(), v.maxLength(256), v.regex(line))),

@@ -1,6 +1,8 @@
 import { identity, vec3 } from 'threepoint/math';
+import * as v from 'valibot';
 import { maxSeats } from '../protocol/messages';
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy, MatchState } from './match-policy';
+import type { RoomKind } from './room-kind';
 
 /** A room without a game: people who see each other. It has no actions and no events. */
 export interface People extends HostedGame {
@@ -42,4 +44,13 @@ export const peoplePolicy = (seats: number = maxSeats): MatchPolicy<People> => (
   },
   refusalOf: () => null,
   arenaFromFloor: () => sharedFloor,
+});
+
+const noTerms = v.strictObject({});
+
+/** Returns rooms without a game for a server, with so many seats. */
+export const peopleRoomKind = (seats?: number): RoomKind => ({
+  openTerms: noTerms,
+  assignedTerms: noTerms,
+  createPolicy: () => peoplePolicy(seats),
 });

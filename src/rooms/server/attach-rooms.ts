@@ -13,8 +13,8 @@ import {
   type SitePolicy,
   sendResponse,
 } from 'threepoint-http';
-import { peopleKind, peoplePolicy } from '../room/people-policy';
-import type { RoomKinds } from './hosting/room-kinds';
+import { peopleKind, peopleRoomKind } from '../room/people-policy';
+import type { RoomKind, RoomKinds } from '../room/room-kind';
 import { createRelay } from './relay';
 import { type RelayConfiguration, relayConfigurationFrom } from './settings/relay-configuration';
 import type { ConnectionCounts } from './settings/relay-metrics';
@@ -26,7 +26,7 @@ export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'se
   readonly path?: string;
   /** The most people of a room without a game, 1 to 16. Default: 16. */
   readonly seats?: number;
-  /** Games, by name; each creates the match policy of a room. Default: none, rooms are just people. */
+  /** Games, by name. Default: none, rooms are just people. */
   readonly games?: RoomKinds;
   /** Further names of the server; requests with another Host are refused. Default: the Host is not checked. */
   readonly hosts?: readonly string[];
@@ -91,7 +91,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   if (!/^(\/[\w-]+)*$/.test(path))
     throw new RangeError(`The path must be like '/bodies', not ${JSON.stringify(path)}.`);
   const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), ...settings };
-  const kinds = new Map([[peopleKind, () => peoplePolicy(seats)], ...(games ?? [])]);
+  const kinds = new Map<string, RoomKind>([[peopleKind, peopleRoomKind(seats)], ...(games ?? [])]);
   const relay = createRelay(configuration, secret, connections, kinds);
   const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);

@@ -1,6 +1,6 @@
 import type { Logger } from 'pino';
+import type { RoomKinds } from '../room/room-kind';
 import type { RoomTokens } from './access/room-tokens';
-import type { RoomKinds } from './hosting/room-kinds';
 import type { RelayConfiguration } from './settings/relay-configuration';
 import type { RelayMetrics } from './settings/relay-metrics';
 

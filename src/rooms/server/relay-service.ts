@@ -14,10 +14,9 @@ import {
   type Service,
 } from 'threepoint-http';
 import * as v from 'valibot';
-import { roomTerms } from '../protocol/messages';
+import type { RoomKind, RoomKinds } from '../room/room-kind';
 import { createJoinLimit } from './access/join-limit';
-import { assignedRoomName, roomName } from './access/room-tokens';
-import type { RoomKinds } from './hosting/room-kinds';
+import { allowedTerms, assignedRoomName, roomName } from './access/room-tokens';
 import type { RoomListing } from './hosting/room-registry';
 import type { Lobby } from './lobby/lobby';
 import type { RelayContext } from './relay-context';
@@ -48,17 +47,19 @@ const endRequest = v.strictObject({
 /** Returns the schemas of requests for these games. */
 function roomRequests(kinds: RoomKinds) {
   const names = [...kinds.keys()];
-  const kind = v.picklist(names, `expected one of ${names.join(', ')}`);
-  return {
-    kind: v.strictObject({ kind }),
-    token: v.strictObject({
+  const expectedNames = `expected one of ${names.join(', ')}`;
+  const tokenRequestOf = ([kind, { openTerms }]: readonly [string, RoomKind]) =>
+    v.strictObject({
       room,
-      kind,
+      kind: v.literal(kind),
       /** An earlier token of the same person, to be renewed. */
       token: v.optional(v.pipe(v.string('expected text'), v.maxLength(1024, 'expected at most 1024 characters'))),
       /** The terms, if this person is the first in the room. */
-      terms: v.optional(roomTerms),
-    }),
+      terms: v.optional(openTerms),
+    });
+  return {
+    kind: v.strictObject({ kind: v.picklist(names, expectedNames) }),
+    token: v.variant('kind', [...kinds].map(tokenRequestOf), expectedNames),
   };
 }
 
@@ -111,7 +112,8 @@ export function createRelayService(context: RelayContext, options: RelayServiceO
     const request = checked(requests.token, jsonOf(call));
     const before = request.token === undefined ? null : await tokens.verifyRenewable(request.token);
     if (before && before.room === request.room && before.kind === request.kind) {
-      return jsonResponse({ token: await tokens.sign({ ...before, terms: request.terms ?? before.terms }) });
+      const terms = request.terms ?? allowedTerms(kinds, before) ?? {};
+      return jsonResponse({ token: await tokens.sign({ ...before, terms }) });
     }
     await countJoin(call.request);
     return jsonResponse({ token: await tokens.issue(request.room, request.kind, request.terms) });
@@ -122,7 +124,7 @@ export function createRelayService(context: RelayContext, options: RelayServiceO
     const { kind } = checked(requests.kind, jsonOf(call));
     const { rooms } = await lobby.list();
     const [best] = rooms
-      .filter((listed) => listed.kind === kind && listed.free > 0 && listed.players > 0)
+      .filter((listed) => listed.kind === kind && !listed.ownTerms && listed.free > 0 && listed.players > 0)
       .sort(byPreference);
     return jsonResponse({ room: best?.room ?? newRoomName(), found: best !== undefined });
   }

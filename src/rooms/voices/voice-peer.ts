@@ -1,4 +1,4 @@
-import { maxCandidates, maxDescriptionLength, type SignalBody } from '../protocol/voice-messages';
+import { isPassableCandidate, maxCandidates, maxDescriptionLength, type SignalBody } from '../protocol/voice-messages';
 
 export interface VoicePeerOptions {
   /** Whether this side yields when both make an offer; the other side makes the first offer. */
@@ -28,8 +28,14 @@ const closingMs = 250;
  * Returns a description that fits into a message: without candidates if it is too long, because they are also sent
  * separately.
  */
-const shortened = (sdp: string): string =>
-  sdp.length <= maxDescriptionLength ? sdp : sdp.replace(/^a=(candidate|end-of-candidates).*\r\n/gm, '');
+function shortened(sdp: string): string {
+  const passable = sdp.replace(/^a=(candidate.*)\r\n/gm, (text, candidate) =>
+    isPassableCandidate(candidate) ? text : '',
+  );
+  return passable.length <= maxDescriptionLength
+    ? passable
+    : passable.replace(/^a=(candidate|end-of-candidates).*\r\n/gm, '');
+}
 
 /** Restricts a transceiver to Opus, which all browsers support: an offer with all codecs is three times as long. */
 function opusAlone(transceiver: RTCRtpTransceiver): void {
@@ -175,7 +181,7 @@ export class VoicePeer {
   }
 
   #gather({ candidate, sdpMid, sdpMLineIndex, usernameFragment }: RTCIceCandidate): void {
-    if (this.#closed || candidate.length > longestCandidate) return;
+    if (this.#closed || candidate.length > longestCandidate || !isPassableCandidate(candidate)) return;
     this.#candidates.push({ candidate, sdpMid, sdpMLineIndex, usernameFragment });
     this.#gathering ??= setTimeout(() => {
       this.#gathering = null;

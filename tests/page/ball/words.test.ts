@@ -11,7 +11,7 @@ import { describe, expect, it } from 'vitest';
 import { cueCaption, eventCaption } from '../../../src/page/ball/sound/ball-captions';
 import { eventHaptics } from '../../../src/page/ball/sound/ball-haptics';
 import type { DisplayedMatch, DisplayedPlayer } from '../../../src/page/ball/view/displayed-match';
-import { displayName } from '../../../src/page/ball/view/displayed-match';
+import { displayName, markedName } from '../../../src/page/ball/view/displayed-match';
 import { lobbyButtons, seatOfButton } from '../../../src/page/ball/view/lobby-sheet';
 import { eventLine, waitingLine, waitingSentence } from '../../../src/page/ball/view/match-texts';
 import { labelScale } from '../../../src/page/ball/view/name-labels';
@@ -22,6 +22,7 @@ const person = (name: string, more: Partial<DisplayedPlayer> = {}): DisplayedPla
   bot: false,
   presence: 'here',
   me: false,
+  station: 0,
   ...more,
 });
 const fresh = ballRules.start(['a', 'b', 'c'], 1);
@@ -55,12 +56,12 @@ describe('the board', () => {
   });
 
   it('beside the player: says who is waited for, by name, and what to press', () => {
-    const all = [person('ann', { me: true }), person('Max', { bot: true }), person('cal')];
+    const all = [person('ann', { me: true }), person('Max', { bot: true, station: 1 }), person('cal', { station: 2 })];
     const told = (...ready: boolean[]) => waitingSentence(standing(all, withReady(...ready)));
     expect(waitingSentence(standing([person('ann', { me: true }), null, null]))).toBe('Waiting for a basket holder.');
     expect(told(false, true, true)).toBe('Waiting for you: press Ready.');
-    expect(told(false, false, false)).toBe('Waiting for you, Max (bot) and cal: press Ready.');
-    expect(told(true, false, false)).toBe('Waiting for Max (bot) and cal.');
+    expect(told(false, false, false)).toBe('Waiting for you, 2 · Max (bot) and 3 · cal: press Ready.');
+    expect(told(true, false, false)).toBe('Waiting for 2 · Max (bot) and 3 · cal.');
     expect(told(true, true, true)).toBe('The match starts in a moment.');
     const over = { ...withReady(false, true, true), phase: 'over' as const, end: 'balls' as const };
     expect(waitingSentence(standing(all, over))).toBe('Waiting for you: press Play again.');
@@ -79,7 +80,7 @@ describe('the board', () => {
 
   it('names the thrower of a ball that was caught, and counts by thrower', () => {
     const event: BallEvent = { type: 'caught', ball: 3, player: 1, at: 2, score: 1 };
-    expect(eventLine(event, [null, person('ben'), null])).toBe('In! Thrown by ben');
+    expect(eventLine(event, [null, person('ben', { station: 1 }), null])).toBe('In! Thrown by 2 · ben');
     const balls: BallPlace[] = [
       { on: 'basket', thrower: 0 },
       { on: 'basket', thrower: 1 },
@@ -88,6 +89,20 @@ describe('the board', () => {
     ];
     const state = { ...fresh, balls };
     expect([0, 1, 2].map((player) => catchesOf(state, player))).toEqual([1, 2, 0]);
+  });
+
+  it('tells players with equal names, default names and look-alikes apart by what they cannot choose', () => {
+    for (const names of [
+      ['Ann', 'Ann'],
+      ['Player 2', 'Player 2'],
+      ['2 · Ann', 'Ann'],
+      ['Ann', 'Αnn'],
+    ]) {
+      const players = names.map((name, station) => person(name, { station }));
+      expect(players.map((player) => markedName(player))).toEqual([`1 · ${names[0]}`, `2 · ${names[1]}`]);
+      const lines = [0, 1].map((player) => eventLine({ type: 'left', player }, players));
+      expect(lines).toEqual([`1 · ${names[0]} has left`, `2 · ${names[1]} has left`]);
+    }
   });
 
   it('a bot is marked, once', () => {
@@ -110,11 +125,12 @@ describe('the sheet before and after a match', () => {
 
 describe('captions', () => {
   const head = { position: vec3(-0.8, 1.6, 0), orientation: identity };
-  const hearing = { head, me: 0, people: [person('ann'), person('Max', { bot: true }), person('cal')], seconds: 90 };
+  const people = ['ann', 'Max', 'cal'].map((name, station) => person(name, { station, bot: station === 1 }));
+  const hearing = { head, me: 0, people, seconds: 90 };
 
   it('say who throws and from where, but not to the thrower', () => {
     const thrown = (player: number): BallEvent => ({ type: 'thrown', ball: 2, player, launch });
-    expect(eventCaption(thrown(1), vec3(0.8, 1.5, 0), hearing)).toBe('Max (bot) throws, to the right');
+    expect(eventCaption(thrown(1), vec3(0.8, 1.5, 0), hearing)).toBe('2 · Max (bot) throws, to the right');
     expect(eventCaption(thrown(0), vec3(-0.8, 1.5, 0), hearing)).toBe(null);
     expect(cueCaption({ type: 'thrown', side: 'right', ball: 2 })).toBe('You throw');
   });

@@ -383,6 +383,8 @@ describe('the buttons of the menu', () => {
   const ben: OtherPlayer = {
     seat: 1,
     name: 'Ben',
+    station: 1,
+    label: '2 · Ben',
     role: 'Right thrower',
     status: 'muted',
     silenced: false,

@@ -35,7 +35,7 @@ export function paper() {
   const nothing = () => undefined;
   const context = {
     ...{ font: '', fillStyle: '', textAlign: '', textBaseline: '', globalAlpha: 1, lineWidth: 1, strokeStyle: '' },
-    ...{ beginPath: nothing, roundRect: nothing, fill: nothing, stroke: nothing },
+    ...{ beginPath: nothing, roundRect: nothing, arc: nothing, fill: nothing, stroke: nothing },
     measureText: (text: string) => ({ width: text.length * 0.5 * size() }),
     fillText: (text: string, _: number, y: number, most?: number) => void texts.push({ text, size: size(), y, most }),
     fillRect: (...at: readonly number[]) => void boxes.push({ fill: context.fillStyle, at }),

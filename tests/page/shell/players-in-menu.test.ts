@@ -18,6 +18,8 @@ drawNowhere();
 const player = (seat: number, change: Partial<OtherPlayer> = {}): OtherPlayer => ({
   seat,
   name: `Player ${seat}`,
+  station: seat,
+  label: `${seat + 1} · Player ${seat}`,
   role: 'Right thrower',
   status: 'can be heard',
   silenced: false,

@@ -10,7 +10,7 @@ import { type JoinedRoom, type JoinRoomOptions, joinRoom } from '../../../src/ro
 import { attachRooms } from '../../../src/rooms/server/attach-rooms';
 import { ask } from '../../server/running-server';
 import { changed } from '../../threepoint/avatar/glb';
-import { countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
+import { countingClientPolicy, countingKind, countingRoomKind } from '../room/counting-game';
 import { until } from '../server/running-relay';
 import { stubFileFetch } from './file-fetch';
 import { servedRooms } from './served-rooms';
@@ -161,7 +161,7 @@ test.each<[what: string, file: () => ArrayBuffer, sentence: RegExp]>([
 );
 
 test('a page of a game acts in it and gets its events, and draws the others on their floors', async () => {
-  const { url } = await servedRooms({ games: new Map([[countingKind, () => countingPolicy(2)]]) });
+  const { url } = await servedRooms({ games: new Map([[countingKind, countingRoomKind(2)]]) });
   const joinGame = async (name: string) => {
     const body = solvedActor();
     const room = await joinRoom(url, { name, body, game: countingClientPolicy, storage: null });

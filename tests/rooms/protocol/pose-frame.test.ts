@@ -3,13 +3,7 @@ import { unknownFingers } from 'threepoint/core';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { maxSeats } from '../../../src/rooms/protocol/messages';
 import { encodePose } from '../../../src/rooms/protocol/pose-codec';
-import {
-  decodeFrame,
-  encodeFrame,
-  frameLength,
-  type SeatPose,
-  writeFrame,
-} from '../../../src/rooms/protocol/pose-frame';
+import { decodeFrame, encodeFrame, type SeatPose } from '../../../src/rooms/protocol/pose-frame';
 import { packetOf, pinnedPacketOf, pinnedSenders, senders } from './sent-bodies';
 
 const seed = 20261122;
@@ -48,16 +42,14 @@ describe('frames of poses', () => {
     );
   });
 
-  test('leave one seat out, and begin where they are told to', () => {
+  test('leave one seat out', () => {
     fc.assert(
-      fc.property(onSeats, fc.nat(maxSeats - 1), fc.nat(5), (choices, except, at) => {
+      fc.property(onSeats, fc.nat(maxSeats - 1), (choices, except) => {
         const poses = posesOf(choices);
         const others = poses.filter(({ seat }) => seat !== except);
-        expect(frameLength(poses, except)).toBe(others.reduce((sum, { bytes }) => sum + bytes.length, 0));
-        const target = new Uint8Array(at + frameLength(poses, except));
-        writeFrame(poses, except, target, at);
-        expect(target.subarray(0, at)).toEqual(new Uint8Array(at));
-        expect(plain(decodeFrame(target.subarray(at)))).toEqual(others.length > 0 ? plain(others) : undefined);
+        const frame = encodeFrame(poses, except);
+        expect(frame).toHaveLength(others.reduce((sum, { bytes }) => sum + bytes.length, 0));
+        expect(plain(decodeFrame(frame))).toEqual(others.length > 0 ? plain(others) : undefined);
       }),
       { seed },
     );

@@ -1,8 +1,10 @@
 import { identity, vec3 } from 'threepoint/math';
 import { createMatch } from 'threepoint-games';
+import * as v from 'valibot';
 import type { ClientPolicy } from '../../../src/rooms/client/client-policy';
 import { roomMessageReader } from '../../../src/rooms/protocol/messages';
 import type { HostedGame, MatchAction, MatchPolicy, MatchState } from '../../../src/rooms/room/match-policy';
+import type { RoomKind } from '../../../src/rooms/room/room-kind';
 
 interface CountingState extends MatchState {
   readonly total: number;
@@ -15,8 +17,6 @@ interface CountingState extends MatchState {
 type CountingEvent =
   | { readonly type: 'counted'; readonly player: number; readonly total: number }
   | { readonly type: 'refused'; readonly player: number; readonly reason: string };
-
-import * as v from 'valibot';
 
 /** Players count to a number together, each step the next. */
 export interface CountingGame extends HostedGame {
@@ -79,6 +79,15 @@ export const countingPolicy = (seats: number, goal = 3): MatchPolicy<CountingGam
   refusalInPause: (player) => ({ type: 'refused', player, reason: 'paused' }),
   refusalOf: (event) => (event.type === 'refused' ? event : null),
   arenaFromFloor: (seat) => ({ position: vec3(0, seat, 0), orientation: identity }),
+});
+
+const noTerms = v.strictObject({});
+
+/** The counting game for a server. */
+export const countingRoomKind = (seats: number): RoomKind => ({
+  openTerms: noTerms,
+  assignedTerms: noTerms,
+  createPolicy: () => countingPolicy(seats),
 });
 
 const counted = v.strictObject({ type: v.literal('counted'), player: v.number(), total: v.number() });

@@ -50,6 +50,40 @@ describe('seats', () => {
     expect(testRoom.join('ann again', {}, 'ann').seat).toBeNull();
   });
 
+  const anHour = (testRoom: ReturnType<typeof createTestRoom>) => {
+    for (let second = 0; second < 3600; second++) testRoom.tick(1);
+  };
+
+  test('a tab that is hidden for an hour and stays connected finds its seat, and the round over', () => {
+    const testRoom = createTestRoom();
+    testRoom.begin();
+    testRoom.say('ann', { type: 'away', away: true });
+    expect(presence(testRoom, 0)).toBe('away');
+    anHour(testRoom);
+    expect(testRoom.room.census).toMatchObject({ players: 3, spectators: 0 });
+    expect(testRoom.room.match.phase).toBe('over');
+    testRoom.say('ann', { type: 'away', away: false });
+    expect(presence(testRoom, 0)).toBe('here');
+    testRoom.ready();
+    testRoom.tick();
+    testRoom.tick();
+    expect(testRoom.room.match.phase).toBe('running');
+  });
+
+  test('a tab that the browser disconnects for an hour finds a free seat, or watches where there is none', () => {
+    for (const taken of [false, true]) {
+      const testRoom = createTestRoom();
+      testRoom.begin();
+      testRoom.room.disconnect('ann', testRoom.time);
+      anHour(testRoom);
+      if (taken) testRoom.join('dee', { name: 'dee' });
+      const { seat, epoch, match } = testRoom.join('ann again', { seat: 0 }, 'ann');
+      expect(seat).toBe(taken ? null : 0);
+      expect(epoch).toBe('one');
+      expect(match.phase).toBe('over');
+    }
+  });
+
   test('a ball in hand survives a hiccup of the connection and goes back to the rack after a longer one', () => {
     const hold = () => {
       const testRoom = createTestRoom();

@@ -72,6 +72,27 @@ describe('an avatar in the store', () => {
     expect((await fetch(`${relay.url}/api/avatars/${hash}?room=birch`)).status).toBe(401);
   });
 
+  test('of another player, worn by its hash, stays the owner’s: it is deleted when the owner wears another', async () => {
+    const [ann, ben] = [await seated('copies'), await seated('copies')];
+    const hash = hashOf(file());
+    const bytes = file();
+    const worn = hashOf(bytes);
+    await ann.store(bytes);
+    ann.say({ type: 'wear', avatar: worn });
+    ben.say({ type: 'wear', avatar: worn });
+    const avatarOnSeat = (seat: number) =>
+      ann.heard
+        .flatMap((message) => (message.type === 'seat' && message.seat === seat ? message.info?.[6] : []))
+        .at(-1);
+    await until('both wear it', () => [0, 1].every((seat) => avatarOnSeat(seat) === worn));
+    expect(await (await ben.ask('GET', '')).json()).toMatchObject({ yours: null });
+    await expect.poll(() => relay.relay.avatars.count).toBe(1);
+    relay.relay.avatars.sweep();
+    ann.say({ type: 'wear', avatar: hash });
+    await expect.poll(async () => (await ben.ask('GET', worn)).status, { timeout: 5000 }).toBe(404);
+    expect(relay.relay.avatars.count).toBe(0);
+  });
+
   test('goes with its owner’s seat, and with the room', { tags: ['full'] }, async () => {
     const [ann, ben] = [await seated('fir'), await seated('fir')];
     const bytes = file();

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { servedRooms } from '../peers/served-rooms';
-import { countingKind, countingPolicy } from '../room/counting-game';
+import { countingKind, countingPolicy, countingRoomKind } from '../room/counting-game';
 import { until } from './running-relay';
 import { guestOfTest } from './until-finished';
 
@@ -14,12 +14,15 @@ async function failingRooms() {
   const games = new Map([
     [
       countingKind,
-      () => ({
-        ...policy,
-        start: (rotation: number, onTick: Parameters<typeof policy.start>[1]) =>
-          policy.start(rotation, (...tick) => (failing.ticks ? fail() : onTick(...tick))),
-        readAction: (value: unknown) => ((value as { to?: unknown }).to === 13 ? fail() : policy.readAction(value)),
-      }),
+      {
+        ...countingRoomKind(4),
+        createPolicy: () => ({
+          ...policy,
+          start: (rotation: number, onTick: Parameters<typeof policy.start>[1]) =>
+            policy.start(rotation, (...tick) => (failing.ticks ? fail() : onTick(...tick))),
+          readAction: (value: unknown) => ((value as { to?: unknown }).to === 13 ? fail() : policy.readAction(value)),
+        }),
+      },
     ],
   ]);
   return { ...(await servedRooms({ games })), failing };

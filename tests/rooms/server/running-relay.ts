@@ -6,15 +6,16 @@ import { shippedRoomKinds } from '../../../server/room-kinds';
 import type { BallRoomMessage } from '../../../src/games/ball/ball-messages';
 import { serve } from '../../../src/http/web-server';
 import type { Visitor } from '../../../src/rooms/client/connection';
-import { createRoomPass } from '../../../src/rooms/client/room-pass';
+import { createRoomPass, type RoomPass } from '../../../src/rooms/client/room-pass';
 import { SocketConnection } from '../../../src/rooms/client/socket-connection';
-import { maxSeats, type RoomTerms } from '../../../src/rooms/protocol/messages';
+import { maxSeats } from '../../../src/rooms/protocol/messages';
 import { messageEvent, pageParser } from '../../../src/rooms/protocol/socket-parsers';
+import type { RoomKind } from '../../../src/rooms/room/room-kind';
 import { createRelay } from '../../../src/rooms/server/relay';
 import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
 import { testSecret } from '../../server/started-server';
 import { createPerson, visitor } from '../client/people';
-import { countingKind, countingPolicy } from '../room/counting-game';
+import { countingKind, countingRoomKind } from '../room/counting-game';
 import { poseOf } from '../room/posed-head';
 import { joinMessage } from '../room/test-room';
 
@@ -28,7 +29,10 @@ export async function startRelay(environment: Record<string, string> = {}, port 
     perAddress: configuration.connectionsPerAddress,
     behindProxy: configuration.trustProxy,
   });
-  const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(maxSeats)]]);
+  const kinds = new Map<string, RoomKind>([
+    ...shippedRoomKinds(environment),
+    [countingKind, countingRoomKind(maxSeats)],
+  ]);
   const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);
   const server = await serve(createRouter([relay.service], noPage), {
     host: '127.0.0.1',
@@ -66,10 +70,13 @@ export function arrive(
   url: string,
   room: string,
   name: string,
-  { terms, ...more }: Partial<Visitor> & { readonly terms?: RoomTerms } = {},
+  {
+    terms,
+    pass = createRoomPass(url, room, kindOf(room), undefined, terms),
+    ...more
+  }: Partial<Visitor> & { readonly terms?: object; readonly pass?: RoomPass } = {},
   now = seconds,
 ) {
-  const pass = createRoomPass(url, room, kindOf(room), undefined, terms);
   const connection = new SocketConnection(ballClientPolicy, {
     url,
     room,

@@ -56,7 +56,9 @@ function peer() {
 
 const happenings = async (connection: Connection) => {
   connection.tell('track', { track: microphone });
-  connection.tell('icecandidate', { candidate: { candidate: 'candidate:1', sdpMid: '0' } });
+  connection.tell('icecandidate', {
+    candidate: { candidate: 'candidate:1 1 udp 1 192.168.0.7 9 typ host', sdpMid: '0' },
+  });
   connection.tell('negotiationneeded', {});
   await vi.advanceTimersByTimeAsync(100);
 };

@@ -1,6 +1,6 @@
-import { type BallConnection, ballClientPolicy, createBallLoopbackHost } from 'threepoint-games/ball';
+import { type BallConnection, type BallTerms, ballClientPolicy, createBallLoopbackHost } from 'threepoint-games/ball';
 import { type AvatarExchange, fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms';
-import type { LocalClock, RoomTerms, Visitor } from 'threepoint-rooms/room';
+import type { LocalClock, Visitor } from 'threepoint-rooms/room';
 import type { SignedSeat } from 'threepoint-study';
 import { pageFolder } from 'threepoint-ui';
 
@@ -33,11 +33,10 @@ export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: Local
  */
 export async function connectionsFor(
   room: string | null,
-  { seed, clock, ...terms }: RoomTerms & { readonly seed: number; readonly clock: LocalClock },
+  { seed, clock, ...terms }: BallTerms & { readonly seed: number; readonly clock: LocalClock },
 ): Promise<BallPlace> {
   if (room === null) {
-    const { pausable: _, ...ball } = terms;
-    const host = createBallLoopbackHost({ seed, ball });
+    const host = createBallLoopbackHost({ seed, ball: terms });
     return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
   }
   const { RoomAddress, tabStorage } = await import('threepoint-rooms/socket');

@@ -9,6 +9,7 @@ import {
   menuMargin,
 } from '../../activity/activity-menu';
 import { hideLabel, muteLabel, type OtherPlayer } from '../panel/other-players';
+import { paintSeatMark } from '../seat-looks';
 
 /** The top of the first player [pixels]. */
 const playersTop = 124;
@@ -47,15 +48,17 @@ function playerButtons(player: OtherPlayer, row: number, actions: PlayersSheetAc
   return [mute, hide];
 }
 
-/** Name, role and voice of each player above their buttons. */
+/** Mark, name, role and voice of each player above their buttons. */
 function drawPlayers(context: CanvasRenderingContext2D, players: readonly OtherPlayer[]): void {
   const baseline = 'middle';
-  for (const [row, { name, role, status }] of players.entries()) {
+  for (const [row, { name, station, role, status }] of players.entries()) {
     const top = playersTop + row * playerHeight;
-    const maxWidth = fullWidth - 8;
-    drawText(context, name, [menuMargin + 4, top + 24], { font: '650 40px', color: vrColors.ink, baseline, maxWidth });
+    const left = menuMargin + 84;
+    const maxWidth = fullWidth - 88;
+    paintSeatMark(context, station, [menuMargin + 38, top + 46], 34);
+    drawText(context, name, [left, top + 24], { font: '650 40px', color: vrColors.ink, baseline, maxWidth });
     const about = [role, status].filter(Boolean).join(' · ');
-    drawText(context, about, [menuMargin + 4, top + 70], {
+    drawText(context, about, [left, top + 70], {
       font: '500 28px',
       color: vrColors.inkSoft,
       baseline,

@@ -224,7 +224,7 @@ function createSeats(actions: BallBarActions) {
       const followed = round?.seat === null ? otherPlayers(round, false) : null;
       cameras.show(
         followed
-          ? [camera('Free', null, following), ...followed.map(({ seat, name }) => camera(name, seat, following))]
+          ? [camera('Free', null, following), ...followed.map(({ seat, label }) => camera(label, seat, following))]
           : [],
       );
     },

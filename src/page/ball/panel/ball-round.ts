@@ -3,7 +3,7 @@ import { bannerText, connectionText } from 'threepoint-rooms';
 import type { BallFrame } from '../match/ball-frame';
 import type { BallPlay } from '../match/ball-play';
 import { roleTexts } from '../seat-looks';
-import { displayName } from '../view/displayed-match';
+import { displayName, markedName } from '../view/displayed-match';
 import { waitingSentence } from '../view/match-texts';
 import type { PersonVoice, VoicesState } from '../voices/voices-state';
 import type { SeatRow } from './other-players';
@@ -49,7 +49,8 @@ export interface BallRoundParts {
   readonly voices: { readonly state: VoicesState; readonly seats: { voiceOf(seat: number): PersonVoice } };
 }
 
-const roleOf = (state: BallState, player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
+const stationOf = (state: BallState, player: number): number => state.players[player]?.station ?? player;
+const roleOf = (state: BallState, player: number): string => roleTexts[stationOf(state, player)] ?? '';
 
 /** Summarises a frame of a match. */
 export function ballRound({ play, frame, players, acting, voices }: BallRoundParts): BallRound {
@@ -78,6 +79,8 @@ export function ballRound({ play, frame, players, acting, voices }: BallRoundPar
     people: players.map((player, seat) => ({
       seat,
       name: player && (player.me ? player.name : displayName(player)),
+      station: stationOf(state, seat),
+      label: player ? markedName(player) : '',
       role: roleOf(state, seat),
       free: player === null || (player.bot && !player.me),
       ...voices.seats.voiceOf(seat),

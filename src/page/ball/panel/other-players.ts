@@ -5,6 +5,10 @@ export interface SeatRow extends PersonVoice {
   readonly seat: number;
   /** null: no player is there. */
   readonly name: string | null;
+  /** The station, whose mark is shown next to the name. */
+  readonly station: number;
+  /** The name in a text, after the mark. */
+  readonly label: string;
   readonly role: string;
 }
 
@@ -12,6 +16,8 @@ export interface SeatRow extends PersonVoice {
 export interface OtherPlayer {
   readonly seat: number;
   readonly name: string;
+  readonly station: number;
+  readonly label: string;
   readonly role: string;
   /** The state of their voice in words; empty: nothing to show. */
   readonly status: string;
@@ -39,11 +45,11 @@ export const otherPlayers = (
   inVoices: boolean,
 ): readonly OtherPlayer[] =>
   people.flatMap((person): OtherPlayer[] => {
-    const { seat, name, role, voice, silenced, hidden } = person;
+    const { seat, name, station, label, role, voice, silenced, hidden } = person;
     if (name === null || seat === own) return [];
     const status = hidden ? 'hidden' : inVoices ? voiceText(person) : '';
     const muting = !inVoices || voice === 'none' ? 'none' : hidden ? 'off' : 'offered';
-    return [{ seat, name, role, status, silenced, hidden, muting }];
+    return [{ seat, name, station, label, role, status, silenced, hidden, muting }];
   });
 
 /** The labels of the buttons that mute and hide a player. */

@@ -1,4 +1,5 @@
 import { button, element, toggle } from 'threepoint-ui';
+import { seatLooks } from '../seat-looks';
 import { consentText, type VoicesState } from '../voices/voices-state';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type SeatRow } from './other-players';
 
@@ -22,22 +23,31 @@ export interface VoicesBarActions {
   hide(seat: number, on: boolean): void;
 }
 
+/** Returns the mark of a station in its colour. */
+function seatMark(station: number): HTMLElement {
+  const look = seatLooks[station];
+  const mark = element('span', { class: 'seat-mark' }, look?.mark ?? '');
+  // The page's policy allows no style in markup.
+  if (look) Object.assign(mark.style, { background: look.color, color: look.ink });
+  return mark;
+}
+
 /** Creates the list of the other players with the buttons that mute and hide them. */
 function createPeople(actions: VoicesBarActions) {
   const node = element('ul', { class: 'people', 'aria-label': 'Other players' });
   let shown = '';
   const row = (player: OtherPlayer) => {
-    const { seat, name, status, silenced, hidden, muting } = player;
+    const { seat, name, station, label, status, silenced, hidden, muting } = player;
     const mute = button(muteLabel(player), () => actions.silence(seat, !silenced), {
-      'aria-label': `${muteLabel(player)} ${name}`,
+      'aria-label': `${muteLabel(player)} ${label}`,
       disabled: muting === 'off',
     });
     mute.hidden = muting === 'none';
     const hide = button(hideLabel(player), () => actions.hide(seat, !hidden), {
-      'aria-label': `${hideLabel(player)} ${name}`,
+      'aria-label': `${hideLabel(player)} ${label}`,
     });
     const who = element('p', { class: 'who' }, element('span', {}, name), element('span', { class: 'hint' }, status));
-    return element('li', {}, who, element('div', { class: 'buttons' }, mute, hide));
+    return element('li', {}, seatMark(station), who, element('div', { class: 'buttons' }, mute, hide));
   };
   return {
     node,

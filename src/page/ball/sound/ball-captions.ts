@@ -2,7 +2,7 @@ import type { Pose, Vec3 } from 'threepoint/math';
 import type { BallCue, BallEvent, Refusal } from 'threepoint-games/ball';
 import { directionText } from '../../scene/direction-text';
 import type { DisplayedPlayer } from '../view/displayed-match';
-import { displayName } from '../view/displayed-match';
+import { markedName } from '../view/displayed-match';
 
 /** The listener, and the positions of the other players. */
 export interface Listener {
@@ -17,7 +17,7 @@ export interface Listener {
 
 const playerName = ({ people, me }: Listener, player: number): string => {
   const person = people[player];
-  return player === me ? 'You' : person ? displayName(person) : 'A player';
+  return player === me ? 'You' : person ? markedName(person) : 'A player';
 };
 
 const refusals: Partial<Readonly<Record<Refusal, string>>> = {

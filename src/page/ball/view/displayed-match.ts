@@ -1,8 +1,9 @@
 import type { BallState } from 'threepoint-games/ball';
 import type { PlayerFrame } from '../match/ball-frame';
+import { seatLooks } from '../seat-looks';
 
 /** A player on a seat, as boards and labels write of them. */
-export type DisplayedPlayer = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me'>;
+export type DisplayedPlayer = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me' | 'station'>;
 
 /** A match as boards show it: the state of this frame and the person on each seat. */
 export interface DisplayedMatch {
@@ -21,6 +22,13 @@ export interface DisplayedMatch {
 /** The displayed name of the user if none was given. */
 export const ownName = 'You';
 
-/** Returns a name that marks bots as such. */
+/** Returns a name that marks bots as such, to be shown next to the mark of the player's station. */
 export const displayName = ({ name, bot }: Pick<DisplayedPlayer, 'name' | 'bot'>): string =>
   bot && !/\bbot\b/i.test(name) ? `${name} (bot)` : name;
+
+/**
+ * Returns a name in a text, after the mark of the player's station. Players may choose equal names, or names that look
+ * alike, but not the mark.
+ */
+export const markedName = (player: Pick<DisplayedPlayer, 'name' | 'bot' | 'station'>): string =>
+  `${seatLooks[player.station]?.mark ?? ''} · ${displayName(player)}`;

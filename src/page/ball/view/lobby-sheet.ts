@@ -4,7 +4,7 @@ import { drawText, type TextStyle, textWidth } from 'threepoint-ui/vr';
 import { ink, paintCard } from '../../scene/boards/board-style';
 import { createSheet, paintButton, type SheetButton } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
-import { roleTexts, seatLooks } from '../seat-looks';
+import { paintSeatMark, roleTexts } from '../seat-looks';
 import { type DisplayedMatch, displayName, ownName } from './displayed-match';
 import { waitingSentence } from './match-texts';
 
@@ -92,20 +92,14 @@ function paintRow(context: CanvasRenderingContext2D, match: DisplayedMatch, play
   const { state, players, me } = match;
   const { width } = lobbySize;
   const station = state.players[player]?.station ?? 0;
-  const look = seatLooks[station];
   const person = players[player] ?? null;
   context.fillStyle = player === me ? 'rgba(255, 200, 97, 0.13)' : 'rgba(200, 216, 236, 0.07)';
   context.beginPath();
   context.roundRect(48, top, width - 96, rowHeight - 8, 24);
   context.fill();
   const middle = top + (rowHeight - 8) / 2;
-  context.fillStyle = look?.color ?? ink.soft;
-  context.beginPath();
-  context.arc(108, middle, 34, 0, 2 * Math.PI);
-  context.fill();
+  paintSeatMark(context, station, [108, middle], 34);
   const baseline = 'middle';
-  const mark = { font: '800 40px', color: look?.ink ?? ink.text, align: 'center', baseline } as const;
-  drawText(context, look?.mark ?? '', [108, middle + 3], mark);
   const name = person
     ? person.me && person.name !== ownName
       ? `${displayName(person)} · you`

@@ -1,10 +1,10 @@
 import { type BallEvent, rotationForRound } from 'threepoint-games/ball';
-import { type DisplayedMatch, type DisplayedPlayer, displayName } from './displayed-match';
+import { type DisplayedMatch, type DisplayedPlayer, markedName } from './displayed-match';
 
 /** Returns the line of the board for an event; null: none. */
 export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | null)[]): string | null {
   const player = 'player' in event ? people[event.player] : null;
-  const name = player?.me ? 'you' : (player?.name ?? 'A player');
+  const name = player?.me ? 'you' : player ? markedName(player) : 'A player';
   switch (event.type) {
     case 'started':
       return 'Go!';
@@ -48,7 +48,7 @@ export function waitingSentence(match: DisplayedMatch): string | null {
   const canPlay = rotationForRound(taken, rotate && state.phase === 'over') !== null;
   if (!canPlay) return `${waitingLine({ ...match, state: { ...state, phase: 'ready' } })}.`;
   const idle = there.filter((player) => !state.players[player]?.ready);
-  const names = idle.flatMap((player) => (player !== me && players[player] ? [displayName(players[player])] : []));
+  const names = idle.flatMap((player) => (player !== me && players[player] ? [markedName(players[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
   if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
   return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match starts in a moment.';

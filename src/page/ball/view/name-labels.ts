@@ -4,13 +4,12 @@ import { drawText, textWidth } from 'threepoint-ui/vr';
 import { ink } from '../../scene/boards/board-style';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
-import { roleTexts, seatLooks } from '../seat-looks';
+import { paintSeatMark, roleTexts } from '../seat-looks';
 import type { DisplayedPlayer } from './displayed-match';
 import { displayName } from './displayed-match';
 
 export interface Label {
   readonly person: DisplayedPlayer;
-  readonly station: number;
   /** The position of the eyes. */
   readonly head: Vec3;
   readonly opacity: number;
@@ -87,11 +86,10 @@ function labelWidth(context: CanvasRenderingContext2D, { person, voice }: Pick<L
 const voiceWidth = 60;
 
 /** Draws a label; the middle of its mark, from the left [pixels]. */
-function paint(context: CanvasRenderingContext2D, { person, station, voice }: Label): number {
+function paint(context: CanvasRenderingContext2D, { person, voice }: Label): number {
   const { width, height } = size;
-  const look = seatLooks[station];
   const name = displayName(person);
-  const under = person.presence === 'here' ? (roleTexts[station] ?? '') : 'Away';
+  const under = person.presence === 'here' ? (roleTexts[person.station] ?? '') : 'Away';
   const wide = labelWidth(context, { person, voice });
   const text = wide - 134 - (voice === 'none' ? 0 : voiceWidth);
   const left = (width - wide) / 2;
@@ -99,13 +97,8 @@ function paint(context: CanvasRenderingContext2D, { person, station, voice }: La
   context.beginPath();
   context.roundRect(left, 8, wide, height - 16, 40);
   context.fill();
-  context.fillStyle = look?.color ?? ink.soft;
-  context.beginPath();
-  context.arc(left + 60, height / 2, 36, 0, 2 * Math.PI);
-  context.fill();
+  paintSeatMark(context, person.station, [left + 60, height / 2], 36);
   const baseline = 'middle';
-  const mark = { font: '800 42px', color: look?.ink ?? ink.text, align: 'center', baseline } as const;
-  drawText(context, look?.mark ?? '', [left + 60, height / 2 + 3], mark);
   drawText(context, name, [left + 110, height / 2 - 24], {
     font: '700 54px',
     color: ink.text,
@@ -161,7 +154,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
       sprite.visible = label !== null && label.opacity > 0;
       ring.visible = sprite.visible && label !== null && label.level > 0;
       if (!label) return;
-      const key = JSON.stringify([label.person, label.station, label.voice]);
+      const key = JSON.stringify([label.person, label.voice]);
       if (key !== shown) {
         shown = key;
         draw((context) => {

@@ -1,8 +1,10 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
+import { isObject } from 'threepoint/core';
 import { type Call, HttpError } from 'threepoint-http';
 import * as v from 'valibot';
-import { maxSeats, type RoomTerms, roomTerms } from '../../protocol/messages';
+import { maxSeats } from '../../protocol/messages';
+import type { RoomKinds } from '../../room/room-kind';
 
 /** The seat and name that a study assigns to a participant; seat null: a spectator. */
 export interface AssignedPlace {
@@ -16,10 +18,17 @@ export interface PassClaims {
   readonly room: string;
   /** The name of the game. */
   readonly kind: string;
-  /** The terms of the room, if this person is the first in it. */
-  readonly terms: RoomTerms;
+  /** The terms of the room, if this person is the first in it. Not checked: see `allowedTerms`. */
+  readonly terms: object;
   /** The assigned place; null: a room with free choice of seats. */
   readonly assigned: AssignedPlace | null;
+}
+
+/** Returns the terms of a pass; null: its game does not allow them, or the server does not have the game. */
+export function allowedTerms(kinds: RoomKinds, { kind, terms, assigned }: Omit<PassClaims, 'identity'>): object | null {
+  const game = kinds.get(kind);
+  const checked = game && v.safeParse(assigned ? game.assignedTerms : game.openTerms, terms);
+  return checked?.success ? checked.output : null;
 }
 
 /** Names of rooms: short, valid in an address and easy to spell out. */
@@ -53,7 +62,7 @@ export class RoomTokens {
   }
 
   /** Returns a token for a new person. */
-  issue(room: string, kind: string, terms: RoomTerms = {}): Promise<string> {
+  issue(room: string, kind: string, terms: object = {}): Promise<string> {
     return this.sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms, assigned: null });
   }
 
@@ -88,14 +97,13 @@ export class RoomTokens {
         currentDate: new Date(this.#now() * 1000),
         clockTolerance: tolerance,
       });
-      const { sub: identity, room, kind } = payload;
-      const terms = v.safeParse(roomTerms, payload.terms ?? {});
+      const { sub: identity, room, kind, terms = {} } = payload;
       const assigned = v.safeParse(assignedPlace, payload.assigned ?? null);
-      if (!identity || typeof room !== 'string' || typeof kind !== 'string' || !terms.success || !assigned.success)
+      if (!identity || typeof room !== 'string' || typeof kind !== 'string' || !isObject(terms) || !assigned.success)
         return null;
       // The name shows whether a room has assigned places.
       const named = assigned.output ? assignedRoomName : roomName;
-      return named.test(room) ? { identity, room, kind, terms: terms.output, assigned: assigned.output } : null;
+      return named.test(room) ? { identity, room, kind, terms, assigned: assigned.output } : null;
     } catch (error) {
       if (error instanceof errors.JOSEError) return null;
       throw error;

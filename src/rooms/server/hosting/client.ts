@@ -1,7 +1,6 @@
-import type { Socket as NetSocket } from 'node:net';
 import type { Socket } from 'socket.io';
 import type { DisconnectReason, RoomMessage } from '../../protocol/messages';
-import { frameLength, writeFrame } from '../../protocol/pose-frame';
+import { encodeFrame } from '../../protocol/pose-frame';
 import { messageEvent } from '../../protocol/socket-parsers';
 import type { HostedGame } from '../../room/match-policy';
 import type { FreshPose } from '../../room/room-host';
@@ -9,15 +8,14 @@ import { TokenBucket } from '../../room/token-bucket';
 import type { PassClaims } from '../access/room-tokens';
 import type { RelayConfiguration } from '../settings/relay-configuration';
 import type { RelayCounts } from '../settings/relay-metrics';
-import { closeConnection } from '../sockets/relay-transport';
-import { maxQueuedBytes } from '../sockets/slow-readers';
+import { closeConnection, type RelayTransport } from '../sockets/relay-transport';
 
 /** A connection with a pass, before and after it joins its room. */
 export interface Client {
   readonly id: string;
   readonly socket: Socket;
-  /** The TCP socket of the connection. */
-  readonly wire: NetSocket;
+  /** Sends a frame of poses. Returns whether it was sent: a busy connection misses it. */
+  readonly sendFrame: (frame: Uint8Array) => boolean;
   readonly pass: PassClaims;
   /** Time of the connection [s]. */
   readonly connectedAt: number;
@@ -40,12 +38,13 @@ const signalsAtOnce = 80;
 /** Creates the client of a socket whose pass is verified. `now`: seconds, monotonic. */
 export const createClient = (
   socket: Socket,
+  sendFrame: RelayTransport['sendFrame'],
   { posesPerSecond, eventsPerSecond }: RelayConfiguration,
   now: number,
 ): Client => ({
   id: socket.id,
   socket,
-  wire: socket.conn.request.socket,
+  sendFrame: (frame) => sendFrame(socket, frame),
   pass: socket.data.pass,
   connectedAt: now,
   poses: new TokenBucket(posesPerSecond),
@@ -69,43 +68,24 @@ export function disconnect(client: Client, reason: DisconnectReason): void {
   closeConnection(client.socket);
 }
 
-/** Returns the packets of all seats but one as an unmasked binary WebSocket frame; null: there are none. */
-function poseMessage(poses: readonly FreshPose[], except: number | null): Buffer | null {
-  const length = frameLength(poses, except);
-  if (length === 0) return null;
-  const head = length < 126 ? 2 : 4;
-  const message = Buffer.allocUnsafe(head + length);
-  message[0] = 0x82;
-  message[1] = Math.min(length, 126);
-  if (head === 4) message.writeUInt16BE(length, 2);
-  writeFrame(poses, except, message, head);
-  return message;
-}
-
 /** Returns the seat of a client's own poses among these; null: there are none of it. */
 function seatAmong(poses: readonly FreshPose[], client: string): number | null {
   for (const { from, seat } of poses) if (from === client) return seat;
   return null;
 }
 
-/**
- * Sends poses to all clients, except each client's own; a client whose connection is busy misses them. Writes directly
- * to the TCP socket, because the queues of socket.io, Engine.IO and ws cost as much as the system call. Nothing is
- * compressed.
- */
+/** Sends poses to all clients, except each client's own; a client whose connection is busy misses them. */
 export function sendPoses(to: Iterable<Client>, poses: readonly FreshPose[], counts: RelayCounts): void {
-  let shared: Buffer | null = null;
+  let shared: Uint8Array | null = null;
   for (const client of to) {
     if (client.ended) continue;
     const own = seatAmong(poses, client.id);
-    if (own === null) shared ??= poseMessage(poses, null);
-    const message = own === null ? shared : poseMessage(poses, own);
-    if (!message) continue;
-    const { wire, socket } = client;
-    if (wire.writable && wire.writableLength <= maxQueuedBytes && socket.conn.readyState === 'open') {
-      wire.write(message);
+    if (own === null) shared ??= encodeFrame(poses, null);
+    const frame = own === null ? shared : encodeFrame(poses, own);
+    if (!frame || frame.length === 0) continue;
+    if (client.sendFrame(frame)) {
       counts.framesOut += 1;
-      counts.bytesOut += message.length;
+      counts.bytesOut += frame.length;
     } else counts.framesDropped += 1;
   }
 }

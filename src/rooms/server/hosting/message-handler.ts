@@ -71,8 +71,8 @@ export class MessageHandler {
     hosted?.room.disconnect(id, this.#context.now());
   }
 
-  /** Disconnects a client that harms others. `because`: the label of the metric. */
-  kick(client: Client, reason: 'misbehaved' | 'slow', because: string): void {
+  /** Disconnects a client that harms others or has no place. `because`: the label of the metric. */
+  kick(client: Client, reason: 'misbehaved' | 'slow' | 'full', because: string): void {
     if (client.ended) return;
     this.#context.metrics.kicked(because);
     this.#context.log.warn({ room: client.pass.room, client: client.id, because }, 'kicked');
@@ -87,7 +87,7 @@ export class MessageHandler {
     }
     const hosted = this.#rooms.getOrCreate(client.pass);
     if (!hosted) {
-      this.kick(client, 'misbehaved', 'rooms-full');
+      this.kick(client, 'full', 'rooms-full');
       return;
     }
     client.joined = true;

@@ -17,12 +17,15 @@ export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly room: string;
   readonly kind: string;
   readonly phase: HostedGame['state']['phase'];
+  /** Whether its first person has set terms; matchmaking leads to other rooms. */
+  readonly ownTerms: boolean;
 }
 
 export interface RegisteredRoom extends ScheduledRoom {
   readonly room: Room<HostedGame>;
   /** Whether the lobby lists the room. */
   readonly listed: boolean;
+  readonly ownTerms: boolean;
   /** Clients that have joined, by id. */
   readonly clients: Map<string, Client>;
   emptySince: number | null;
@@ -56,10 +59,10 @@ export class RoomRegistry {
   }
 
   get listings(): readonly RoomListing[] {
-    return [...this.#rooms].flatMap(([room, { room: hosted, listed }]): readonly RoomListing[] => {
+    return [...this.#rooms].flatMap(([room, { room: hosted, listed, ownTerms }]): readonly RoomListing[] => {
       if (!listed) return [];
       const { empty: _empty, ...census } = hosted.census;
-      return [{ room, kind: hosted.kind, phase: hosted.match.phase, ...census }];
+      return [{ room, kind: hosted.kind, phase: hosted.match.phase, ownTerms, ...census }];
     });
   }
 
@@ -92,10 +95,7 @@ export class RoomRegistry {
     this.#activate(hosted);
   }
 
-  /**
-   * Returns the room of a pass, and creates it if needed; null: the server has too many rooms, or does not have the
-   * game.
-   */
+  /** Returns the room of a pass, and creates it if needed; null: the server has too many rooms. */
   getOrCreate(pass: PassClaims): RegisteredRoom | null {
     if (!this.#rooms.has(pass.room) && !this.#create(pass)) return null;
     return this.wake(pass.room) ?? null;
@@ -135,7 +135,7 @@ export class RoomRegistry {
   #create({ room: id, kind, terms, assigned }: PassClaims): boolean {
     const { configuration, kinds, log, metrics } = this.#context;
     if (this.#rooms.size >= configuration.maxRooms) return false;
-    const policy = kinds.get(kind)?.(terms, assigned !== null);
+    const policy = kinds.get(kind)?.createPolicy(terms, assigned !== null);
     if (!policy) return false;
     this.#created += 1;
     const clients = new Map<string, Client>();
@@ -146,8 +146,9 @@ export class RoomRegistry {
     const room = new Room(
       policy,
       {
-        ...{ id, epoch: `${this.#epoch}${this.#created}`, pausable: terms.pausable ?? false },
-        assigned: assigned !== null,
+        ...{ id, epoch: `${this.#epoch}${this.#created}`, assigned: assigned !== null },
+        // A clock that anyone may pause would hold up strangers.
+        pausable: assigned !== null,
         // Studies do not ask for consent to voices.
         voices: configuration.voices !== null && assigned === null,
       },
@@ -174,7 +175,9 @@ export class RoomRegistry {
     );
     log.info({ room: id, kind, terms }, 'room opened');
     const tick = guarded((now: number) => room.tick(now), endRoom);
-    this.#rooms.set(id, { room, listed: assigned === null, clients, sentAt: 0, emptySince: null, tickAt: 0, tick });
+    const listed = assigned === null;
+    const ownTerms = Object.keys(terms).length > 0;
+    this.#rooms.set(id, { room, listed, ownTerms, clients, sentAt: 0, emptySince: null, tickAt: 0, tick });
     return true;
   }
 

@@ -2,6 +2,7 @@ import { RateLimiterMemory } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
 import { consumePoint, guarded } from 'threepoint-http';
 import { messageEvent } from '../../protocol/socket-parsers';
+import { allowedTerms } from '../access/room-tokens';
 import type { RelayContext } from '../relay-context';
 import { closeConnection, type RelayTransport, type WireFault } from '../sockets/relay-transport';
 import { type Client, createClient, disconnect } from './client';
@@ -21,7 +22,8 @@ function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<S
   async function refusalOf(socket: Socket): Promise<'refused' | 'too-often' | null> {
     const { token } = socket.handshake.auth as { token?: unknown };
     const pass = typeof token === 'string' ? await tokens.verify(token) : null;
-    if (!pass || !kinds.has(pass.kind)) {
+    const terms = pass && allowedTerms(kinds, pass);
+    if (!terms) {
       metrics.kicked('token');
       return 'refused';
     }
@@ -29,7 +31,7 @@ function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<S
       metrics.kicked('connects');
       return 'too-often';
     }
-    socket.data.pass = pass;
+    socket.data.pass = { ...pass, terms };
     return null;
   }
   return (socket, next) => {
@@ -48,7 +50,7 @@ function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<S
  * with the reason 'stopping', and closes rooms and transport.
  */
 export function hostSockets(
-  { io, listen, close }: RelayTransport,
+  { io, listen, sendFrame, close }: RelayTransport,
   rooms: RoomRegistry,
   context: RelayContext,
 ): () => Promise<void> {
@@ -58,7 +60,7 @@ export function hostSockets(
 
   io.use(createGate(context));
   io.on('connection', (socket) => {
-    const client = createClient(socket, configuration, now());
+    const client = createClient(socket, sendFrame, configuration, now());
     clients.add(client);
     const endClient = (error: unknown): void => {
       log.error({ error: String(error), room: client.pass.room, client: client.id }, 'a message failed');

@@ -1,7 +1,6 @@
 import { createAdapter } from '@socket.io/redis-adapter';
 import type { Redis } from 'ioredis';
-import type { Server, Socket } from 'socket.io';
-import { Adapter } from 'socket.io-adapter';
+import type { Namespace, Server, Socket } from 'socket.io';
 import type { RoomRegistry } from '../hosting/room-registry';
 import type { Lobby } from './lobby';
 
@@ -88,9 +87,10 @@ export class LobbyPublisher {
 /** Shares only the lobby's namespace over Redis; poses stay in the process of their room. */
 function shareNamespace(io: Server, { publisher, subscriber }: FleetChannel): void {
   const shared = createAdapter(publisher, subscriber);
+  const Local = io.adapter() as new (namespace: Namespace) => unknown;
   // socket.io calls it with `new` and uses what it returns.
-  const adapterFor = function adapterFor(namespace: ConstructorParameters<typeof Adapter>[0]) {
-    return namespace.name === lobbyNamespace ? shared(namespace) : new Adapter(namespace);
+  const adapterFor = function adapterFor(namespace: Namespace) {
+    return namespace.name === lobbyNamespace ? shared(namespace) : new Local(namespace);
   };
   io.adapter(adapterFor as never);
 }

@@ -12,3 +12,12 @@ export const splitList = (text = ''): readonly string[] =>
     .split(',')
     .map((part) => part.trim())
     .filter(Boolean);
+
+/** Returns the number in a variable, or `fallback` if it is not set. Throws a ConfigurationError outside [min, max]. */
+export function numberFrom(environment: Environment, name: string, fallback: number, min: number, max: number): number {
+  const text = environment[name];
+  if (text === undefined || text === '') return fallback;
+  const value = Number(text);
+  if (!(value >= min && value <= max)) throw invalidVariable(name, `be a number from ${min} to ${max}`, text);
+  return value;
+}

@@ -1,5 +1,5 @@
 import { ConfigurationError, secretWeakness } from 'threepoint-http';
-import { type Environment, invalidVariable, splitList } from './environment';
+import { type Environment, invalidVariable, numberFrom, splitList } from './environment';
 import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 
 /** The settings of the relay, from the environment. */
@@ -19,8 +19,6 @@ export interface RelayConfiguration {
   /** The most open connections of one address. */
   readonly connectionsPerAddress: number;
   readonly maxRooms: number;
-  /** Length of a round of the ball game [s], in rooms without terms. */
-  readonly ballSeconds: number;
   /** The most megabytes of all stored avatars; 0: no avatar is accepted. */
   readonly avatarMegabytes: number;
   /** A folder on another server with avatars by hash, with a trailing slash; null: none. */
@@ -53,7 +51,6 @@ export const relayEnvironment = `Environment of the relay:
   THREEPOINT_JOINS_PER_MINUTE   most new people of each address; default 5, from this machine 120
   THREEPOINT_CONNECTIONS_PER_ADDRESS  most open connections of each address; default 256
   THREEPOINT_MOST_ROOMS         most rooms of this process; default 500
-  THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_AVATAR_MEGABYTES   memory for players' avatars; default 256, 0: none
   THREEPOINT_AVATARS_FROM       https:// address of a folder with further avatars, each named by its SHA-256 as base64url
   THREEPOINT_FILES_FROM         https:// origins, separated by commas, from which the page may read avatars, recordings and motion capture
@@ -64,14 +61,6 @@ ${voiceEnvironment}
   THREEPOINT_ADMIN_TOKEN        token that permits ending rooms; 32 characters or more
   THREEPOINT_HOST               address to listen on behind a proxy, for example 0.0.0.0; default 127.0.0.1
   THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
-
-function numberFrom(environment: Environment, name: string, fallback: number, min: number, max: number): number {
-  const text = environment[name];
-  if (text === undefined || text === '') return fallback;
-  const value = Number(text);
-  if (!(value >= min && value <= max)) throw invalidVariable(name, `be a number from ${min} to ${max}`, text);
-  return value;
-}
 
 function originsFrom(environment: Environment, name: string, scheme: RegExp): readonly string[] {
   return splitList(environment[name]).map((part) => {
@@ -140,7 +129,6 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     // Thirty people behind one address: each has six connections for the page and two WebSockets.
     connectionsPerAddress: whole('THREEPOINT_CONNECTIONS_PER_ADDRESS', 256, 8, 1_000_000),
     maxRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
-    ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     avatarMegabytes: whole('THREEPOINT_AVATAR_MEGABYTES', 256, 0, 65_536),
     avatarsFrom: folderFrom(environment.THREEPOINT_AVATARS_FROM),
     filesFrom: originsFrom(environment, 'THREEPOINT_FILES_FROM', /^https:$/),

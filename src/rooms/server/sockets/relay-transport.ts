@@ -1,15 +1,14 @@
-import type { EventEmitter } from 'node:events';
-import type { IncomingMessage } from 'node:http';
+import { createServer, type IncomingMessage } from 'node:http';
 import type { Socket as NetSocket } from 'node:net';
 import type { Duplex } from 'node:stream';
-import { Server as Engine } from 'engine.io';
 import { Server, type Socket } from 'socket.io';
 import { guarded, HttpError, handshakeTimeoutMs, lastResponse, parseRequestTarget, sendError } from 'threepoint-http';
+import { WebSocket, WebSocketServer } from 'ws';
 import { maxMessageBytes } from '../../protocol/messages';
 import { relayParser } from '../../protocol/socket-parsers';
 import { TokenBucket } from '../../room/token-bucket';
 import type { RelayContext } from '../relay-context';
-import { SlowReaders } from './slow-readers';
+import { maxQueuedBytes, SlowReaders } from './slow-readers';
 import { createUpgradeAdmission } from './upgrade-admission';
 
 /** The path of the relay's WebSockets. */
@@ -18,7 +17,7 @@ export const relayPath = '/relay';
 /** Why the transport ends a connection: it sends too many frames, or reads too slowly. */
 export type WireFault = 'flood' | 'slow';
 
-/** Receives what a connection sends below socket.io. */
+/** Receives what a connection sends besides socket.io's packets. */
 export interface WireListener {
   onPose(bytes: Uint8Array): void;
   /** Called once before the transport ends the connection; further messages are dropped. */
@@ -49,45 +48,30 @@ export function closeConnection(socket: Socket): void {
   destroySoon(raw);
 }
 
-/**
- * Passes a connection's binary messages to `listener`, and all others to Engine.IO. `take` counts a frame and returns
- * whether to handle it.
- */
-function routeBinaryMessages(
-  conn: Socket['conn'],
-  take: () => boolean,
-  listener: (bytes: Uint8Array) => void,
-  onFault: (error: unknown) => void,
-): void {
-  // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
-  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
-  for (const engines of websocket.listeners('message')) {
-    websocket.off('message', engines as () => void);
-    const pass = (received: Buffer, isBinary: boolean): void => {
-      if (!take()) return;
-      if (isBinary) listener(received);
-      else engines.call(websocket, received, isBinary);
-    };
-    websocket.on('message', guarded(pass, onFault));
-  }
-  websocket.on('ping', take);
-  websocket.on('pong', take);
-}
+/** Returns a WebSocket server for Engine.IO that passes each new connection to `onOpen` first. */
+const webSocketServer = (onOpen: (websocket: WebSocket, request: IncomingMessage) => void) =>
+  class extends WebSocketServer {
+    override handleUpgrade(...[request, socket, head, done]: Parameters<WebSocketServer['handleUpgrade']>): void {
+      super.handleUpgrade(request, socket, head, (websocket, upgraded) => {
+        onOpen(websocket, request);
+        done(websocket, upgraded);
+      });
+    }
+  };
 
 /**
- * Returns a function that counts a frame of one connection and returns whether to handle it. Once the limit is exceeded
- * no further frame is handled, and `onFlood` is called once. `now`: seconds, monotonic.
+ * Counts the frames of a connection. Beyond the limit it is read no further, and `onFlood` is called once. `now`:
+ * seconds, monotonic.
  */
-function createFloodLimiter(now: () => number, onFlood: () => void): () => boolean {
+function limitFrames(websocket: WebSocket, now: () => number, onFlood: () => void): void {
   const bucket = new TokenBucket(framesPerSecond);
-  let isFlooded = false;
-  return () => {
-    if (isFlooded || bucket.take(now())) return !isFlooded;
-    isFlooded = true;
+  const count = () => {
+    if (websocket.isPaused || bucket.take(now())) return;
+    websocket.pause();
     // Earlier packets are still on their way through socket.io, which takes a tick for each.
     setImmediate(onFlood);
-    return false;
   };
+  websocket.on('message', count).on('ping', count).on('pong', count);
 }
 
 export type RelayTransport = ReturnType<typeof createRelayTransport>;
@@ -96,17 +80,22 @@ export type RelayTransport = ReturnType<typeof createRelayTransport>;
 export function createRelayTransport(context: RelayContext) {
   const { log, metrics, now } = context;
   const admit = createUpgradeAdmission(context);
-  const engine = new Engine({
+  const io = new Server(createServer(), {
+    path: relayPath,
+    serveClient: false,
+    connectTimeout: handshakeTimeoutMs,
+    parser: relayParser,
     transports: ['websocket'],
     allowUpgrades: false,
     perMessageDeflate: false,
     maxHttpBufferSize: maxMessageBytes,
+    wsEngine: webSocketServer((websocket, request) => void websockets.set(request, websocket)),
     // A page that hangs, or reads nothing, is detected within seven seconds.
     pingInterval: 3000,
     pingTimeout: 4000,
   });
-  const io = new Server({ serveClient: false, connectTimeout: handshakeTimeoutMs, parser: relayParser });
-  io.bind(engine);
+  const { engine } = io;
+  const websockets = new WeakMap<IncomingMessage, WebSocket>();
   const listeners = new WeakMap<Socket['conn'], WireListener>();
   function end(conn: Socket['conn'], fault: WireFault): void {
     const listener = listeners.get(conn);
@@ -123,16 +112,19 @@ export function createRelayTransport(context: RelayContext) {
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
     slowReaders.watch(conn);
-    const take = createFloodLimiter(now, () => end(conn, 'flood'));
-    const onBinaryMessage = (bytes: Uint8Array): void => {
+    const websocket = websockets.get(conn.request);
+    if (websocket) limitFrames(websocket, now, () => end(conn, 'flood'));
+    const onMessage = (message: Buffer, isBinary: boolean): void => {
+      if (!isBinary) return;
       const listener = listeners.get(conn);
-      if (listener) listener.onPose(bytes);
+      if (listener) listener.onPose(message);
       else conn.close();
     };
-    routeBinaryMessages(conn, take, onBinaryMessage, (error) => {
+    const onFault = (error: unknown): void => {
       log.error({ error: String(error) }, 'a frame failed');
       conn.close();
-    });
+    };
+    websocket?.on('message', guarded(onMessage, onFault));
     conn.once('close', () => destroySoon(raw));
   });
 
@@ -143,11 +135,20 @@ export function createRelayTransport(context: RelayContext) {
       return engine.clientsCount;
     },
     /**
-     * Registers the listener for a connection's poses. Binary messages are poses and bypass Engine.IO and socket.io,
-     * which cost more for a message than a room does for its pose. A binary message on a connection without a listener
-     * closes it.
+     * Registers the listener for a connection's poses. Binary messages are poses, which socket.io's decoder ignores. A
+     * binary message on a connection without a listener closes it.
      */
     listen: (socket: Socket, listener: WireListener): void => void listeners.set(socket.conn, listener),
+    /**
+     * Sends a frame of poses past the queues of socket.io and Engine.IO, which cost as much as the system call. Returns
+     * whether it was sent: a connection on which bytes wait misses it.
+     */
+    sendFrame({ conn }: Socket, frame: Uint8Array): boolean {
+      const websocket = websockets.get(conn.request);
+      if (websocket?.readyState !== WebSocket.OPEN || websocket.bufferedAmount > maxQueuedBytes) return false;
+      websocket.send(frame);
+      return true;
+    },
     /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
     upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean {
       const target = parseRequestTarget(request.url);

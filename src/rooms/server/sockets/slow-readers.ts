@@ -8,17 +8,18 @@ export const maxQueuedBytes = 4096;
 /** Interval of the check [ms]. */
 const slowCheckMs = 1000;
 
-/** Returns the number of packets that wait in a connection's queue. */
-const packetsWaiting = (conn: Socket['conn']): number =>
-  // reason: private in the types, but the only count: the socket's own buffer holds 16 KiB at most.
-  (conn as unknown as { readonly writeBuffer: readonly unknown[] }).writeBuffer.length;
+interface Reader {
+  /** The last time at which it accepted a frame [s]. */
+  writableAt: number;
+  /** The number of packets in its queue. */
+  waiting: number;
+}
 
 /** Watches all open connections, and ends those whose client reads too slowly. */
 export class SlowReaders {
   readonly #now: () => number;
   readonly #end: (conn: Socket['conn']) => void;
-  /** The last time at which each accepted a frame [s]. */
-  readonly #writableAt = new Map<Socket['conn'], number>();
+  readonly #readers = new Map<Socket['conn'], Reader>();
   readonly #timer = setInterval(() => this.#check(), slowCheckMs);
 
   /** `now`: seconds, monotonic. */
@@ -28,8 +29,15 @@ export class SlowReaders {
   }
 
   watch(conn: Socket['conn']): void {
-    this.#writableAt.set(conn, this.#now());
-    conn.once('close', () => this.#writableAt.delete(conn));
+    const reader: Reader = { writableAt: this.#now(), waiting: 0 };
+    this.#readers.set(conn, reader);
+    conn.on('packetCreate', () => {
+      reader.waiting += 1;
+    });
+    conn.on('flush', () => {
+      reader.waiting = 0;
+    });
+    conn.once('close', () => this.#readers.delete(conn));
   }
 
   stop(): void {
@@ -38,11 +46,11 @@ export class SlowReaders {
 
   #check(): void {
     const now = this.#now();
-    for (const [conn, writableAt] of this.#writableAt) {
+    for (const [conn, reader] of this.#readers) {
       const isFree = conn.transport.writable && conn.request.socket.writableLength <= maxQueuedBytes;
-      if (isFree) this.#writableAt.set(conn, now);
-      if ((isFree || now - writableAt <= slowSeconds) && packetsWaiting(conn) <= maxWaiting) continue;
-      this.#writableAt.delete(conn);
+      if (isFree) reader.writableAt = now;
+      if ((isFree || now - reader.writableAt <= slowSeconds) && reader.waiting <= maxWaiting) continue;
+      this.#readers.delete(conn);
       this.#end(conn);
     }
   }

@@ -11,7 +11,7 @@ export interface SeatClaim {
   readonly room: string;
   /** The game of the room. */
   readonly kind: string;
-  readonly terms: { readonly seconds: number; readonly pausable: boolean };
+  readonly terms: { readonly seconds: number };
   /** `seat` null: a place among the spectators. */
   readonly assigned: { readonly seat: number | null; readonly name: string };
 }
@@ -53,7 +53,7 @@ export function createStudySeats(secret: string, signSeat: SignSeat) {
         identity: watching ? randomBytes(12).toString('base64url') : nameOf('participant', plan.id, participant),
         room,
         kind: task.game,
-        terms: { seconds: played.seconds, pausable: true },
+        terms: { seconds: played.seconds },
         assigned: watching
           ? { seat: null, name: 'Experimenter' }
           : { seat: group?.members.indexOf(participant) ?? null, name: participant },
