@@ -7,7 +7,7 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
+import { type TrackedPoint, TrackingGate, validFrames } from '../core/tracking/tracking-gate';
 import { type AfterFrame, createAfterFrame } from './after-frame';
 import { assertOptions, optionNames } from './assert-options';
 import { EstimatorSelector } from './estimator-selector';
@@ -15,7 +15,7 @@ import { HeightEstimator } from './height-estimator';
 import { type InferenceProfiler, withProfiler } from './inference-profiler';
 import { warnAfterDispose } from './warnings';
 
-export type { TrackedPoint } from '../core/tracking/tracking-validator';
+export type { TrackedPoint } from '../core/tracking/tracking-gate';
 
 /**
  * The origin of a body's measures: given by the page, the headset's height at the start of a session, a user who
@@ -131,7 +131,7 @@ export class BodySolver {
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
   readonly #pinning: Pinning | undefined;
-  readonly #validator = new TrackingValidator({
+  readonly #gate = new TrackingGate({
     onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
   });
   #afterFrame: AfterFrame | null = null;
@@ -263,7 +263,7 @@ export class BodySolver {
     this.#inSession = false;
     this.#request = null;
     this.#pose = null;
-    this.#validator.reset();
+    this.#gate.reset();
     this.#choice.reset();
     if (ends) this.#events.sessionend?.();
   }
@@ -301,7 +301,7 @@ export class BodySolver {
       warnAfterDispose(this, 'Body');
       return null;
     }
-    const frame = this.#validator.validate(tracked);
+    const frame = this.#gate.validate(tracked);
     if (frame === null) {
       this.#height.onHeadLost();
       return this.#pose;

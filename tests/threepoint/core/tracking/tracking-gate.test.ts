@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { identity } from '../../../../src/threepoint/core/math/quat';
 import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
-import { TrackingValidator, validFrames } from '../../../../src/threepoint/core/tracking/tracking-validator';
+import { TrackingGate, validFrames } from '../../../../src/threepoint/core/tracking/tracking-gate';
 
 const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
   ...{ position: { x, y: 1.2, z: -0.3 }, orientation: identity, tracking },
@@ -9,28 +9,28 @@ const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
 const frame: TrackingFrame = { time: 1, head: point(0), leftHand: point(-0.3), rightHand: point(0.3) };
 const guessed: TrackingFrame = { ...frame, leftHand: point(-0.3, 'emulated') };
 
-function validatorOf(assumesTracked: boolean) {
+function gateOf(assumesTracked: boolean) {
   const events: string[] = [];
   const onChange = (name: string, tracked: boolean) => void events.push(`${name} ${tracked ? 'found' : 'lost'}`);
-  return { validator: new TrackingValidator({ assumesTracked, onChange }), events };
+  return { gate: new TrackingGate({ assumesTracked, onChange }), events };
 }
 
 test('a hand that a device only guesses counts as tracked until the device has reported it as tracked', () => {
-  const { validator } = validatorOf(true);
-  expect(validator.validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
-  expect(validator.validate(frame)).toBe(frame);
-  expect(validator.validate(guessed)).toBe(guessed);
+  const { gate } = gateOf(true);
+  expect(gate.validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
+  expect(gate.validate(frame)).toBe(frame);
+  expect(gate.validate(guessed)).toBe(guessed);
 });
 
 test('a guessed hand of a page’s own frames is lost', () => {
-  const { validator, events } = validatorOf(false);
-  expect(validator.validate(guessed)).toBe(guessed);
+  const { gate, events } = gateOf(false);
+  expect(gate.validate(guessed)).toBe(guessed);
   expect(events).toEqual(['head found', 'right found']);
 });
 
 test('each change is reported once, and a frame without a head loses every point', () => {
-  const { validator, events } = validatorOf(false);
-  for (const next of [frame, frame, guessed, null, null, frame]) validator.validate(next);
+  const { gate, events } = gateOf(false);
+  for (const next of [frame, frame, guessed, null, null, frame]) gate.validate(next);
   expect(events).toEqual([
     ...['head found', 'left found', 'right found', 'left lost'],
     ...['head lost', 'right lost', 'head found', 'left found', 'right found'],
@@ -38,19 +38,19 @@ test('each change is reported once, and a frame without a head loses every point
 });
 
 test('after a reset every point is found again without having been reported as lost', () => {
-  const { validator, events } = validatorOf(false);
-  validator.validate(frame);
+  const { gate, events } = gateOf(false);
+  gate.validate(frame);
   events.length = 0;
-  validator.reset();
+  gate.reset();
   expect(events).toEqual([]);
-  validator.validate(frame);
+  gate.validate(frame);
   expect(events).toEqual(['head found', 'left found', 'right found']);
 });
 
 test('a corrected copy keeps what is not corrected', () => {
   const suspended: TrackingFrame = { ...frame, suspended: true, leftHand: null };
   expect(
-    new TrackingValidator().validate({ ...suspended, rightHand: { ...point(0.3), position: { x: NaN, y: 0, z: 0 } } }),
+    new TrackingGate().validate({ ...suspended, rightHand: { ...point(0.3), position: { x: NaN, y: 0, z: 0 } } }),
   ).toEqual({
     ...suspended,
     rightHand: null,

@@ -35,7 +35,7 @@ function validFingers(fingers: Fingers): Fingers {
   return left === fingers.left && right === fingers.right ? fingers : { left, right };
 }
 
-export interface TrackingValidatorOptions {
+export interface TrackingGateOptions {
   /**
    * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without
    * cameras report every position as guessed; without this their arms would hang and their hands could not play.
@@ -49,15 +49,15 @@ export interface TrackingValidatorOptions {
  * Decides what is tracked in the frames of one source: the only place that checks head, hands, their tracking state and
  * their times. `pinning` checks trackers.
  */
-export class TrackingValidator {
-  readonly #options: TrackingValidatorOptions;
+export class TrackingGate {
+  readonly #options: TrackingGateOptions;
   /** The time of the newest frame [s]; NaN before the first. */
   #time = Number.NaN;
   /** The points that the source has reported as tracked at least once. */
   readonly #reported: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
   readonly #tracked: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
 
-  constructor(options: TrackingValidatorOptions = {}) {
+  constructor(options: TrackingGateOptions = {}) {
     this.#options = options;
   }
 
@@ -113,9 +113,9 @@ export class TrackingValidator {
 
 /** Yields the valid frames of a recording; frames without a head or a time are left out. */
 export function* validFrames(frames: Iterable<TrackingFrame>): Generator<TrackingFrame> {
-  const validator = new TrackingValidator();
+  const gate = new TrackingGate();
   for (const frame of frames) {
-    const valid = validator.validate(frame);
+    const valid = gate.validate(frame);
     if (valid) yield valid;
   }
 }
