@@ -1,4 +1,4 @@
-import type { BodySolver } from 'threepoint';
+import type { Body } from 'threepoint';
 import { type AvatarPose, type EstimatorName, estimatedJoints, type TrackingFrame } from 'threepoint/core';
 import { isTracked, type Side, sides } from 'threepoint/math';
 import type { InputKind } from 'threepoint/webxr';
@@ -20,7 +20,7 @@ export interface CheckFrame {
 
 /** Collects the figures of a check from its frames. */
 export class Measurements {
-  readonly #body: Pick<BodySolver, 'calibration' | 'estimator'>;
+  readonly #body: Pick<Body, 'calibration' | 'estimator'>;
   readonly #noise = { head: new TrackerNoise(), left: new TrackerNoise(), right: new TrackerNoise() };
   readonly #losses = { left: new TrackingLosses(), right: new TrackingLosses() };
   readonly #noiseKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
@@ -33,7 +33,7 @@ export class Measurements {
   readonly #ahead: number[] = [];
   readonly #delays: number[] = [];
 
-  constructor(body: Pick<BodySolver, 'calibration' | 'estimator'>) {
+  constructor(body: Pick<Body, 'calibration' | 'estimator'>) {
     this.#body = body;
   }
 

@@ -46,13 +46,6 @@ export interface LoadedUserAvatar {
   readonly source: MappedFile | null;
 }
 
-export interface AvatarLoaderOptions {
-  /** The bone maps that users gave for files. */
-  readonly boneMaps: BoneMapStore;
-  /** Uploads an avatar to the graphics device before it is shown. */
-  prepare(object: Avatar['object']): Promise<void>;
-}
-
 /**
  * Returns the file for other players, who have no map of its bones. Its hash is null if this page cannot compute it.
  */
@@ -69,10 +62,16 @@ const withBytes = async (checked: AvatarFile): Promise<CheckedAvatar> => ({
 
 /** Loads avatars from files, addresses and the page's folder. */
 export class AvatarLoader {
-  readonly #options: AvatarLoaderOptions;
+  readonly #boneMaps: BoneMapStore;
+  readonly #prepare: (object: Avatar['object']) => Promise<void>;
 
-  constructor(options: AvatarLoaderOptions) {
-    this.#options = options;
+  /**
+   * `boneMaps`: the bone maps that users gave for files. `prepare`: uploads an avatar to the graphics device before it
+   * is shown.
+   */
+  constructor(boneMaps: BoneMapStore, prepare: (object: Avatar['object']) => Promise<void>) {
+    this.#boneMaps = boneMaps;
+    this.#prepare = prepare;
   }
 
   /** Loads a built-in avatar. `bytes`: its file, if the download has started already. */
@@ -98,7 +97,7 @@ export class AvatarLoader {
    * if they are unknown.
    */
   build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
-    return this.#build(checked, name, checked.hash === null ? undefined : this.#options.boneMaps.of(checked.hash));
+    return this.#build(checked, name, checked.hash === null ? undefined : this.#boneMaps.of(checked.hash));
   }
 
   /**
@@ -107,9 +106,8 @@ export class AvatarLoader {
    */
   async buildWith(checked: AvatarFile, name: string, bones: BoneMap | null): Promise<LoadedUserAvatar> {
     const loaded = await this.#build(await withBytes(checked), name, bones ?? undefined);
-    const { boneMaps } = this.#options;
-    if (checked.hash !== null && bones) boneMaps.store(checked.hash, bones);
-    else if (checked.hash !== null) boneMaps.forget(checked.hash);
+    if (checked.hash !== null && bones) this.#boneMaps.store(checked.hash, bones);
+    else if (checked.hash !== null) this.#boneMaps.forget(checked.hash);
     return loaded;
   }
 
@@ -121,7 +119,7 @@ export class AvatarLoader {
   async #build(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<LoadedUserAvatar> {
     const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
     try {
-      await this.#options.prepare(avatar.object);
+      await this.#prepare(avatar.object);
       const { bytes: _, ...file } = checked;
       return { avatar, worn: { name, ...(await fileFor(checked, bones)) }, source: { checked: file, bones } };
     } catch (error) {

@@ -1,7 +1,8 @@
+import type { WebGLRenderer } from 'three';
 import { firstLine, type HapticPulse, reasonOf } from 'threepoint/core';
+import type { Avatar, BodyTracker } from 'threepoint/three';
 import {
   type BoundarySize,
-  DeviceBodyReader,
   type DeviceCommands,
   defaultSavings,
   describeXrSupport,
@@ -9,21 +10,17 @@ import {
   endSession,
   FrameRateControl,
   isSessionOffered,
-  Pointing,
   playPulses,
   readBoundary,
   requestPassthroughSession,
   requestVrSession,
   type Savings,
-  TrackedSession,
+  type TrackedSession,
   type XrFault,
 } from 'threepoint/webxr';
-import type { Notices } from 'threepoint-ui';
 import { type Emulator, installEmulator } from '../emulator/emulator';
 import { type Quality, reduceEmulatedResolution } from '../scene/renderer';
-import type { Settings } from './settings';
-import type { Stage } from './stage';
-import type { Switches } from './switches';
+import type { PageContext } from './page-context';
 
 /** The rate [Hz] at which a window, and the emulator in it, draws. */
 const windowRateHz = 60;
@@ -40,22 +37,12 @@ export interface Readiness {
   readonly passthrough: boolean;
 }
 
-export interface HeadsetOptions {
-  readonly renderer: Stage['renderer'];
-  readonly quality: Quality;
-  readonly switches: Pick<Switches, 'emulate'>;
-  readonly settings: Pick<Settings, 'actor' | 'emulatorPanel' | 'deviceBody'>;
-  readonly notices: Pick<Notices, 'show'>;
-}
-
 /** What the page does when something happens to the session or to the emulator. */
 export interface HeadsetListener {
   entered(): void;
   left(): void;
   /** Entering failed; the notice is already there. */
   refused(): void;
-  /** The floor lies elsewhere from one frame to the next. */
-  discontinuity(): void;
   /** The session went behind a menu of the device, or came back. */
   visibilityChanged(): void;
   /** The device draws at another rate from now on. */
@@ -70,13 +57,15 @@ interface Session {
   readonly passthrough: boolean;
   /** What the device's boundary leaves [m]; null: the device does not report it. */
   readonly room: BoundarySize | null;
-  readonly tracking: TrackedSession;
   readonly rates: FrameRateControl;
 }
 
 /** The headset that is worn, real or emulated, and the session in it. */
 export class Headset {
-  readonly #options: HeadsetOptions;
+  readonly #context: PageContext;
+  readonly #tracker: BodyTracker<Avatar | null>;
+  readonly #renderer: WebGLRenderer;
+  readonly #quality: Quality;
   #listener: HeadsetListener | null = null;
   #emulator: Emulator | null = null;
   #entering = false;
@@ -89,8 +78,11 @@ export class Headset {
   #real = false;
   #passthroughOffered = false;
 
-  constructor(options: HeadsetOptions) {
-    this.#options = options;
+  constructor(context: PageContext, tracker: BodyTracker<Avatar | null>, renderer: WebGLRenderer, quality: Quality) {
+    this.#context = context;
+    this.#tracker = tracker;
+    this.#renderer = renderer;
+    this.#quality = quality;
   }
 
   listen(listener: HeadsetListener): void {
@@ -120,7 +112,7 @@ export class Headset {
   }
 
   get input(): TrackedSession['inputs']['input'] | null {
-    return this.#session?.tracking.inputs.input ?? null;
+    return this.tracking?.inputs.input ?? null;
   }
 
   /** The session that shows the room around the user; null: the worn headset shows another world, or none is worn. */
@@ -133,9 +125,9 @@ export class Headset {
     return this.#passthroughOffered;
   }
 
-  /** The tracking of the session; null: no headset is worn. */
+  /** The tracking of the session; null: no headset is worn, or its first frame has not been read. */
   get tracking(): TrackedSession | null {
-    return this.#session?.tracking ?? null;
+    return this.#session && this.#tracker.tracking;
   }
 
   /** The frame rate of the device [Hz]; null: it reports none, or there is no device. */
@@ -165,14 +157,14 @@ export class Headset {
 
   /** Why the device's own body is not there; null: it is, or no headset is worn. */
   get bodyComplaint(): string | null {
-    if (!this.#session) return null;
-    const { bodyReader } = this.#session.tracking;
+    if (!this.tracking) return null;
+    const { bodyReader } = this.tracking;
     return bodyReader ? bodyReader.problem : 'the headset’s body tracking is off';
   }
 
   /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
   async prepare(): Promise<Readiness> {
-    const { switches, settings } = this.#options;
+    const { switches, settings } = this.#context;
     const support = await describeXrSupport();
     this.#real = support.kind === 'device' && !switches.emulate;
     this.#fault = support.kind === 'device' || switches.emulate ? null : support.fault;
@@ -221,7 +213,7 @@ export class Headset {
       if (!this.#real) {
         const emulator = await this.ensureEmulator();
         if (!emulator) return;
-        await emulator.setPanelVisible(this.#options.settings.emulatorPanel);
+        await emulator.setPanelVisible(this.#context.settings.emulatorPanel);
       }
       await this.#begin(passthrough);
     } catch (error) {
@@ -239,29 +231,29 @@ export class Headset {
   }
 
   recentre(): void {
-    this.#session?.tracking.recentre();
+    this.tracking?.recentre();
   }
 
   /** What the devices ask of the page besides pointing; null: no headset is worn. */
   get commands(): DeviceCommands | null {
-    return this.#session?.tracking.inputs.pointing?.commands ?? null;
+    return this.tracking?.inputs.pointing?.commands ?? null;
   }
 
   /** Turns the user where a stick, a thumb or the menu asked for it; returns whether one did. */
   turnIfAsked(): boolean {
     const asked = this.commands?.takeTurn() ?? 0;
-    if (asked !== 0) this.#session?.tracking.turn(asked * snapAngle);
+    if (asked !== 0) this.tracking?.turn(asked * snapAngle);
     return asked !== 0;
   }
 
   /** How much higher the user stands than the device reports [m]. */
   get raised(): number {
-    return this.#session?.tracking.heightOffset ?? 0;
+    return this.tracking?.heightOffset ?? 0;
   }
 
   /** Overrides the user's height for this session: this much higher than the device reports [m]. */
   raise(height: number): void {
-    this.#session?.tracking.setHeightOffset(height);
+    this.tracking?.setHeightOffset(height);
   }
 
   buzz(pulses: readonly HapticPulse[]): void {
@@ -269,43 +261,34 @@ export class Headset {
   }
 
   async #begin(passthrough: boolean): Promise<void> {
-    const { renderer, quality, settings } = this.#options;
-    const { deviceBody } = settings;
+    const { deviceBody } = this.#context.settings;
+    this.#tracker.deviceBody = deviceBody;
     const xr = await (passthrough ? requestPassthroughSession(deviceBody) : requestVrSession(deviceBody));
-    const room = await drawSession(xr, renderer.xr, () => {
-      if (this.#emulator) reduceEmulatedResolution(renderer, quality);
+    const room = await drawSession(xr, this.#renderer.xr, () => {
+      if (this.#emulator) reduceEmulatedResolution(this.#renderer, this.#quality);
       return readBoundary(xr);
     });
     this.#follow(xr, room, passthrough);
   }
 
-  /** Tracks the session until it ends. */
+  /** Follows the session until it ends. */
   #follow(xr: XRSession, room: BoundarySize | null, passthrough: boolean): void {
-    const { renderer, settings } = this.#options;
-    const tracking = new TrackedSession({
-      session: xr,
-      drawing: renderer.xr,
-      bodyReader: settings.deviceBody ? new DeviceBodyReader() : null,
-      pointing: new Pointing(xr),
-      onDiscontinuity: () => this.#listener?.discontinuity(),
-      onEnd: () => {
-        this.#session = null;
-        this.#listener?.left();
-      },
-    });
-    tracking.start();
     // The emulator's rates are names alone: it draws when its window does.
     const rates = new FrameRateControl(this.#emulator ? {} : xr);
-    this.#session = { xr, passthrough, room, tracking, rates };
+    this.#session = { xr, passthrough, room, rates };
+    xr.addEventListener('end', () => {
+      this.#session = null;
+      this.#listener?.left();
+    });
     xr.addEventListener('visibilitychange', () => {
       rates.restart();
       this.#listener?.visibilityChanged();
     });
     xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
-    if (!settings.actor) this.#emulator?.release();
+    if (!this.#context.settings.actor) this.#emulator?.release();
   }
 
   #showError(sentence: string): void {
-    this.#options.notices.show('error', sentence);
+    this.#context.notices.show('error', sentence);
   }
 }

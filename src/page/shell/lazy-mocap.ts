@@ -1,29 +1,21 @@
 import type { Object3D } from 'three';
-import type { BodySolver, BodySolverOptions } from 'threepoint';
 import { type AvatarPose, estimatorNames, firstLine, reasonOf, recordOf, type TrackingFrame } from 'threepoint/core';
 import { type Avatar, palettes } from 'threepoint/three';
-import { type Notices, pageElement } from 'threepoint-ui';
+import { pageElement } from 'threepoint-ui';
 import type { MocapView } from '../mocap/mocap-view';
 import type { ClipView } from '../mocap/motion-bones';
 import type { Recorder } from '../studio/recorder';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
 import { estimatorTexts } from './estimator-texts';
-import type { PreferenceStore } from './preferences';
-import type { Settings } from './settings';
+import type { SessionParts } from './session-parts';
 
-export interface LazyMocapOptions {
+export interface LazyMocapOptions extends SessionParts {
   readonly scene: Object3D;
   readonly recorder: Recorder;
-  readonly settings: Settings;
-  readonly body: BodySolver;
-  readonly networks: BodySolverOptions['networks'];
-  readonly store: PreferenceStore;
-  readonly notices: Notices;
   readonly boneMaps: BoneMapStore;
   /** Compiles the materials of an object and uploads its textures before it is shown. */
   prepare(object: Object3D): Promise<void>;
-  onChange(): void;
 }
 
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);

@@ -1,10 +1,10 @@
-import type { PageParts } from './page-parts';
+import type { StageParts } from './stage-parts';
 
 const pictureLost = 'The graphics device was lost. The picture returns when the browser restores it.';
 const sessionLost = 'The graphics device was lost, and VR has ended. Your game continues. Enter VR again.';
 
 /** Keeps the page alive when the graphics device is lost, and notifies the user. */
-export function handleLostGraphics({ stage, notices, headset, timing }: PageParts): void {
+export function handleLostGraphics({ stage, notices, headset, timing }: StageParts): void {
   const canvas = stage.renderer.domElement;
   canvas.addEventListener('webglcontextlost', () => {
     notices.show('warning', headset.worn ? sessionLost : pictureLost);

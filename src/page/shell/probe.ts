@@ -4,14 +4,14 @@ import type { PlayerProbe } from '../activity/activity';
 import type { OfflineCopy } from '../offline/offline-copy';
 import type { GameProbe } from './activity-registry';
 import type { PageFrame } from './frame/page-frame';
-import type { PageParts } from './page-parts';
+import type { InputParts } from './input-parts';
 import type { PassthroughHost } from './session/passthrough-host';
 
 /** A point of the floor frame [m]. */
 type Triple = readonly [number, number, number];
 
 /** The parts of the page that a probe reads. */
-export interface ProbeParts extends PageParts {
+export interface ProbeParts extends InputParts {
   readonly frame: PageFrame;
   readonly passthrough: PassthroughHost;
   readonly kept: OfflineCopy;

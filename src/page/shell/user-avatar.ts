@@ -1,4 +1,3 @@
-import type { BodySolver } from 'threepoint';
 import {
   type BoneMap,
   type BuiltInBody,
@@ -11,25 +10,10 @@ import {
 } from 'threepoint/core';
 import { type Avatar, bodyLabelOf, type CheckedAvatar, MotionOnlyError } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
-import { fileNameOf, type Notices } from 'threepoint-ui';
+import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
-import type { Studio } from '../studio/studio';
-import {
-  type AvatarFile,
-  AvatarLoader,
-  type AvatarLoaderOptions,
-  fetchBuiltInAvatar,
-  type LoadedUserAvatar,
-} from './avatar-loader';
-import type { Settings } from './settings';
-
-export interface UserAvatarOptions extends AvatarLoaderOptions {
-  readonly scene: Studio['scene'];
-  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'builtInBody' | 'skinTone'>;
-  readonly body: Pick<BodySolver, 'calibration'>;
-  readonly notices: Pick<Notices, 'show'>;
-  onChange(): void;
-}
+import { type AvatarFile, type AvatarLoader, fetchBuiltInAvatar, type LoadedUserAvatar } from './avatar-loader';
+import type { SessionParts } from './session-parts';
 
 /** An avatar that was requested, until it is shown, refused or cancelled. */
 interface Request {
@@ -47,9 +31,8 @@ const reasonFor = (name: string, error: unknown): string => firstLine(reasonOf(e
 
 /** The avatar on the stage. Another one replaces it only when it has been loaded completely. */
 export class UserAvatar {
-  readonly #options: UserAvatarOptions;
+  readonly #parts: SessionParts;
   readonly #loader: AvatarLoader;
-  #avatar: Avatar | null = null;
   #name = bodyLabelOf(defaultAvatar);
   #worn: OwnAvatar = defaultAvatar;
   #source: LoadedUserAvatar['source'] = null;
@@ -62,14 +45,14 @@ export class UserAvatar {
   #loading: Request | null = null;
   #waiting: (SkeletonToMap & { readonly checked: AvatarFile }) | null = null;
 
-  constructor(options: UserAvatarOptions) {
-    this.#options = options;
-    this.#loader = new AvatarLoader(options);
+  constructor(parts: SessionParts, loader: AvatarLoader) {
+    this.#parts = parts;
+    this.#loader = loader;
   }
 
   /** null: none has been loaded yet. */
   get current(): Avatar | null {
-    return this.#avatar;
+    return this.#parts.tracker.avatar;
   }
 
   get name(): string {
@@ -124,7 +107,7 @@ export class UserAvatar {
 
   /** Applies the palette of the seat, else the user's, to a built-in avatar. */
   recolour(): void {
-    if (this.isBuiltIn) this.#avatar?.setPalette(this.#seatPalette ?? this.#options.settings.palette);
+    if (this.isBuiltIn) this.current?.setPalette(this.#seatPalette ?? this.#parts.settings.palette);
   }
 
   /** Cancels the file that is loading or waits for its bones. The shown avatar stays. */
@@ -133,7 +116,7 @@ export class UserAvatar {
     this.#loading = null;
     this.#waiting = null;
     this.#pending = null;
-    this.#options.onChange();
+    this.#parts.onChange();
   }
 
   /**
@@ -141,7 +124,7 @@ export class UserAvatar {
    * file, if the download has started already. Returns false after a notice if it fails.
    */
   openBuiltIn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
-    const { builtInBody, skinTone } = this.#options.settings;
+    const { builtInBody, skinTone } = this.#parts.settings;
     const request = this.#request(bodyLabelOf(builtInBody), true);
     return this.#arrive(request, () => this.#loader.loadBuiltIn(builtInBody, skinTone, bytes));
   }
@@ -184,9 +167,9 @@ export class UserAvatar {
       };
     } catch (error) {
       const text = `The bones of ${name} could not be read: ${reasonFor(name, error)}. Open the file again.`;
-      this.#options.notices.show('error', text);
+      this.#parts.notices.show('error', text);
     } finally {
-      this.#options.onChange();
+      this.#parts.onChange();
     }
   }
 
@@ -212,7 +195,7 @@ export class UserAvatar {
         this.#waiting = { ...waiting, bones: bones ?? waiting.bones, complaint: reasonFor(name, error) };
       return false;
     } finally {
-      this.#options.onChange();
+      this.#parts.onChange();
     }
   }
 
@@ -234,7 +217,7 @@ export class UserAvatar {
   #report({ turn, isBuiltIn }: Request, text: string): void {
     if (turn !== this.#requested || isBuiltIn) return;
     this.#pending = text;
-    this.#options.onChange();
+    this.#parts.onChange();
   }
 
   #progressOf(request: Request): (share: number) => void {
@@ -272,12 +255,12 @@ export class UserAvatar {
       return false;
     } finally {
       if (this.#loading === request) this.#loading = null;
-      this.#options.onChange();
+      this.#parts.onChange();
     }
   }
 
   #refuse({ turn, name, isBuiltIn, checked }: Request, error: unknown): void {
-    const { notices } = this.#options;
+    const { notices } = this.#parts;
     const isNewest = turn === this.#requested;
     if (error instanceof UnknownBonesError && checked && isNewest) {
       const { joints, matched: bones, confidence } = error;
@@ -293,19 +276,16 @@ export class UserAvatar {
   }
 
   #show({ avatar, worn, source }: LoadedUserAvatar, name: string, turn: number): void {
-    const { scene, settings, body } = this.#options;
-    this.#avatar?.dispose();
-    this.#avatar = avatar;
+    const { tracker, settings } = this.#parts;
+    tracker.setAvatar(avatar);
     this.#name = name;
     this.#worn = worn;
     this.#source = source;
     this.#shown = turn;
     this.#waiting = null;
     if (turn === this.#requested) this.#pending = null;
-    scene.add(avatar.object);
     this.recolour();
     if (typeof worn === 'string') avatar.setSkinTone(skinToneOf(worn));
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
-    avatar.setCalibration(body.calibration);
   }
 }

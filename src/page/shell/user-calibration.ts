@@ -1,9 +1,6 @@
-import type { BodySolver, CalibrationSource } from 'threepoint';
+import type { CalibrationSource } from 'threepoint';
 import type { Calibration } from 'threepoint/core';
-import type { Notices } from 'threepoint-ui';
-import type { Headset } from './headset';
-import type { PreferenceStore } from './preferences';
-import type { SettingsWriter } from './settings';
+import type { SessionParts } from './session-parts';
 import type { Stage } from './stage';
 
 /** The sources of measurements that the headset suggests, in words. */
@@ -12,59 +9,52 @@ const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
   'stood-taller': 'corrected, because you stood taller',
 };
 
-export interface UserCalibrationOptions {
-  readonly body: BodySolver;
-  readonly headset: Headset;
-  readonly stage: Stage;
-  readonly writer: SettingsWriter;
-  readonly store: PreferenceStore;
-  readonly notices: Notices;
-}
-
 /** The user of the page: where their measures come from, in words, whether those last, and where they stand. */
 export class UserCalibration {
-  readonly #options: UserCalibrationOptions;
+  readonly #parts: SessionParts;
+  readonly #stage: Stage;
 
-  constructor(options: UserCalibrationOptions) {
-    this.#options = options;
+  constructor(parts: SessionParts, stage: Stage) {
+    this.#parts = parts;
+    this.#stage = stage;
   }
 
   /** These measures from now on; where they come from, in words. They last for this visit. */
   calibrate(calibration: Calibration, source: string): void {
-    const { body, writer } = this.#options;
+    const { body, writer } = this.#parts;
     body.calibrate(calibration);
     writer.change({ calibrationSource: source });
   }
 
   /** Calls `calibrate` and stores the measurements for later visits. */
   calibrateForGood(calibration: Calibration, source: string): void {
-    this.#options.store.remember({ calibration });
+    this.#parts.store.remember({ calibration });
     this.calibrate(calibration, source);
   }
 
   /** Removes the measurements for this visit, until the headset reports its height. */
   forget(): void {
-    const { body, writer } = this.#options;
+    const { body, writer } = this.#parts;
     body.calibrate('auto');
     writer.change({ calibrationSource: 'not calibrated yet' });
   }
 
   /** Calls `forget` and removes the stored measurements. */
   resetCalibration(): void {
-    this.#options.store.remember({ calibration: undefined });
+    this.#parts.store.remember({ calibration: undefined });
     this.forget();
   }
 
   /** Describes a calibration that the body has estimated by itself. */
   measured(source: CalibrationSource): void {
     const text = sourceTexts[source];
-    if (text) this.#options.writer.change({ calibrationSource: text });
+    if (text) this.#parts.writer.change({ calibrationSource: text });
   }
 
   /** The user is this much taller [m] than their calibration. */
   outgrown(difference: number): void {
     const centimetres = Math.round(100 * difference);
-    this.#options.notices.show(
+    this.#parts.notices.show(
       'info',
       `You stand ${centimetres} cm taller than your calibration. You may want to calibrate again.`,
     );
@@ -72,10 +62,10 @@ export class UserCalibration {
 
   /** Moves the user, or the desktop camera, back to the start. */
   recentre(): void {
-    const { headset, stage, body } = this.#options;
+    const { headset, body } = this.#parts;
     if (headset.worn) headset.recentre();
     else {
-      stage.view.recentre();
+      this.#stage.view.recentre();
       body.discontinuity();
     }
   }

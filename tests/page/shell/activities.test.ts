@@ -1,4 +1,4 @@
-import { allReleased, defaultCalibration, nothingPressed, type TrackingFrame, unknownFingers } from 'threepoint/core';
+import { allReleased, nothingPressed, type TrackingFrame, unknownFingers } from 'threepoint/core';
 import { type Side, vec3 } from 'threepoint/math';
 import { describe, expect, test, vi } from 'vitest';
 import type { Activity } from '../../../src/page/activity/activity';
@@ -6,18 +6,24 @@ import { type ArcheryActivity, rangeScene } from '../../../src/page/archery/arch
 import { createArcheryRunner } from '../../../src/page/archery/archery-runner';
 import { createActor } from '../../../src/page/emulator/actor';
 import { type CameraScene, studioScene } from '../../../src/page/scene/desktop-view';
-import { Activities } from '../../../src/page/shell/activities/activities';
+import { Activities, type ActivitiesOptions } from '../../../src/page/shell/activities/activities';
 import { activities as registered } from '../../../src/page/shell/activity-registry';
+import type { CalibrationControl } from '../../../src/page/shell/controls/calibration-control';
+import type { Controls } from '../../../src/page/shell/controls/controls';
 import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
 import { FrameTiming } from '../../../src/page/shell/frame-timing';
-import { SessionChanges, type SessionChangesOptions } from '../../../src/page/shell/session/session-changes';
+import type { InputParts } from '../../../src/page/shell/input-parts';
+import type { PassthroughHost } from '../../../src/page/shell/session/passthrough-host';
+import { SessionChanges } from '../../../src/page/shell/session/session-changes';
+import type { StageParts } from '../../../src/page/shell/stage-parts';
 import { createRunners } from '../../../src/page/shell/study/join-study';
 import { menuButtons, type VrMenuActions } from '../../../src/page/shell/vr-menu/menu-buttons';
 import { menuStateOf } from '../../../src/page/shell/vr-menu/menu-state';
 import { Recorder } from '../../../src/page/studio/recorder';
 import { posed } from '../../games/archery/bowman';
-import { activityServices, noPointers, studyRun } from '../activity-services';
+import { activityServices, noPointers, noSession, studyRun } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
+import { fake } from './fake';
 
 drawNowhere();
 
@@ -43,9 +49,8 @@ function page(listed: readonly Activity[] = registered) {
     palette: null as string | null,
   };
   const recorder = new Recorder();
-  const activities = new Activities({
-    activities: listed,
-    services,
+  const options = fake<ActivitiesOptions>({
+    ...services,
     seed: 5,
     stage: {
       studio: {
@@ -66,24 +71,16 @@ function page(listed: readonly Activity[] = registered) {
       },
     },
     mouse,
-    recorder,
-    body: services.body,
-    study,
-    setPalette(palette) {
-      seen.palette = palette;
+    avatar: {
+      setSeatPalette(palette: string | null) {
+        seen.palette = palette;
+      },
     },
     onArrival: () => undefined,
   });
-  const source = new TrackingSource({
-    settings,
-    headset: { ...headset, tracking: null },
-    recorder,
-    activities,
-    study,
-    body: { userCalibration: defaultCalibration },
-    actor: createActor(),
-    pointers: noPointers,
-  });
+  const activities = new Activities({ ...options, services, activities: listed, recorder });
+  const parts = fake<StageParts>({ settings, headset, ...noSession, recorder, activities, study });
+  const source = new TrackingSource(parts, noPointers, createActor());
   const tracked = (time: number) => source.read(time, undefined);
   return { ...opened, activities, seen, recorder, tracked };
 }
@@ -227,17 +224,21 @@ describe('a player who takes the headset off', () => {
     const opened = await range();
     const { activities, headset, study } = opened;
     const nothing = () => undefined;
-    const changes = new SessionChanges({
+    const parts = fake<InputParts>({
       headset: { pictureRateHz: 72, visibility: 'none' },
       recorder: new Recorder(),
       timing: new FrameTiming(() => 0),
-      stage: { view: { view: 'third-person', setView: nothing } } as unknown as SessionChangesOptions['stage'],
-      body: { startSession: nothing, endSession: nothing, discontinuity: () => activities.current?.discontinuity?.() },
-      controls: { show: nothing, setWorn: nothing, layOut: nothing },
+      stage: { view: { view: 'third-person', setView: nothing } },
+      body: { discontinuity: () => activities.current?.discontinuity?.() },
       activities,
       study,
-      passthrough: { sessionChanged: async () => undefined },
     });
+    const controls = fake<Controls>({ show: nothing, setWorn: nothing, layOut: nothing });
+    const changes = new SessionChanges(
+      parts,
+      controls,
+      fake<PassthroughHost>({ sessionChanged: async () => undefined }),
+    );
     return {
       ...opened,
       enter() {
@@ -419,14 +420,14 @@ describe('a third activity', () => {
     const actions = {} as VrMenuActions;
     const state = () =>
       menuStateOf(
-        {
+        fake<StageParts>({
           activities,
           settings,
           body: { estimator: 'ik', unavailableEstimators: {} },
-          measuring: { step: null },
           notices: { current: () => [] },
           headset: { passthrough: null, passthroughOffered: false },
-        },
+        }),
+        fake<CalibrationControl>({ step: null }),
         null,
       );
     const labels = () => menuButtons(state(), actions).map(({ label }) => label);
@@ -443,7 +444,7 @@ describe('a third activity', () => {
 
   test('is played as a task of a study, at the place that the study gives', async () => {
     const { activities, settings, writer, study, done } = dartsPage();
-    const runners = await createRunners({ activities, settings, writer });
+    const runners = await createRunners(fake<StageParts>({ activities, settings, writer }));
     expect(Object.keys(runners)).toEqual(['archery', 'ball', 'darts']);
     Object.assign(study, { run: studyRun(), runners });
     const { darts } = runners;

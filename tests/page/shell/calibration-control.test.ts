@@ -1,12 +1,14 @@
-import { type Calibration, defaultCalibration, type TrackingFrame } from 'threepoint/core';
+import type { Calibration, TrackingFrame } from 'threepoint/core';
 import { type TrackedPose, vec3 } from 'threepoint/math';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { createActor } from '../../../src/page/emulator/actor';
 import type { Emulator } from '../../../src/page/emulator/emulator';
 import { CalibrationControl } from '../../../src/page/shell/controls/calibration-control';
 import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import type { StageParts } from '../../../src/page/shell/stage-parts';
 import { Recorder } from '../../../src/page/studio/recorder';
-import { noPointers } from '../activity-services';
+import { noPointers, noSession } from '../activity-services';
+import { fake } from './fake';
 
 /** The part of an element that the dialog needs. */
 class Element extends EventTarget {
@@ -50,26 +52,19 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
   const remembered: Calibration[] = [];
   const recorder = new Recorder();
   const settings = { actor };
-  const headset = { worn: false, emulator, tracking: null };
-  const body = { userCalibration: defaultCalibration };
-  const measuring = new CalibrationControl({
+  const headset = { worn: false, emulator };
+  const parts = fake<StageParts>({
     settings,
     headset,
-    body,
+    ...noSession,
     recorder,
-    userCalibration: { calibrateForGood: (calibration) => void remembered.push(calibration) },
-    notices: { show: (_, text) => void told.push(text) },
-  });
-  const source = new TrackingSource({
-    settings,
-    headset,
-    body,
-    recorder,
-    actor: createActor(),
+    userCalibration: { calibrateForGood: (calibration: Calibration) => void remembered.push(calibration) },
+    notices: { show: (_: unknown, text: string) => void told.push(text) },
     activities: { current: null, act: () => null },
     study: { run: null },
-    pointers: noPointers,
   });
+  const measuring = new CalibrationControl(parts);
+  const source = new TrackingSource(parts, noPointers, createActor());
   let now = 0;
   return {
     measuring,

@@ -1,7 +1,9 @@
 import { type BuiltInBody, type EstimatorName, TrackingDegradation } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import type { Settings } from '../../../src/page/shell/settings';
-import { type EmbodyingParts, embody } from '../../../src/page/shell/study/embody';
+import type { StageParts } from '../../../src/page/shell/stage-parts';
+import { embody } from '../../../src/page/shell/study/embody';
+import { fake } from './fake';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },
@@ -21,8 +23,8 @@ function pageOf(missing: readonly string[] = []) {
   const degradation = new TrackingDegradation();
   let worn: BuiltInBody = 'mannequin';
   let drawn: EstimatorName = 'ik';
-  const parts: EmbodyingParts = {
-    writer: { change: (part) => void Object.assign(settings, part) },
+  const parts = fake<StageParts>({
+    writer: { change: (part: Partial<Settings>) => void Object.assign(settings, part) },
     degradation,
     avatar: {
       get builtInBody() {
@@ -39,11 +41,11 @@ function pageOf(missing: readonly string[] = []) {
       get estimator() {
         return drawn;
       },
-      async setEstimator(name) {
+      async setEstimator(name: EstimatorName) {
         drawn = missing.includes(name) ? 'ik' : name;
       },
     },
-  };
+  });
   return { parts, settings, degradation, worn: () => worn, drawn: () => drawn };
 }
 

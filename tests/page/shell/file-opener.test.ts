@@ -1,8 +1,10 @@
 import { type Calibration, type TrackingFrame, writeRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { FileOpener } from '../../../src/page/shell/controls/file-opener';
+import type { StageParts } from '../../../src/page/shell/stage-parts';
 import { Recorder } from '../../../src/page/studio/recorder';
-import type { Notice } from '../../../src/ui/notices';
+import type { Notice, NoticeLevel } from '../../../src/ui/notices';
+import { fake } from './fake';
 
 const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
 
@@ -60,23 +62,25 @@ function files() {
     opened,
     mocap,
     recorder,
-    files: new FileOpener({
-      recorder,
-      notices: { show: (level, text) => void notices.push({ level, text }) },
-      avatar: {
-        name: 'robot.vrm',
-        async open(source) {
-          opened.push(source);
-          return true;
+    files: new FileOpener(
+      fake<StageParts>({
+        recorder,
+        notices: { show: (level: NoticeLevel, text: string) => void notices.push({ level, text }) },
+        avatar: {
+          name: 'robot.vrm',
+          async open(source: string | File) {
+            opened.push(source);
+            return true;
+          },
+          openBuiltIn: async () => true,
+          applyBones: async () => true,
+          waiting: null,
         },
-        openBuiltIn: async () => true,
-        applyBones: async () => true,
-        waiting: null,
-      },
-      mocap: { open: async (sources) => void mocap.push(sources) },
-      body: { discontinuity: () => void done.push(`the body begins anew while ${recorder.mode}`) },
-      onChange: () => void done.push('shown'),
-    }),
+        mocap: { open: async (sources: readonly (string | File)[]) => void mocap.push(sources) },
+        body: { discontinuity: () => void done.push(`the body begins anew while ${recorder.mode}`) },
+        onChange: () => void done.push('shown'),
+      }),
+    ),
   };
 }
 

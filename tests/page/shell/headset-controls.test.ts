@@ -10,7 +10,10 @@ import { menuHeight } from '../../../src/page/activity/activity-menu';
 import { type BallMenuActions, type BallMenuState, ballEntries } from '../../../src/page/ball/menu/ball-menu';
 import type { OtherPlayer } from '../../../src/page/ball/panel/other-players';
 import { activities as registered } from '../../../src/page/shell/activity-registry';
+import type { CalibrationControl } from '../../../src/page/shell/controls/calibration-control';
 import { HeadsetControls } from '../../../src/page/shell/controls/headset-controls';
+import type { InputParts } from '../../../src/page/shell/input-parts';
+import type { PanelActions } from '../../../src/page/shell/panel/panel';
 import { createSettings, SettingsWriter } from '../../../src/page/shell/settings';
 import type { PageStudy } from '../../../src/page/shell/study/page-study';
 import { readSwitches } from '../../../src/page/shell/switches';
@@ -24,6 +27,7 @@ import {
 import { allocatedPerFrame } from '../../allocated-bytes';
 import { studyRun } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
+import { fake } from './fake';
 import { expectApart, studioMenu } from './menu-parts';
 
 drawNowhere();
@@ -56,11 +60,10 @@ function headset() {
   const pointers = { all: hands, offersGaze: false };
   const commands = new DeviceCommands();
   const device = { raised: 0 };
-  const controls = new HeadsetControls({
+  const parts = fake<InputParts>({
     settings,
     writer,
     study,
-    rays,
     pointers,
     notices: { current: () => [] },
     body: { estimator: 'ik', unavailableEstimators: {}, calibration: { ...defaultCalibration, eyeHeight: 1.6 } },
@@ -71,7 +74,7 @@ function headset() {
       get raised() {
         return device.raised;
       },
-      raise(height) {
+      raise(height: number) {
         device.raised = height;
       },
     },
@@ -85,23 +88,24 @@ function headset() {
           return direction.y > 0.9 ? { distance: 2, owner: 'game', id: 'restart' } : null;
         },
       } as OpenActivity,
-      goTo: async (name) => void done.push(`go to ${name}`),
-      setSound: (on) => void done.push(`sound ${on}`),
-    },
-    measuring: {
-      get step() {
-        return step;
-      },
-      begin: () => void done.push('calibrate'),
-      cancel: () => void done.push('cancel'),
-    },
-    actions: {
-      chooseEstimator: (name) => void done.push(`estimate by ${name}`),
-      chooseBuiltInBody: (name) => void done.push(`wear ${name}`),
-      chooseSkinTone: (tone) => void done.push(`in ${tone}`),
-      exitVr: () => void done.push('exit'),
+      goTo: async (name: string) => void done.push(`go to ${name}`),
+      setSound: (on: boolean) => void done.push(`sound ${on}`),
     },
   });
+  const measuring = fake<CalibrationControl>({
+    get step() {
+      return step;
+    },
+    begin: () => void done.push('calibrate'),
+    cancel: () => void done.push('cancel'),
+  });
+  const actions = fake<PanelActions>({
+    chooseEstimator: (name: string) => void done.push(`estimate by ${name}`),
+    chooseBuiltInBody: (name: string) => void done.push(`wear ${name}`),
+    chooseSkinTone: (tone: string) => void done.push(`in ${tone}`),
+    exitVr: () => void done.push('exit'),
+  });
+  const controls = new HeadsetControls(parts, measuring, actions, rays);
   const [menu] = controls.objects;
   return {
     controls,

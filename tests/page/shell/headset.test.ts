@@ -1,5 +1,9 @@
+import type { WebGLRenderer } from 'three';
+import type { Avatar, BodyTracker } from 'threepoint/three';
 import { describe, expect, test, vi } from 'vitest';
-import { Headset, type HeadsetOptions } from '../../../src/page/shell/headset';
+import { Headset } from '../../../src/page/shell/headset';
+import type { PageContext } from '../../../src/page/shell/page-context';
+import { fake } from './fake';
 
 /** Emulated devices that were installed in place of the browser's own. */
 let installed = 0;
@@ -58,21 +62,22 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   vi.stubGlobal('navigator', { xr });
   const happened: string[] = [];
   const told: string[] = [];
-  const space = new EventTarget() as XRReferenceSpace;
-  const headset = new Headset({
-    renderer: {
-      xr: { setSession: draw, getReferenceSpace: () => space, setReferenceSpace: () => undefined },
-    } as unknown as HeadsetOptions['renderer'],
-    quality: 'low',
+  const context = fake<PageContext>({
     switches: { emulate: false },
     settings: { actor: true, emulatorPanel: false, deviceBody: false },
-    notices: { show: (_, text) => void told.push(text) },
+    notices: { show: (_: unknown, text: string) => void told.push(text) },
   });
+  const renderer = { xr: { setSession: draw, getReferenceSpace: () => new EventTarget() } };
+  const headset = new Headset(
+    context,
+    fake<BodyTracker<Avatar | null>>({ tracking: null }),
+    renderer as unknown as WebGLRenderer,
+    'low',
+  );
   headset.listen({
     entered: () => void happened.push('entered'),
     left: () => void happened.push('left'),
     refused: () => void happened.push('refused'),
-    discontinuity: () => undefined,
     visibilityChanged: () => undefined,
     rateChanged: () => undefined,
     emulatorChanged: () => undefined,
@@ -138,13 +143,17 @@ describe('entering VR', () => {
 test('the emulated headset is installed once, however often it is asked for while it loads', async () => {
   vi.stubGlobal('window', { isSecureContext: true });
   vi.stubGlobal('navigator', { xr: { isSessionSupported: async () => false } });
-  const headset = new Headset({
-    renderer: {} as HeadsetOptions['renderer'],
-    quality: 'low',
+  const context = fake<PageContext>({
     switches: { emulate: false },
     settings: { actor: true, emulatorPanel: false, deviceBody: false },
-    notices: { show: (_, text) => expect(text).toBeNull() },
+    notices: { show: (_: unknown, text: string) => expect(text).toBeNull() },
   });
+  const headset = new Headset(
+    context,
+    fake<BodyTracker<Avatar | null>>({ tracking: null }),
+    {} as WebGLRenderer,
+    'low',
+  );
   await headset.prepare();
   const asked = await Promise.all([headset.ensureEmulator(), headset.ensureEmulator()]);
   expect(installed).toBe(1);

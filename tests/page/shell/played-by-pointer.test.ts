@@ -21,9 +21,11 @@ import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { createActor } from '../../../src/page/emulator/actor';
 import { Pointers } from '../../../src/page/shell/frame/pointers';
 import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import type { StageParts } from '../../../src/page/shell/stage-parts';
 import { Recorder } from '../../../src/page/studio/recorder';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { controller, fakeHeadset, type Input } from '../../threepoint/xr/fake-headset';
+import { fake } from './fake';
 
 const eyes = vec3(0, defaultCalibration.eyeHeight, 0);
 
@@ -39,17 +41,21 @@ function lookingAt(target: Vec3, from: Vec3 = eyes): Pose<'floor'> {
 function handless(act: (time: number) => SimulatedInput | null, settings = { gaze: false }) {
   const headset = fakeHeadset();
   const tracking = new TrackedSession({ ...headset, pointing: new Pointing(headset.session) });
-  const pointers = new Pointers({ headset: { tracking }, settings });
-  const source = new TrackingSource({
-    settings: { actor: false },
-    headset: { emulator: null, tracking },
+  const parts = fake<StageParts>({
+    settings: {
+      actor: false,
+      get gaze() {
+        return settings.gaze;
+      },
+    },
+    headset: { emulator: null, worn: true, tracking },
+    tracker: { tracking, read: (...at: Parameters<TrackedSession['read']>) => tracking.read(...at) },
     recorder: new Recorder(),
-    body: { userCalibration: defaultCalibration },
-    actor: createActor(),
     activities: { current: null, act },
     study: { run: null },
-    pointers,
   });
+  const pointers = new Pointers(parts);
+  const source = new TrackingSource(parts, pointers, createActor());
   let time = 10;
   return {
     ...headset,

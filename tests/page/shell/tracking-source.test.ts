@@ -1,16 +1,12 @@
 import { BodySolver, ReplayedBody } from 'threepoint';
-import {
-  actorFrame,
-  defaultCalibration,
-  forwardKinematics,
-  nothingPressed,
-  skeletonFromCalibration,
-} from 'threepoint/core';
+import { actorFrame, defaultCalibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import { expect, test } from 'vitest';
 import { createActor } from '../../../src/page/emulator/actor';
 import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
+import type { StageParts } from '../../../src/page/shell/stage-parts';
 import { Recorder } from '../../../src/page/studio/recorder';
-import { noPointers } from '../activity-services';
+import { noPointers, noSession } from '../activity-services';
+import { fake } from './fake';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
@@ -23,19 +19,16 @@ function worn() {
     networks: () => Promise.reject(new Error('inverse kinematics has none')),
   });
   const replayed = new ReplayedBody(body, recorder);
-  const source = new TrackingSource({
+  const parts = fake<StageParts>({
     settings: { actor: true },
-    headset: {
-      emulator: null,
-      tracking: { inputs: { buttons: nothingPressed }, read: (_, time) => actorFrame(time, defaultCalibration) },
-    },
-    recorder,
+    headset: { emulator: null, worn: true },
+    tracker: { tracking: null, read: (_: unknown, time: number) => actorFrame(time, defaultCalibration) },
     body,
-    actor: createActor(),
+    recorder,
     activities: { current: null, act: () => null },
     study: { run: null },
-    pointers: noPointers,
   });
+  const source = new TrackingSource(parts, noPointers, createActor());
   const wristAt = (time: number) => {
     const pose = replayed.update(source.read(time, {} as XRFrame), source.standIn);
     return { ...forwardKinematics(skeleton, pose!.body!).rightHand.position };
@@ -45,22 +38,21 @@ function worn() {
 
 test('with the actor off before a real headset is put on, the body stands still', () => {
   const asked: number[] = [];
-  const source = new TrackingSource({
+  const parts = fake<StageParts>({
     settings: { actor: false },
-    headset: { emulator: null, tracking: null },
+    headset: { emulator: null, worn: false },
+    ...noSession,
     recorder: new Recorder(),
-    body: { userCalibration: defaultCalibration },
-    actor: createActor(),
     activities: {
       current: null,
-      act(time) {
+      act(time: number) {
         asked.push(time);
         return null;
       },
     },
     study: { run: null },
-    pointers: noPointers,
   });
+  const source = new TrackingSource(parts, noPointers, createActor());
   const [earlier, later] = [source.read(10, undefined), source.read(13, undefined)];
   expect(later).toEqual({ ...earlier, time: 13 });
   expect(later?.head.position.y).toBeCloseTo(defaultCalibration.eyeHeight, 1);

@@ -1,11 +1,21 @@
 import { readFileSync } from 'node:fs';
-import { type Color, type Mesh, MeshStandardMaterial, type Object3D, PropertyBinding, Scene, Vector3 } from 'three';
+import {
+  type Color,
+  type Mesh,
+  MeshStandardMaterial,
+  type Object3D,
+  PropertyBinding,
+  Vector3,
+  type WebGLRenderer,
+} from 'three';
 import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { distance } from 'threepoint/math';
-import { palettes, skinColors } from 'threepoint/three';
+import { type Avatar, BodyTracker, palettes, skinColors } from 'threepoint/three';
 import { describe, expect, test, vi } from 'vitest';
+import { AvatarLoader } from '../../../src/page/shell/avatar-loader';
 import { BoneMapStore } from '../../../src/page/shell/bone-map-store';
 import { createPreferenceStore } from '../../../src/page/shell/preferences';
+import type { SessionParts } from '../../../src/page/shell/session-parts';
 import { UserAvatar } from '../../../src/page/shell/user-avatar';
 import type { AvatarCheckRequest, AvatarCheckResponse } from '../../../src/threepoint/avatar/file/avatar-check-worker';
 import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
@@ -15,28 +25,35 @@ import { createIk } from '../../../src/threepoint/core/estimation/estimators';
 import { builtRig, rigJoints } from '../../threepoint/avatar/built-rig';
 import { smallOldVrm, smallVrm } from '../../threepoint/avatar/small-vrms';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
+import { fake } from './fake';
 
 const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
 const bytes = () =>
   Promise.resolve(file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer);
 const clothes = (palette: string) => palettes.find(({ name }) => name === palette)?.color;
 
+/** A tracker without a session and, so far, without an avatar. */
+const createTracker = () =>
+  new BodyTracker<Avatar | null>({ xr: {} } as WebGLRenderer, {
+    avatar: null,
+    estimator: 'ik',
+    calibration: defaultCalibration,
+  });
+
 const noBones = () => new BoneMapStore(createPreferenceStore(null));
 
 test('a body of ours keeps the colours of its seat when another takes its place, and its tone of skin', async () => {
-  const scene = new Scene();
-  const avatar = new UserAvatar({
-    scene,
+  const tracker = createTracker();
+  const parts = fake<SessionParts>({
+    tracker,
     settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: 'dark' },
-    body: { calibration: defaultCalibration },
-    notices: { show: (_, text) => expect(text).toBeNull() },
-    boneMaps: noBones(),
-    prepare: () => Promise.resolve(),
+    notices: { show: (_: unknown, text: string) => expect(text).toBeNull() },
     onChange: () => undefined,
   });
+  const avatar = new UserAvatar(parts, new AvatarLoader(noBones(), () => Promise.resolve()));
   const colourOf = (material: string): string => {
     const found: { readonly name: string; readonly color: Color }[] = [];
-    for (const { material } of skinnedMeshesOf(scene)) {
+    for (const { material } of skinnedMeshesOf(tracker.object)) {
       if (material instanceof FlatPartsMaterial) found.push(...material.parts);
       else if (material instanceof MeshStandardMaterial) found.push(material);
     }
@@ -87,15 +104,13 @@ const unknownNames = (name: string) => {
 
 function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve(), boneMaps = noBones()) {
   const told: string[] = [];
-  const avatar = new UserAvatar({
-    scene: new Scene(),
+  const parts = fake<SessionParts>({
+    tracker: createTracker(),
     settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
-    body: { calibration: defaultCalibration },
-    notices: { show: (_, text) => void told.push(text) },
-    boneMaps,
-    prepare,
+    notices: { show: (_: unknown, text: string) => void told.push(text) },
     onChange: () => undefined,
   });
+  const avatar = new UserAvatar(parts, new AvatarLoader(boneMaps, prepare));
   return { avatar, told };
 }
 

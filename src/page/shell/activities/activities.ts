@@ -1,4 +1,3 @@
-import type { BodySolver } from 'threepoint';
 import {
   type Buttons,
   firstLine,
@@ -12,24 +11,26 @@ import type { Pose, Side } from 'threepoint/math';
 import { ObjectHolds } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import type { TaskPlace } from 'threepoint-study/participant';
+import type { MouseAim } from 'threepoint-ui';
 import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
 import type { Recorder } from '../../studio/recorder';
 import { home } from '../activity-registry';
+import type { SessionParts } from '../session-parts';
 import type { Picture, Stage } from '../stage';
-import type { PageStudy } from '../study/page-study';
-import { ActivityStaging, type StagingOptions } from './activity-staging';
+import type { UserAvatar } from '../user-avatar';
+import { ActivityStaging } from './activity-staging';
 import { unlockSound } from './unlock-sound';
 
-export interface ActivitiesOptions extends StagingOptions {
+export interface ActivitiesOptions extends SessionParts {
   readonly activities: readonly Activity[];
   readonly services: ActivityServices;
   /** The seed of the first layout. */
   readonly seed: number;
-  readonly stage: StagingOptions['stage'] & { readonly studio: Pick<Stage['studio'], 'setMarkVisible'> };
+  readonly stage: Stage;
+  readonly avatar: UserAvatar;
   readonly recorder: Recorder;
-  readonly body: Pick<BodySolver, 'calibration'>;
-  readonly study: PageStudy;
+  readonly mouse: MouseAim;
   /** The user is somewhere else now: filters and clocks restart. */
   onArrival(): void;
 }
@@ -50,7 +51,7 @@ export class Activities {
 
   constructor(options: ActivitiesOptions) {
     this.#options = options;
-    this.#staging = new ActivityStaging(options);
+    this.#staging = new ActivityStaging(options, options.stage, options.avatar, options.mouse);
     this.#layout = { seed: options.seed };
   }
 
@@ -74,8 +75,7 @@ export class Activities {
   }
 
   get inputSource(): InputSource {
-    const { recorder, services } = this.#options;
-    const { headset, settings } = services;
+    const { recorder, headset, settings } = this.#options;
     if (!headset.worn && recorder.mode === 'replaying') return 'recording';
     if (headset.worn || !settings.actor) return 'headset';
     return settings.mouse ? 'mouse' : 'actor';
@@ -87,7 +87,7 @@ export class Activities {
     this.#leave();
     const next = this.all.find((activity) => activity.name === name);
     if (next) await this.#open(next);
-    this.#options.services.writer.change({ following: null });
+    this.#options.writer.change({ following: null });
     this.#staging.arrange(this.#current, true);
     this.#options.stage.studio.setMarkVisible(this.#current === null);
     this.#options.services.onCaption('');
@@ -116,7 +116,7 @@ export class Activities {
   }
 
   setSound(on: boolean): void {
-    const { writer, notices } = this.#options.services;
+    const { writer, notices } = this.#options;
     writer.keep({ sound: on });
     const sound = this.#current?.sound;
     this.#cancelSound();
@@ -129,7 +129,7 @@ export class Activities {
    */
   chooseInput(source: 'mouse' | 'actor'): void {
     this.#options.recorder.endReplay();
-    this.#options.services.writer.change({ actor: true, mouse: source === 'mouse' });
+    this.#options.writer.change({ actor: true, mouse: source === 'mouse' });
     this.#staging.arrange(this.#current);
   }
 
@@ -173,7 +173,7 @@ export class Activities {
   }
 
   async #open(activity: Activity): Promise<void> {
-    const { settings, notices, onChange } = this.#options.services;
+    const { settings, notices, onChange } = this.#options;
     this.#arriving = true;
     onChange();
     try {

@@ -1,20 +1,10 @@
 import type { Side } from 'threepoint/math';
 import type { MouseAim } from 'threepoint-ui';
 import type { OpenActivity } from '../../activity/activity';
-import type { ActivityServices } from '../../activity/activity-context';
 import { type CameraScene, studioScene } from '../../scene/desktop-view';
+import type { SessionParts } from '../session-parts';
 import type { Stage } from '../stage';
-
-export interface StagingOptions {
-  readonly services: Pick<ActivityServices, 'settings' | 'headset'>;
-  readonly stage: {
-    readonly view: Pick<Stage['view'], 'setScene' | 'setOrbit'>;
-    readonly placeMirror: Stage['placeMirror'];
-  };
-  readonly mouse: Pick<MouseAim, 'setEnabled'>;
-  /** Gives the user's avatar this palette; null: the user's own choice. */
-  setPalette(palette: string | null): void;
-}
+import type { UserAvatar } from '../user-avatar';
 
 /** The wishes of the mirror. */
 const mirrorStaging: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'watched'> = {
@@ -24,24 +14,31 @@ const mirrorStaging: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'wa
 
 /** Sets camera, mirror, colours and mouse as the current activity wishes, and only when a wish has changed. */
 export class ActivityStaging {
-  readonly #options: StagingOptions;
+  readonly #parts: SessionParts;
+  readonly #stage: Stage;
+  readonly #avatar: UserAvatar;
+  readonly #mouse: MouseAim;
   #scene: CameraScene = studioScene;
   #mirrorSide: Side | null = null;
   #palette: string | null = null;
   #steering = false;
 
-  constructor(options: StagingOptions) {
-    this.#options = options;
+  constructor(parts: SessionParts, stage: Stage, avatar: UserAvatar, mouse: MouseAim) {
+    this.#parts = parts;
+    this.#stage = stage;
+    this.#avatar = avatar;
+    this.#mouse = mouse;
   }
 
   /** `current`: null at the mirror. `moveCamera`: also moves the camera to an unchanged scene. */
   arrange(current: OpenActivity | null, moveCamera = false): void {
-    const { stage, setPalette, mouse, services } = this.#options;
+    const { settings, headset } = this.#parts;
+    const stage = this.#stage;
     const { scene, mirrorSide, palette = null, watched = null } = current ?? mirrorStaging;
-    const steering = current !== null && services.settings.mouse && !services.headset.worn && !watched;
+    const steering = current !== null && settings.mouse && !headset.worn && !watched;
     if (steering !== this.#steering) {
       this.#steering = steering;
-      mouse.setEnabled(steering);
+      this.#mouse.setEnabled(steering);
       // A mouse that aims does not turn the camera.
       stage.view.setOrbit(!steering);
     }
@@ -55,7 +52,7 @@ export class ActivityStaging {
     }
     if (palette !== this.#palette) {
       this.#palette = palette;
-      setPalette(palette);
+      this.#avatar.setSeatPalette(palette);
     }
   }
 }

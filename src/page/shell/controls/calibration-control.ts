@@ -1,4 +1,3 @@
-import type { BodySolver } from 'threepoint';
 import { type TrackingFrame, withForearm } from 'threepoint/core';
 import {
   type CalibrationDialog,
@@ -6,35 +5,22 @@ import {
   type CalibrationStep,
   createCalibrationDialog,
   createCalibrationGuide,
-  type Notices,
 } from 'threepoint-ui';
-import type { Recorder } from '../../studio/recorder';
 import { Emitter } from '../emitter';
-import type { Headset } from '../headset';
-import type { Settings } from '../settings';
-import type { UserCalibration } from '../user-calibration';
-
-export interface CalibrationControlOptions {
-  readonly body: Pick<BodySolver, 'userCalibration'>;
-  readonly headset: Pick<Headset, 'worn' | 'emulator'>;
-  readonly settings: Pick<Settings, 'actor'>;
-  readonly recorder: Recorder;
-  readonly notices: Pick<Notices, 'show'>;
-  readonly userCalibration: Pick<UserCalibration, 'calibrateForGood'>;
-}
+import type { StageParts } from '../stage-parts';
 
 /** The guided calibration of this page: a dialog on the desktop, the menu in the headset. */
 export class CalibrationControl {
   /** Each step of it; null: it is over. */
   readonly steps = new Emitter<[step: CalibrationStep | null]>();
-  readonly #options: CalibrationControlOptions;
+  readonly #parts: StageParts;
   readonly #dialog: CalibrationDialog;
   readonly #guide: CalibrationGuide;
   #step: CalibrationStep | null = null;
 
-  constructor(options: CalibrationControlOptions) {
-    const { body, headset, userCalibration } = options;
-    this.#options = options;
+  constructor(parts: StageParts) {
+    const { body, headset, userCalibration } = parts;
+    this.#parts = parts;
     this.#dialog = createCalibrationDialog(
       () => this.cancel(),
       () => this.start(),
@@ -56,7 +42,7 @@ export class CalibrationControl {
   /** Measures the user, or reports what is missing. */
   start(): void {
     const missing = this.#missing();
-    if (missing) this.#options.notices.show('info', missing);
+    if (missing) this.#parts.notices.show('info', missing);
     else this.begin();
   }
 
@@ -73,7 +59,7 @@ export class CalibrationControl {
     const underWay = this.#step?.kind === 'countdown' || this.#step?.kind === 'measuring';
     const missing = underWay ? this.#missing() : null;
     if (missing) {
-      this.#options.notices.show('info', missing);
+      this.#parts.notices.show('info', missing);
       this.cancel();
     }
     this.#guide.observe(frame);
@@ -81,7 +67,7 @@ export class CalibrationControl {
 
   /** What is missing for what is tracked to be the user, in a sentence; null: nothing. */
   #missing(): string | null {
-    const { headset, settings, recorder } = this.#options;
+    const { headset, settings, recorder } = this.#parts;
     if (headset.worn) return null;
     // The actor moves, or no one does.
     if (settings.actor || !headset.emulator)
@@ -93,7 +79,7 @@ export class CalibrationControl {
 
   #show(step: CalibrationStep | null): void {
     this.#step = step;
-    if (step && !this.#options.headset.worn) this.#dialog.show(step);
+    if (step && !this.#parts.headset.worn) this.#dialog.show(step);
     else this.#dialog.hide();
     this.steps.emit(step);
   }

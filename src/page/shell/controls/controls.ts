@@ -4,7 +4,7 @@ import { createVrPointers } from 'threepoint-ui/vr';
 import { createPlayBar, type PlayBar } from '../activities/play-bar';
 import { estimatorTexts } from '../estimator-texts';
 import { stageNames } from '../frame-timing';
-import type { PageParts } from '../page-parts';
+import type { InputParts } from '../input-parts';
 import { CalibrationControl } from './calibration-control';
 import { DesktopControls } from './desktop-controls';
 import { acceptDroppedFiles, FileOpener } from './file-opener';
@@ -20,7 +20,7 @@ const reportEveryMs = 250;
  * Everything a person can press, read or type, on the desktop and in the headset; it keeps no state of the page's own.
  */
 export class Controls {
-  readonly #parts: PageParts;
+  readonly #parts: InputParts;
   readonly #measuring: CalibrationControl;
   readonly #files: FileOpener;
   readonly #play: PlayBar;
@@ -31,7 +31,7 @@ export class Controls {
   /** Whether the panel was open when the headset was put on. */
   #panelOpenBefore = false;
 
-  constructor(parts: PageParts) {
+  constructor(parts: InputParts) {
     const { stage } = parts;
     const panelRegion = pageElement('controls', HTMLElement);
     this.#parts = parts;
@@ -41,14 +41,9 @@ export class Controls {
     const measuring = this.#measuring;
     const motionExport = new MotionExport(parts);
     const actions = createPanelActions({ ...parts, measuring, motionExport, files: this.#files });
-    this.#desktop = new DesktopControls(panelRegion, { ...parts, motionExport, actions });
-    this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, rays: createVrPointers() });
-    this.#layout = new WindowLayout({
-      stage,
-      settings: parts.settings,
-      panelRegion,
-      panelOpen: () => this.#desktop.panelOpen,
-    });
+    this.#desktop = new DesktopControls(panelRegion, parts, actions, motionExport);
+    this.#inHeadset = new HeadsetControls(parts, measuring, actions, createVrPointers());
+    this.#layout = new WindowLayout(parts, panelRegion, () => this.#desktop.panelOpen);
     stage.studio.scene.add(...this.#inHeadset.objects);
     measuring.steps.listen(() => this.#inHeadset.show());
     acceptDroppedFiles((files) => this.#files.openAll(files));

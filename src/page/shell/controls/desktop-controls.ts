@@ -9,26 +9,25 @@ import { palettes } from 'threepoint/three';
 import { listenToShortcuts, type Shortcuts } from 'threepoint-ui';
 import { viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../estimator-texts';
-import type { PageParts } from '../page-parts';
+import type { InputParts } from '../input-parts';
 import { createPanel, type Panel, type PanelActions } from '../panel/panel';
 import type { PanelState } from '../panel/panel-state';
 import type { MotionExport } from './motion-export';
-
-export interface DesktopControlsOptions extends PageParts {
-  readonly actions: PanelActions;
-  readonly motionExport: MotionExport;
-}
 
 const centimetres = (metres: number): number => 100 * metres;
 
 /** The panel and the keys of the desktop page. */
 export class DesktopControls {
-  readonly #options: DesktopControlsOptions;
+  readonly #parts: InputParts;
+  readonly #actions: PanelActions;
+  readonly #motionExport: MotionExport;
   readonly #panel: Panel;
 
-  constructor(region: HTMLElement, options: DesktopControlsOptions) {
-    const { actions, headset, settings, study } = options;
-    this.#options = options;
+  constructor(region: HTMLElement, parts: InputParts, actions: PanelActions, motionExport: MotionExport) {
+    const { headset, settings, study } = parts;
+    this.#parts = parts;
+    this.#actions = actions;
+    this.#motionExport = motionExport;
     this.#panel = createPanel(
       region,
       {
@@ -58,7 +57,8 @@ export class DesktopControls {
   }
 
   #shortcuts(): Shortcuts {
-    const { actions, settings, stage, activities } = this.#options;
+    const { settings, stage, activities } = this.#parts;
+    const actions = this.#actions;
     const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'third-person';
     const estimators = estimatorOrder.map((name, index) => [String(index + 1), () => actions.chooseEstimator(name)]);
     return {
@@ -76,7 +76,7 @@ export class DesktopControls {
   }
 
   #state(): PanelState {
-    const { settings, body, stage, avatar, headset, recorder, motionExport } = this.#options;
+    const { settings, body, stage, avatar, headset, recorder } = this.#parts;
     const { eyeHeight, armSpan, forearm } = body.userCalibration;
     return {
       ...settings,
@@ -102,7 +102,7 @@ export class DesktopControls {
       ratesHz: headset.ratesHz,
       bodyComplaint: headset.bodyComplaint,
       recorder,
-      exporting: motionExport.state,
+      exporting: this.#motionExport.state,
     };
   }
 }

@@ -1,22 +1,10 @@
-import type { BodySolver } from 'threepoint';
 import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
 import { isSkeletonMap } from 'threepoint/motion';
-import { type FileKind, fileNameOf, type Notices, readLimited } from 'threepoint-ui';
-import type { Recorder } from '../../studio/recorder';
-import type { LazyMocap } from '../lazy-mocap';
-import type { UserAvatar } from '../user-avatar';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
+import type { StageParts } from '../stage-parts';
 
 /** Twice the size of the longest recording that the recorder stores. */
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
-
-export interface FileOpenerOptions {
-  readonly avatar: Pick<UserAvatar, 'open' | 'openBuiltIn' | 'applyBones' | 'name' | 'waiting'>;
-  readonly recorder: Recorder;
-  readonly notices: Pick<Notices, 'show'>;
-  readonly body: Pick<BodySolver, 'discontinuity'>;
-  readonly mocap: Pick<LazyMocap, 'open'>;
-  onChange(): void;
-}
 
 const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
 /** A map of a skeleton is a page of text [bytes]. */
@@ -27,10 +15,10 @@ const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
 
 /** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
 export class FileOpener {
-  readonly #options: FileOpenerOptions;
+  readonly #parts: StageParts;
 
-  constructor(options: FileOpenerOptions) {
-    this.#options = options;
+  constructor(parts: StageParts) {
+    this.#parts = parts;
   }
 
   /**
@@ -41,7 +29,7 @@ export class FileOpener {
     const isMotion = (file: File): boolean => isMocap(file) || (asMotion && mayBeMocap(file));
     // Beside motion, JSON is a map of its skeleton.
     const mocap = files.some(isMotion) ? files.filter((file) => isMotion(file) || isJson(file)) : [];
-    if (mocap.length > 0) void this.#options.mocap.open(mocap);
+    if (mocap.length > 0) void this.#parts.mocap.open(mocap);
     for (const file of files) if (!mocap.includes(file)) void this.open(file);
   }
 
@@ -50,15 +38,15 @@ export class FileOpener {
    * notice.
    */
   async open(file: File): Promise<void> {
-    const requestNumber = this.#options.recorder.nextRequest();
+    const requestNumber = this.#parts.recorder.nextRequest();
     if (!isJson(file)) await this.openAvatar(file);
-    else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#options.mocap.open([file]);
+    else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#parts.mocap.open([file]);
     else await this.openRecording(file, requestNumber);
   }
 
   /** Shows an avatar; a file of motion without a body is opened as motion capture. */
   async openAvatar(source: string | File): Promise<void> {
-    const { avatar, notices, mocap } = this.#options;
+    const { avatar, notices, mocap } = this.#parts;
     const outcome = await avatar.open(source);
     if (outcome === 'motion') await mocap.open([source]);
     else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`);
@@ -69,25 +57,25 @@ export class FileOpener {
    * wrong.
    */
   async applyBones(bones: BoneMap | null): Promise<void> {
-    const { avatar, notices } = this.#options;
+    const { avatar, notices } = this.#parts;
     const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
     if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`);
   }
 
-  /** Ours, also after a reload. */
+  /** Shows the page's avatar, also after a reload. */
   showBuiltInAvatar(): void {
     const address = new URL(location.href);
     address.searchParams.delete('avatar');
     history.replaceState(null, '', address);
-    void this.#options.avatar.openBuiltIn();
+    void this.#parts.avatar.openBuiltIn();
   }
 
   /**
    * Replays a recording, with the body of the person in it. `requestNumber`: its number among the recorder's requests.
    * Never rejects: what goes wrong becomes a notice.
    */
-  async openRecording(source: string | File, requestNumber = this.#options.recorder.nextRequest()): Promise<void> {
-    const { recorder, notices } = this.#options;
+  async openRecording(source: string | File, requestNumber = this.#parts.recorder.nextRequest()): Promise<void> {
+    const { recorder, notices } = this.#parts;
     const name = fileNameOf(source);
     try {
       recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), requestNumber);
@@ -100,7 +88,7 @@ export class FileOpener {
 
   /** Replays the current recording from its start. */
   replay(): void {
-    const { recorder, body, onChange } = this.#options;
+    const { recorder, body, onChange } = this.#parts;
     recorder.replay();
     body.discontinuity();
     onChange();

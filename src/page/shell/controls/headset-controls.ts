@@ -1,13 +1,8 @@
-import type { BodySolver } from 'threepoint';
 import type { Pointer, TrackingFrame } from 'threepoint/core';
-import type { FrameReport, Notices } from 'threepoint-ui';
+import type { FrameReport } from 'threepoint-ui';
 import type { VrPointers } from 'threepoint-ui/vr';
-import type { Activities } from '../activities/activities';
-import type { Pointers } from '../frame/pointers';
-import type { Headset } from '../headset';
-import type { PageParts } from '../page-parts';
+import type { InputParts } from '../input-parts';
 import type { PanelActions } from '../panel/panel';
-import type { UserCalibration } from '../user-calibration';
 import { type ComfortActions, comfortSheet } from '../vr-menu/comfort-sheet';
 import { GazeOffer } from '../vr-menu/gaze-offer';
 import type { VrMenuActions } from '../vr-menu/menu-buttons';
@@ -20,25 +15,16 @@ import { UserHeight } from './user-height';
 /** The scale of the menu in the headset for a user who wants larger text. */
 const largerMenu = 1.3;
 
-export interface HeadsetControlsOptions extends Pick<PageParts, 'settings' | 'writer' | 'study'> {
-  readonly notices: Pick<Notices, 'current'>;
-  /** Draws the pointers. */
-  readonly rays: VrPointers;
-  readonly pointers: Pick<Pointers, 'all' | 'offersGaze'>;
-  readonly body: Pick<BodySolver, 'estimator' | 'unavailableEstimators' | 'calibration'>;
-  readonly activities: Pick<Activities, 'all' | 'current' | 'goTo' | 'setSound'>;
-  readonly headset: Pick<Headset, 'passthrough' | 'passthroughOffered' | 'commands' | 'raised' | 'raise'>;
-  readonly userCalibration: Pick<UserCalibration, 'recentre'>;
-  readonly measuring: Pick<CalibrationControl, 'step' | 'begin' | 'cancel'>;
-  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseBuiltInBody' | 'chooseSkinTone' | 'exitVr'>;
-}
-
 const isGaze = ({ source }: Pointer): boolean => source === 'gaze';
 const isNoGaze = (pointer: Pointer): boolean => !isGaze(pointer);
 
 /** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
 export class HeadsetControls {
-  readonly #options: HeadsetControlsOptions;
+  readonly #parts: InputParts;
+  readonly #measuring: CalibrationControl;
+  readonly #actions: PanelActions;
+  /** Draws the pointers. */
+  readonly #rays: VrPointers;
   readonly #menu: VrMenu;
   readonly #wrists = new WristButtons();
   readonly #offer = new GazeOffer();
@@ -48,22 +34,25 @@ export class HeadsetControls {
   #comfortOpen = false;
   #worn = false;
 
-  constructor(options: HeadsetControlsOptions) {
-    this.#options = options;
+  constructor(parts: InputParts, measuring: CalibrationControl, actions: PanelActions, rays: VrPointers) {
+    this.#parts = parts;
+    this.#measuring = measuring;
+    this.#actions = actions;
+    this.#rays = rays;
     this.#menu = new VrMenu(this.#menuActions());
-    this.#comfort = new UserHeight(options);
-    options.rays.objects.visible = false;
+    this.#comfort = new UserHeight(parts);
+    rays.objects.visible = false;
   }
 
   /** For the scene. */
   get objects() {
-    return [this.#menu.object, this.#options.rays.objects, this.#wrists.object, this.#offer.object] as const;
+    return [this.#menu.object, this.#rays.objects, this.#wrists.object, this.#offer.object] as const;
   }
 
   /** The headset is on, or off again. A study's sheet takes the place of the menu. */
   setWorn(worn: boolean): void {
     this.#worn = worn;
-    this.#options.rays.objects.visible = worn;
+    this.#rays.objects.visible = worn;
     this.#comfortOpen = false;
     this.#comfort.reset();
     this.#menu.sendBack();
@@ -77,13 +66,13 @@ export class HeadsetControls {
   }
 
   #showMenu(): void {
-    this.#menu.setVisible(this.#worn && this.#options.study.run === null);
+    this.#menu.setVisible(this.#worn && this.#parts.study.run === null);
   }
 
   show(): void {
     this.#showMenu();
-    this.#menu.object.scale.setScalar(this.#options.settings.largerText ? largerMenu : 1);
-    this.#menu.show(menuStateOf(this.#options, this.#comfortOpen ? this.#comfortSheet() : null));
+    this.#menu.object.scale.setScalar(this.#parts.settings.largerText ? largerMenu : 1);
+    this.#menu.show(menuStateOf(this.#parts, this.#measuring, this.#comfortOpen ? this.#comfortSheet() : null));
   }
 
   showReport(report: FrameReport): void {
@@ -95,30 +84,29 @@ export class HeadsetControls {
    * not seen.
    */
   point(frame: TrackingFrame | null): void {
-    const { study, pointers, rays } = this.#options;
+    const { study, pointers } = this.#parts;
     if (frame) this.#comfort.observe(frame);
     const offers = pointers.offersGaze && frame !== null && study.run === null;
     if (!offers) this.#offer.hide();
-    else if (this.#offer.follow(frame.head, this.#only(isGaze, this.#gazes)))
-      this.#options.writer.change({ gaze: true });
+    else if (this.#offer.follow(frame.head, this.#only(isGaze, this.#gazes))) this.#parts.writer.change({ gaze: true });
     // A gaze that was not accepted yet presses nothing else.
     const acting = pointers.offersGaze ? this.#only(isNoGaze, this.#others) : pointers.all;
     if (study.run) study.run.point(acting);
     else this.#pointAtPage(frame, acting);
-    rays.show(pointers.offersGaze && !offers ? acting : pointers.all);
+    this.#rays.show(pointers.offersGaze && !offers ? acting : pointers.all);
   }
 
   /** Writes the pointers of a kind. */
   #only(isOne: (pointer: Pointer) => boolean, out: Pointer[]): readonly Pointer[] {
     out.length = 0;
-    for (const pointer of this.#options.pointers.all) if (isOne(pointer)) out.push(pointer);
+    for (const pointer of this.#parts.pointers.all) if (isOne(pointer)) out.push(pointer);
     return out;
   }
 
   #pointAtPage(frame: TrackingFrame | null, pointers: readonly Pointer[]): void {
     if (frame) {
       const pressed = this.#wrists.follow(frame, pointers);
-      const asked = this.#options.headset.commands?.menu.take() ?? false;
+      const asked = this.#parts.headset.commands?.menu.take() ?? false;
       if (pressed || asked) this.#callMenu(frame);
     }
     this.#menu.point(pointers);
@@ -134,7 +122,7 @@ export class HeadsetControls {
 
   /** Points the first pointer that meets a sheet of the game at it, of those that press or do not; none: false. */
   #pointAtSheets(pointers: readonly Pointer[], pressing: boolean): boolean {
-    const { current } = this.#options.activities;
+    const { current } = this.#parts.activities;
     if (!current?.point) return false;
     for (const pointer of pointers) {
       if (pointer.pressed !== pressing) continue;
@@ -147,7 +135,7 @@ export class HeadsetControls {
   }
 
   #comfortSheet() {
-    const { settings, headset } = this.#options;
+    const { settings, headset } = this.#parts;
     const { gaze, sound, largerText } = settings;
     const moves = headset.passthrough === null;
     const { seated } = this.#comfort;
@@ -155,7 +143,7 @@ export class HeadsetControls {
   }
 
   #comfortActions(): ComfortActions {
-    const { headset, writer, activities } = this.#options;
+    const { headset, writer, activities } = this.#parts;
     const comfort = this.#comfort;
     return {
       turn: (direction) => headset.commands?.turn(direction),
@@ -181,7 +169,8 @@ export class HeadsetControls {
   }
 
   #menuActions(): VrMenuActions {
-    const { actions, activities, measuring, writer } = this.#options;
+    const { activities, writer } = this.#parts;
+    const [actions, measuring] = [this.#actions, this.#measuring];
     return {
       chooseEstimator: (name) => actions.chooseEstimator(name),
       calibrate: () => measuring.begin(),

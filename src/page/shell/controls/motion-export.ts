@@ -3,16 +3,16 @@ import { exportMotion, type MotionFormat, type MotionWriter } from 'threepoint/m
 import { avatarMotionWriter, decoders } from 'threepoint/three';
 import { offerDownload } from 'threepoint-ui';
 import { estimatorTexts } from '../estimator-texts';
-import type { PageParts } from '../page-parts';
 import type { ExportChoice, ExportState } from '../panel/panel-state';
+import type { StageParts } from '../stage-parts';
 
 /** Exports the current recording to files for other programs, one at a time. Its code is loaded on first use. */
 export class MotionExport {
-  readonly #parts: PageParts;
+  readonly #parts: StageParts;
   #state: ExportState | null = null;
   #cancellation = new AbortController();
 
-  constructor(parts: PageParts) {
+  constructor(parts: StageParts) {
     this.#parts = parts;
   }
 

@@ -1,13 +1,13 @@
 import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } from 'threepoint/core';
 import { offerDownload } from 'threepoint-ui';
-import type { PageParts } from '../page-parts';
 import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from '../panel/panel-state';
+import type { StageParts } from '../stage-parts';
 import type { CalibrationControl } from './calibration-control';
 import type { FileOpener } from './file-opener';
 import type { MotionExport } from './motion-export';
 
-export interface PanelActionsOptions extends PageParts {
+export interface PanelActionsOptions extends StageParts {
   readonly files: FileOpener;
   readonly motionExport: MotionExport;
   readonly measuring: CalibrationControl;

@@ -1,28 +1,20 @@
-import type { BodySolver } from 'threepoint';
 import type { TrackingFrame } from 'threepoint/core';
 import { clamp } from 'threepoint/math';
-import type { Headset } from '../headset';
-import type { UserCalibration } from '../user-calibration';
+import type { StageParts } from '../stage-parts';
 
 /** The farthest that a user is lowered and raised [m]. */
 const minRaise = -0.5;
 const maxRaise = 1;
 
-export interface UserHeightOptions {
-  readonly headset: Pick<Headset, 'raised' | 'raise'>;
-  readonly body: Pick<BodySolver, 'calibration'>;
-  readonly userCalibration: Pick<UserCalibration, 'recentre'>;
-}
-
 /** The height at which a session shows its user: as tracked, standing for a user who sits, or overridden by hand. */
 export class UserHeight {
-  readonly #options: UserHeightOptions;
+  readonly #parts: StageParts;
   #seated = false;
   /** The height of the head as shown [m]; null: not seen yet. */
   #headHeight: number | null = null;
 
-  constructor(options: UserHeightOptions) {
-    this.#options = options;
+  constructor(parts: StageParts) {
+    this.#parts = parts;
   }
 
   /** The user sits and is shown at standing height. */
@@ -42,27 +34,27 @@ export class UserHeight {
 
   /** Raises a user who sits to the eye height of their calibration; a user who stands is shown as tracked again. */
   setSeated(on: boolean): void {
-    const { headset, body } = this.#options;
+    const { headset, body } = this.#parts;
     if (this.#headHeight === null) return;
     this.#seated = on;
     const tracked = this.#headHeight - headset.raised;
     this.#raise(on ? body.calibration.eyeHeight - tracked : 0);
-    this.#options.userCalibration.recentre();
+    this.#parts.userCalibration.recentre();
   }
 
   /** Moves the floor under the user; for a user who sits, the eyes are at standing height again. */
   recentre(): void {
     if (this.#seated) this.setSeated(true);
-    else this.#options.userCalibration.recentre();
+    else this.#parts.userCalibration.recentre();
   }
 
   /** Raises the user by this much more [m]. */
   raiseBy(metres: number): void {
-    this.#raise(this.#options.headset.raised + metres);
+    this.#raise(this.#parts.headset.raised + metres);
   }
 
   #raise(height: number): void {
-    const { headset } = this.#options;
+    const { headset } = this.#parts;
     const before = headset.raised;
     headset.raise(clamp(height, minRaise, maxRaise));
     if (this.#headHeight !== null) this.#headHeight += headset.raised - before;

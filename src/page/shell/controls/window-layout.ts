@@ -1,6 +1,5 @@
 import { pageElement } from 'threepoint-ui';
-import type { Settings } from '../settings';
-import type { Stage } from '../stage';
+import type { StageParts } from '../stage-parts';
 
 /** The window width up to which the open controls leave the picture little room beside them [CSS pixels]. */
 const narrowest = 760;
@@ -14,28 +13,23 @@ const textScale = 1.3;
 /** Whether the controls stay closed until their button is pressed. */
 export const isNarrow = (): boolean => window.innerWidth <= narrowest;
 
-export interface WindowLayoutOptions {
-  readonly stage: Stage;
-  readonly settings: Settings;
-  /** Emits the event `toggle` when the panel opens or closes. */
-  readonly panelRegion: HTMLElement;
-  panelOpen(): boolean;
-}
-
 /**
  * Chooses how the page's parts are arranged. The style sheet gives each part its cell of one grid. The cell that is
  * left is `main`: the body is fitted to it.
  */
 export class WindowLayout {
-  readonly #options: WindowLayoutOptions;
+  readonly #parts: StageParts;
+  readonly #panelOpen: () => boolean;
   readonly #picture = document.querySelector('main')!;
   readonly #play = pageElement('play', HTMLElement);
 
-  constructor(options: WindowLayoutOptions) {
-    this.#options = options;
+  /** `panelRegion` emits the event `toggle` when the panel opens or closes. */
+  constructor(parts: StageParts, panelRegion: HTMLElement, panelOpen: () => boolean) {
+    this.#parts = parts;
+    this.#panelOpen = panelOpen;
     const layOut = () => this.layOut();
     window.addEventListener('resize', layOut);
-    options.panelRegion.addEventListener('toggle', layOut);
+    panelRegion.addEventListener('toggle', layOut);
     new ResizeObserver(() => this.#fitPicture()).observe(this.#picture);
   }
 
@@ -46,10 +40,9 @@ export class WindowLayout {
 
   /** Sets the classes that choose between the arrangements of the style sheet. */
   arrange(): void {
-    const { settings, panelOpen } = this.#options;
     const { innerWidth, innerHeight } = window;
-    const open = panelOpen();
-    const width = innerWidth / (settings.largerText ? textScale : 1);
+    const open = this.#panelOpen();
+    const width = innerWidth / (this.#parts.settings.largerText ? textScale : 1);
     const portrait = innerHeight > innerWidth;
     const playing = this.#play.querySelector(':is(.round, .mocap):not([hidden])') !== null;
     const stacked =
@@ -66,6 +59,6 @@ export class WindowLayout {
   #fitPicture(): void {
     const { left, right, top, bottom } = this.#picture.getBoundingClientRect();
     const { innerWidth, innerHeight } = window;
-    this.#options.stage.layOut({ left, right: innerWidth - right, top, bottom: innerHeight - bottom });
+    this.#parts.stage.layOut({ left, right: innerWidth - right, top, bottom: innerHeight - bottom });
   }
 }

@@ -1,7 +1,7 @@
 import { MutablePointer, type Pointer } from 'threepoint/core';
 import type { MouseAim } from 'threepoint-ui';
 import type { DesktopView } from '../../scene/desktop-view';
-import type { PageParts } from '../page-parts';
+import type { StageParts } from '../stage-parts';
 
 /** Returns the mouse, pen or finger in the window as a pointer into the scene, as of now. */
 export function createMousePointer(mouse: MouseAim, view: DesktopView): () => Pointer {
@@ -17,7 +17,7 @@ export function createMousePointer(mouse: MouseAim, view: DesktopView): () => Po
 }
 
 /** The mouse presses what the sheets of a game offer. A study's participant plays with the headset alone. */
-export function pressSheetsByMouse({ stage, headset, study, activities }: PageParts): void {
+export function pressSheetsByMouse({ stage, headset, study, activities }: StageParts): void {
   const { view } = stage;
   const canvas = stage.renderer.domElement;
 

@@ -1,7 +1,6 @@
 import { GazePointer, type Pointer } from 'threepoint/core';
 import type { Pose } from 'threepoint/math';
-import type { TrackedSession } from 'threepoint/webxr';
-import type { Settings } from '../settings';
+import type { SessionParts } from '../session-parts';
 
 /** Hands that have not been seen for this time [s] do not play: a pointer does. */
 const handsGoneSeconds = 1;
@@ -10,14 +9,9 @@ const offerSeconds = 3;
 
 const isTransient = ({ source }: Pointer): boolean => source === 'transient';
 
-export interface PointersOptions {
-  readonly headset: { readonly tracking: Pick<TrackedSession, 'inputs'> | null };
-  readonly settings: Pick<Settings, 'gaze'>;
-}
-
 /** The pointers of a session: those of its input sources, and the gaze where its user chose it or was offered it. */
 export class Pointers {
-  readonly #options: PointersOptions;
+  readonly #parts: SessionParts;
   readonly #gaze = new GazePointer();
   readonly #all: Pointer[] = [];
   #tracking: object | null = null;
@@ -28,8 +22,8 @@ export class Pointers {
   #steering: Pointer | null = null;
   #offers = false;
 
-  constructor(options: PointersOptions) {
-    this.#options = options;
+  constructor(parts: SessionParts) {
+    this.#parts = parts;
   }
 
   /** The pointers of the newest frame. */
@@ -51,7 +45,7 @@ export class Pointers {
    * Reads the pointers of a session's frame at a time [s]. `head`: floor frame; null: not seen, or not for the page.
    */
   follow(time: number, head: Pose<'floor'> | null): void {
-    const { headset, settings } = this.#options;
+    const { headset, settings } = this.#parts;
     const { tracking } = headset;
     if (tracking !== this.#tracking) this.#restart(tracking, time);
     this.#all.length = 0;

@@ -1,24 +1,20 @@
 import { firstLine, reasonOf } from 'threepoint/core';
 import type { PassthroughOptions, PassthroughRoom } from '../../passthrough/passthrough-room';
-import type { Activities } from '../activities/activities';
-import type { Headset } from '../headset';
-import type { PreferenceStore } from '../preferences';
-import type { Stage } from '../stage';
-
-export interface PassthroughHostOptions extends Pick<PassthroughOptions, 'quality' | 'notices' | 'isCovered'> {
-  readonly headset: Headset;
-  readonly stage: Stage;
-  readonly activities: Activities;
-  readonly store: PreferenceStore;
-}
+import type { Quality } from '../../scene/renderer';
+import type { StageParts } from '../stage-parts';
 
 /** Loads the user's own room for a session that shows it; other sessions and the desktop never load its code. */
 export class PassthroughHost {
-  readonly #options: PassthroughHostOptions;
+  readonly #parts: StageParts;
+  readonly #quality: Quality;
+  readonly #isCovered: () => boolean;
   #room: PassthroughRoom | null = null;
 
-  constructor(options: PassthroughHostOptions) {
-    this.#options = options;
+  /** `isCovered`: whether the mirror is behind something that a hand points at. */
+  constructor(parts: StageParts, quality: Quality, isCovered: () => boolean) {
+    this.#parts = parts;
+    this.#quality = quality;
+    this.#isCovered = isCovered;
   }
 
   /** null: no session shows the room, or its code is still loading. */
@@ -28,7 +24,7 @@ export class PassthroughHost {
 
   /** Call it when a session started or ended. Never rejects: a failure becomes a notice. */
   async sessionChanged(): Promise<void> {
-    const { headset, notices } = this.#options;
+    const { headset, notices } = this.#parts;
     const session = headset.passthrough;
     this.#leave();
     if (!session) return;
@@ -48,13 +44,15 @@ export class PassthroughHost {
     if (!this.#room) return;
     this.#room.dispose();
     this.#room = null;
-    this.#options.stage.placeMirror(this.#options.activities.current?.mirrorSide ?? null);
+    this.#parts.stage.placeMirror(this.#parts.activities.current?.mirrorSide ?? null);
   }
 
   #roomOptions(session: XRSession): PassthroughOptions {
-    const { headset, stage, activities, store } = this.#options;
+    const { headset, stage, activities, store, notices } = this.#parts;
     return {
-      ...this.#options,
+      notices,
+      quality: this.#quality,
+      isCovered: this.#isCovered,
       session,
       room: headset.room,
       studio: stage.studio,

@@ -1,60 +1,40 @@
-import type { BodySolver } from 'threepoint';
-import type { Recorder } from '../../studio/recorder';
-import type { Activities } from '../activities/activities';
 import type { Controls } from '../controls/controls';
-import type { FrameTiming } from '../frame-timing';
-import type { Headset, HeadsetListener } from '../headset';
-import type { Stage } from '../stage';
-import type { PageStudy } from '../study/page-study';
+import type { HeadsetListener } from '../headset';
+import type { InputParts } from '../input-parts';
 import type { PassthroughHost } from './passthrough-host';
-
-export interface SessionChangesOptions {
-  readonly headset: Pick<Headset, 'pictureRateHz' | 'visibility'>;
-  readonly recorder: Recorder;
-  readonly timing: FrameTiming;
-  readonly stage: Pick<Stage, 'view'>;
-  readonly body: Pick<BodySolver, 'startSession' | 'endSession' | 'discontinuity'>;
-  readonly activities: Pick<Activities, 'current' | 'sessionChanged'>;
-  readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
-  readonly study: Pick<PageStudy, 'run'>;
-  readonly passthrough: Pick<PassthroughHost, 'sessionChanged'>;
-}
 
 /** What the page does when a headset is put on, taken off, or changes under way. */
 export class SessionChanges implements HeadsetListener {
-  readonly #options: SessionChangesOptions;
+  readonly #parts: InputParts;
+  readonly #controls: Controls;
+  readonly #passthrough: PassthroughHost;
 
-  constructor(options: SessionChangesOptions) {
-    this.#options = options;
+  constructor(parts: InputParts, controls: Controls, passthrough: PassthroughHost) {
+    this.#parts = parts;
+    this.#controls = controls;
+    this.#passthrough = passthrough;
   }
 
   entered(): void {
-    const { recorder, controls, body } = this.#options;
-    recorder.stop();
-    body.startSession();
-    controls.setWorn(true);
+    this.#parts.recorder.stop();
+    this.#controls.setWorn(true);
     this.#changed();
   }
 
   left(): void {
-    const { recorder, controls, stage, body } = this.#options;
+    const { recorder, stage } = this.#parts;
     // Another source moves the body now, which the recording's header does not name.
     if (recorder.mode === 'recording') recorder.stop();
-    body.endSession();
-    controls.setWorn(false);
+    this.#controls.setWorn(false);
     stage.view.setView(stage.view.view);
-    controls.layOut();
+    this.#controls.layOut();
     this.#changed();
   }
 
   refused(): void {
     // A session that fails while it starts leaves the canvas without a size.
-    this.#options.controls.layOut();
+    this.#controls.layOut();
     this.#changed();
-  }
-
-  discontinuity(): void {
-    this.#options.body.discontinuity();
   }
 
   visibilityChanged(): void {
@@ -62,14 +42,14 @@ export class SessionChanges implements HeadsetListener {
   }
 
   rateChanged(): void {
-    const { timing, headset, controls } = this.#options;
+    const { timing, headset } = this.#parts;
     timing.setRate(headset.pictureRateHz);
     timing.reset();
-    controls.show();
+    this.#controls.show();
   }
 
   emulatorChanged(): void {
-    this.#options.controls.show();
+    this.#controls.show();
   }
 
   /** The window of the page goes behind others, or comes back. */
@@ -82,20 +62,20 @@ export class SessionChanges implements HeadsetListener {
    * match.
    */
   #sightChanged(): void {
-    const { headset, timing, activities } = this.#options;
+    const { headset, timing, activities } = this.#parts;
     timing.reset();
     const hidden = headset.visibility === 'none' ? document.hidden : headset.visibility === 'hidden';
     activities.current?.setAway?.(hidden);
   }
 
   #changed(): void {
-    const { timing, headset, body, activities, controls, study, passthrough } = this.#options;
-    void passthrough.sessionChanged();
+    const { timing, headset, body, activities, study } = this.#parts;
+    void this.#passthrough.sessionChanged();
     timing.setRate(headset.pictureRateHz);
     this.#sightChanged();
     body.discontinuity();
     activities.sessionChanged();
-    controls.show();
+    this.#controls.show();
     study.run?.sessionChanged();
   }
 }

@@ -1,6 +1,6 @@
 import type { ActivityRunner } from '../../activity/activity';
 import { home } from '../activity-registry';
-import type { PageParts } from '../page-parts';
+import type { StageParts } from '../stage-parts';
 import type { Switches } from '../switches';
 import { embody } from './embody';
 import type { PageStudy } from './page-study';
@@ -9,11 +9,7 @@ import type { PageStudy } from './page-study';
 const longestDeviceName = 160;
 
 /** Makes the tasks that studies run, by the names of their activities. */
-export async function createRunners({
-  activities,
-  settings,
-  writer,
-}: Pick<PageParts, 'activities' | 'settings' | 'writer'>): Promise<PageStudy['runners']> {
+export async function createRunners({ activities, settings, writer }: StageParts): Promise<PageStudy['runners']> {
   const runners: Record<string, ActivityRunner> = {};
   for (const { name, createRunner } of activities.all) {
     const runner = await createRunner?.({
@@ -29,7 +25,7 @@ export async function createRunners({
 }
 
 /** Joins a study, which decides from then on what is played and with which body. */
-export async function joinStudy(parts: PageParts, asked: NonNullable<Switches['study']>): Promise<void> {
+export async function joinStudy(parts: StageParts, asked: NonNullable<Switches['study']>): Promise<void> {
   const { switches, settings, writer, headset, timing, body, userCalibration, study, stage } = parts;
   const { createStudyRun } = await import('threepoint-study/participant');
   writer.change({ startSignal: true });

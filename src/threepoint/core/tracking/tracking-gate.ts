@@ -35,52 +35,32 @@ function validFingers(fingers: Fingers): Fingers {
   return left === fingers.left && right === fingers.right ? fingers : { left, right };
 }
 
-export interface TrackingGateOptions {
-  /**
-   * Whether a point that the source has never reported as tracked counts as tracked. Emulators and controllers without
-   * cameras report every position as guessed; without this their arms would hang and their hands could not play.
-   */
-  readonly assumesTracked?: boolean;
-  /** Called when a point becomes tracked or is lost. */
-  readonly onChange?: (point: TrackedPoint, tracked: boolean) => void;
-}
-
 /**
- * Decides what is tracked in the frames of one source: the only place that checks head, hands, their tracking state and
- * their times. `pinning` checks trackers.
+ * Checks the frames of one source, each once: head, hands, their tracking state and their times. `pinning` checks
+ * trackers.
  */
 export class TrackingGate {
-  readonly #options: TrackingGateOptions;
+  readonly #assumesTracked: boolean;
   /** The time of the newest frame [s]; NaN before the first. */
   #time = Number.NaN;
   /** The points that the source has reported as tracked at least once. */
   readonly #reported: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
-  readonly #tracked: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
 
-  constructor(options: TrackingGateOptions = {}) {
-    this.#options = options;
+  /**
+   * `assumesTracked`: whether a point that the source has never reported as tracked counts as tracked. Emulators and
+   * controllers without cameras report every position as guessed; without this their arms would hang and their hands
+   * could not play.
+   */
+  constructor({ assumesTracked = false } = {}) {
+    this.#assumesTracked = assumesTracked;
   }
 
   /**
    * Returns the frame itself, or a copy in which an invalid hand is null, every point has a tracking state, rotations
    * have length 1, fingers that are not finite are unknown, an invalid device body is absent, and an invalid time is
-   * that of the frame before. Returns null while the head is not seen or no time is known. A head counts as
-   * tracked in each frame that has one, because the body follows a guessed head too.
+   * that of the frame before. Returns null while the head is not seen or no time is known.
    */
   validate(frame: TrackingFrame | null | undefined): TrackingFrame | null {
-    const valid = this.#check(frame);
-    this.#follow('head', valid !== null);
-    this.#follow('left', isTracked(valid?.leftHand));
-    this.#follow('right', isTracked(valid?.rightHand));
-    return valid;
-  }
-
-  /** Marks every point as not tracked without a call of `onChange`: the session is over. */
-  reset(): void {
-    for (const point of trackedPoints) this.#tracked[point] = false;
-  }
-
-  #check(frame: TrackingFrame | null | undefined): TrackingFrame | null {
     const head = this.#checkPoint('head', frame?.head);
     if (!frame || !head) return null;
     const validTime = Number.isFinite(frame.time);
@@ -100,14 +80,36 @@ export class TrackingGate {
     const valid = validPose(pose);
     if (!valid) return null;
     this.#reported[point] ||= isTracked(valid);
-    const assumed = this.#options.assumesTracked && !this.#reported[point];
+    const assumed = this.#assumesTracked && !this.#reported[point];
     return assumed ? { ...valid, tracking: 'tracked' } : valid;
   }
+}
 
-  #follow(point: TrackedPoint, tracked: boolean): void {
+/** Reports the points that become tracked or are lost from one valid frame to the next. */
+export class TrackedPoints {
+  readonly #onChange: (point: TrackedPoint, tracked: boolean) => void;
+  readonly #tracked: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
+
+  constructor(onChange: (point: TrackedPoint, tracked: boolean) => void) {
+    this.#onChange = onChange;
+  }
+
+  /** Follows a frame. A head counts as tracked in each frame that has one, because the body follows a guessed head. */
+  follow(frame: TrackingFrame | null): void {
+    this.#set('head', frame !== null);
+    this.#set('left', isTracked(frame?.leftHand));
+    this.#set('right', isTracked(frame?.rightHand));
+  }
+
+  /** Marks every point as not tracked without a report: the session is over. */
+  reset(): void {
+    for (const point of trackedPoints) this.#tracked[point] = false;
+  }
+
+  #set(point: TrackedPoint, tracked: boolean): void {
     if (this.#tracked[point] === tracked) return;
     this.#tracked[point] = tracked;
-    this.#options.onChange?.(point, tracked);
+    this.#onChange(point, tracked);
   }
 }
 

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { identity } from '../../../../src/threepoint/core/math/quat';
 import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
-import { TrackingGate, validFrames } from '../../../../src/threepoint/core/tracking/tracking-gate';
+import { TrackedPoints, TrackingGate, validFrames } from '../../../../src/threepoint/core/tracking/tracking-gate';
 
 const point = (x: number, tracking: 'tracked' | 'emulated' = 'tracked') => ({
   ...{ position: { x, y: 1.2, z: -0.3 }, orientation: identity, tracking },
@@ -11,26 +11,32 @@ const guessed: TrackingFrame = { ...frame, leftHand: point(-0.3, 'emulated') };
 
 function gateOf(assumesTracked: boolean) {
   const events: string[] = [];
-  const onChange = (name: string, tracked: boolean) => void events.push(`${name} ${tracked ? 'found' : 'lost'}`);
-  return { gate: new TrackingGate({ assumesTracked, onChange }), events };
+  const gate = new TrackingGate({ assumesTracked });
+  const points = new TrackedPoints((name, tracked) => void events.push(`${name} ${tracked ? 'found' : 'lost'}`));
+  const validate = (next: TrackingFrame | null) => {
+    const valid = gate.validate(next);
+    points.follow(valid);
+    return valid;
+  };
+  return { validate, reset: () => points.reset(), events };
 }
 
 test('a hand that a device only guesses counts as tracked until the device has reported it as tracked', () => {
-  const { gate } = gateOf(true);
-  expect(gate.validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
-  expect(gate.validate(frame)).toBe(frame);
-  expect(gate.validate(guessed)).toBe(guessed);
+  const { validate } = gateOf(true);
+  expect(validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
+  expect(validate(frame)).toBe(frame);
+  expect(validate(guessed)).toBe(guessed);
 });
 
 test('a guessed hand of a page’s own frames is lost', () => {
-  const { gate, events } = gateOf(false);
-  expect(gate.validate(guessed)).toBe(guessed);
+  const { validate, events } = gateOf(false);
+  expect(validate(guessed)).toBe(guessed);
   expect(events).toEqual(['head found', 'right found']);
 });
 
 test('each change is reported once, and a frame without a head loses every point', () => {
-  const { gate, events } = gateOf(false);
-  for (const next of [frame, frame, guessed, null, null, frame]) gate.validate(next);
+  const { validate, events } = gateOf(false);
+  for (const next of [frame, frame, guessed, null, null, frame]) validate(next);
   expect(events).toEqual([
     ...['head found', 'left found', 'right found', 'left lost'],
     ...['head lost', 'right lost', 'head found', 'left found', 'right found'],
@@ -38,12 +44,12 @@ test('each change is reported once, and a frame without a head loses every point
 });
 
 test('after a reset every point is found again without having been reported as lost', () => {
-  const { gate, events } = gateOf(false);
-  gate.validate(frame);
+  const { validate, reset, events } = gateOf(false);
+  validate(frame);
   events.length = 0;
-  gate.reset();
+  reset();
   expect(events).toEqual([]);
-  gate.validate(frame);
+  validate(frame);
   expect(events).toEqual(['head found', 'left found', 'right found']);
 });
 
