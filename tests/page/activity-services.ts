@@ -5,11 +5,11 @@ import type { StudyRun } from 'threepoint-study/participant';
 import { ServerPresence } from 'threepoint-ui';
 import type { ActivityServices } from '../../src/page/activity/activity-context';
 import type { Surroundings } from '../../src/page/scene/surroundings';
-import { fetchBuiltInAvatar } from '../../src/page/shell/avatar-loader';
-import type { Pointers } from '../../src/page/shell/frame/pointers';
-import { createSettings, SettingsWriter, type StoredSettings } from '../../src/page/shell/settings';
-import type { PageStudy } from '../../src/page/shell/study/page-study';
-import { readSwitches } from '../../src/page/shell/switches';
+import type { Pointers } from '../../src/page/shell/input/pointers';
+import type { PageStudy } from '../../src/page/shell/session/page-study';
+import { createSettings, SettingsWriter, type StoredSettings } from '../../src/page/shell/session/settings';
+import { readSwitches } from '../../src/page/shell/session/switches';
+import { fetchBuiltInAvatar } from '../../src/page/shell/stage/avatar-loader';
 import type { Notice } from '../../src/ui/notices';
 import { fake } from './shell/fake';
 

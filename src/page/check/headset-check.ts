@@ -2,7 +2,7 @@ import type { WebGLRenderer } from 'three';
 import type { BodyTracker } from 'threepoint/three';
 import type { TrackedSession } from 'threepoint/webxr';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
-import type { FrameTiming } from '../shell/frame-timing';
+import type { FrameTiming } from '../shell/session/frame-timing';
 import { enterSession, OfferedFeatures } from './check-session';
 import { type CheckStep, remainingSteps } from './check-steps';
 import type { CheckWorlds } from './check-worlds';

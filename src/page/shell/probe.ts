@@ -3,9 +3,9 @@ import type { Side, Vec3 } from 'threepoint/math';
 import type { PlayerProbe } from '../activity/activity';
 import type { OfflineCopy } from '../offline/offline-copy';
 import type { GameProbe } from './activity-registry';
-import type { PageFrame } from './frame/page-frame';
-import type { InputParts } from './input-parts';
-import type { PassthroughHost } from './session/passthrough-host';
+import type { InputParts } from './input/input-parts';
+import type { PageFrame } from './page-frame';
+import type { PassthroughHost } from './stage/passthrough-host';
 
 /** A point of the floor frame [m]. */
 type Triple = readonly [number, number, number];

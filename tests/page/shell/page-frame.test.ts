@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest';
-import type { Controls } from '../../../src/page/shell/controls/controls';
-import { PageFrame } from '../../../src/page/shell/frame/page-frame';
-import type { InputParts } from '../../../src/page/shell/input-parts';
-import type { PassthroughHost } from '../../../src/page/shell/session/passthrough-host';
+import type { InputParts } from '../../../src/page/shell/input/input-parts';
+import { PageFrame } from '../../../src/page/shell/page-frame';
+import type { Controls } from '../../../src/page/shell/panels/controls';
+import type { PassthroughHost } from '../../../src/page/shell/stage/passthrough-host';
 import { fake } from './fake';
 
 /**

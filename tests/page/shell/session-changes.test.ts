@@ -1,12 +1,12 @@
 import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { expect, test, vi } from 'vitest';
 import type { OpenActivity } from '../../../src/page/activity/activity';
-import type { Controls } from '../../../src/page/shell/controls/controls';
-import { FrameTiming } from '../../../src/page/shell/frame-timing';
-import type { Headset } from '../../../src/page/shell/headset';
-import type { InputParts } from '../../../src/page/shell/input-parts';
-import type { PassthroughHost } from '../../../src/page/shell/session/passthrough-host';
-import { SessionChanges } from '../../../src/page/shell/session/session-changes';
+import type { InputParts } from '../../../src/page/shell/input/input-parts';
+import type { Controls } from '../../../src/page/shell/panels/controls';
+import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
+import type { Headset } from '../../../src/page/shell/session/headset';
+import { SessionChanges } from '../../../src/page/shell/session-changes';
+import type { PassthroughHost } from '../../../src/page/shell/stage/passthrough-host';
 import { Recorder } from '../../../src/page/studio/recorder';
 import { fake } from './fake';
 
