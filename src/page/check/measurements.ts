@@ -12,7 +12,6 @@ import { TrackingLosses } from './tracking-losses';
 /** The data of one frame of the session. */
 export interface CheckFrame {
   readonly time: number;
-  /** null: the head is not tracked. */
   readonly tracked: TrackingFrame | null;
   readonly pose: AvatarPose | null;
   readonly kinds: Readonly<Record<Side, InputKind>>;

@@ -34,7 +34,6 @@ export class CalibrationControl {
     });
   }
 
-  /** null: it is not running. */
   get step(): CalibrationStep | null {
     return this.#step;
   }

@@ -68,7 +68,6 @@ function createMeasure(label: string, range: MeasureRange, onChange: () => void)
   return {
     input,
     node: element('label', { class: 'measure' }, element('span', {}, label), input, element('i', {}, 'cm')),
-    /** null: not given. */
     show(centimetres: number | null) {
       // A number that is being typed must not change under the fingers.
       if (document.activeElement === input) return;

@@ -46,12 +46,10 @@ export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly palette: string | null;
   readonly heightCm: number;
   readonly armSpanCm: number;
-  /** null: not given. */
   readonly forearmCm: number | null;
   readonly eyeHeightCm: number;
   readonly emulated: boolean;
   readonly recorder: RecorderState;
-  /** null: nothing is being made. */
   readonly exporting: ExportState | null;
   readonly inSession: boolean;
   /** The session shows the room around the user. */

@@ -69,7 +69,6 @@ export class Headset {
   #listener: HeadsetListener | null = null;
   #emulator: Emulator | null = null;
   #entering = false;
-  /** null: it is not on its way. */
   #installing: Promise<void> | null = null;
   #session: Session | null = null;
   /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */

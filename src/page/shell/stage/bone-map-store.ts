@@ -18,7 +18,6 @@ export class BoneMapStore {
     return this.#store.preferences.bones ?? {};
   }
 
-  /** undefined: none was given for this file. */
   of(hash: string): BoneMap | undefined {
     return this.all[hash];
   }

@@ -25,7 +25,6 @@ export interface Picture {
   readonly time: number;
   /** null: the head is not seen. */
   readonly frame: TrackingFrame | null;
-  /** null: not loaded yet. */
   readonly avatar: Avatar | null;
   readonly inSession: boolean;
   /** How far to the right of its user the body of a session is drawn [m]; 0: where the user is. */

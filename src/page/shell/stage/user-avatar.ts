@@ -50,7 +50,6 @@ export class UserAvatar {
     this.#loader = loader;
   }
 
-  /** null: none has been loaded yet. */
   get current(): Avatar | null {
     return this.#parts.tracker.avatar;
   }
