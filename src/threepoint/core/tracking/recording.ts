@@ -3,10 +3,10 @@ import { type Fingers, fingerNames, type HandShape, lerpHandShape, limitBend, ma
 import type { HandTilts } from '../body/hand-tilt';
 import { isFiniteNumber, isObject } from '../json';
 import { clamp } from '../math/damper';
-import type { TrackedPose } from '../math/pose';
+import { isFinitePose, type TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
 import { lerp } from '../math/vec3';
-import { type DeviceBody, deviceBodySize, deviceJointNames, mixDeviceBodies } from './device-body';
+import { type DeviceBody, deviceBodySize, deviceJointNames, isFiniteDeviceBody, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
 /** Frames in the order of their times: an array, or an object that makes each frame on demand. */
@@ -217,10 +217,12 @@ function parsePose(value: unknown, what: string): TrackedPose {
     throw new Error(`${what} is neither “tracked” nor “emulated”.`);
   }
   const [px, py, pz, x, y, z, w] = value as number[];
+  const position = { x: px!, y: py!, z: pz! };
   const orientation = { x: x!, y: y!, z: z!, w: w! };
   if (Math.abs(Math.hypot(x!, y!, z!, w!) - 1) > 1e-3)
     throw new Error(`${what} has an orientation that is not a unit quaternion.`);
-  return { position: { x: px!, y: py!, z: pz! }, orientation, tracking };
+  if (!isFinitePose({ position, orientation })) throw new Error(`${what} is too far away to be measured.`);
+  return { position, orientation, tracking };
 }
 
 function parseBends(value: unknown, what: string): HandShape {
@@ -237,10 +239,9 @@ function parseBends(value: unknown, what: string): HandShape {
 }
 
 function parseBody(value: unknown, what: string): DeviceBody {
-  if (!Array.isArray(value) || value.length !== deviceBodySize || !value.every(isFiniteNumber)) {
-    throw new Error(`${what} is not ${deviceBodySize} finite numbers.`);
-  }
-  return Float32Array.from(value);
+  const body = Array.isArray(value) && value.every(isFiniteNumber) ? Float32Array.from(value) : null;
+  if (!body || !isFiniteDeviceBody(body)) throw new Error(`${what} is not ${deviceBodySize} finite numbers.`);
+  return body;
 }
 
 /** Returns the time [s] from the first frame to the last. */
