@@ -38,6 +38,16 @@ import type { StageParts } from './stage/stage-parts';
 import { UserAvatar } from './stage/user-avatar';
 import { UserCalibration } from './stage/user-calibration';
 
+/** Returns the options of the body that the address and the stored settings decide. */
+const bodyOptions = ({ store, switches }: PageContext) => ({
+  avatar: null,
+  pointing: (session: XRSession) => new Pointing(session),
+  estimator: 'ik' as const,
+  calibration: store.preferences.calibration ?? ('auto' as const),
+  // A study measures its participants itself.
+  autoGrow: switches.study === null,
+});
+
 /** Creates all parts of the page, each from those before it. */
 function createParts(context: PageContext, loading: PageLoading) {
   const { switches, settings, store, changes, notices } = context;
@@ -57,12 +67,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const { scene } = studio;
   const clock = createPageClock(() => performance.now());
   const tracker = new BodyTracker<Avatar | null>(renderer, {
-    avatar: null,
-    pointing: (session) => new Pointing(session),
-    estimator: 'ik',
-    calibration: store.preferences.calibration ?? 'auto',
-    // A study measures its participants itself.
-    autoGrow: switches.study === null,
+    ...bodyOptions(context),
     networks,
     clock,
     profiler: timing,
@@ -175,6 +180,6 @@ function connectParts(page: Page): void {
 export function createPage(context: PageContext, loading: PageLoading): Page {
   const page = createParts(context, loading);
   connectParts(page);
-  exposeProbe(() => readProbe(page));
+  exposeProbe(() => readProbe(page, page.frame, page.passthrough, page.kept));
   return page;
 }

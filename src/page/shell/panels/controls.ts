@@ -40,7 +40,7 @@ export class Controls {
     this.#play = createPlayBar(parts.activities);
     const measuring = this.#measuring;
     const motionExport = new MotionExport(parts);
-    const actions = createPanelActions({ ...parts, measuring, motionExport, files: this.#files });
+    const actions = createPanelActions(parts, measuring, this.#files, motionExport);
     this.#desktop = new DesktopControls(panelRegion, parts, actions, motionExport);
     this.#inHeadset = new HeadsetControls(parts, measuring, actions, createVrPointers());
     this.#layout = new WindowLayout(parts, panelRegion, () => this.#desktop.panelOpen);

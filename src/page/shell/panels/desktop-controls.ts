@@ -31,7 +31,6 @@ export class DesktopControls {
     this.#panel = createPanel(
       region,
       {
-        palettes,
         height: { min: centimetres(statureRange.min), max: centimetres(statureRange.max) },
         armSpan: {
           min: centimetres(fingertipSpanFromArmSpan(armSpanRange.min)),
@@ -39,6 +38,7 @@ export class DesktopControls {
         },
         forearm: { min: centimetres(forearmRange.min), max: centimetres(forearmRange.max) },
       },
+      palettes,
       actions,
     );
     listenToShortcuts(this.#shortcuts(), () => settings.singleKeys && !headset.worn && study.run === null);

@@ -7,19 +7,10 @@ import type { MotionExport } from './motion-export';
 import type { PanelActions } from './panel';
 import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from './panel-state';
 
-export interface PanelActionsOptions extends StageParts {
-  readonly files: FileOpener;
-  readonly motionExport: MotionExport;
-  readonly measuring: CalibrationControl;
-}
-
-function bodyActions({
-  store,
-  body,
-  notices,
-  userCalibration,
-  measuring,
-}: PanelActionsOptions): Omit<BodyActions, keyof SettingActions> {
+function bodyActions(
+  { store, body, notices, userCalibration }: StageParts,
+  measuring: CalibrationControl,
+): Omit<BodyActions, keyof SettingActions> {
   return {
     chooseEstimator(name) {
       store.remember({ estimator: name });
@@ -43,7 +34,7 @@ function bodyActions({
   };
 }
 
-function avatarActions({ writer, avatar, files }: PanelActionsOptions): Omit<AvatarActions, keyof SettingActions> {
+function avatarActions({ writer, avatar }: StageParts, files: FileOpener): Omit<AvatarActions, keyof SettingActions> {
   return {
     choosePalette(palette) {
       writer.keep({ palette });
@@ -66,8 +57,8 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): Omit<Ava
   };
 }
 
-function recordingActions(options: PanelActionsOptions): RecordingActions {
-  const { writer, settings, recorder, headset, timing, body, files, motionExport, onChange } = options;
+function recordingActions(parts: StageParts, files: FileOpener, motionExport: MotionExport): RecordingActions {
+  const { writer, settings, recorder, headset, timing, body, onChange } = parts;
   return {
     record() {
       const driven = headset.emulator || !headset.worn ? 'emulated headset' : 'headset';
@@ -118,12 +109,17 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
 }
 
 /** Creates the actions of the panel. */
-export function createPanelActions(options: PanelActionsOptions): PanelActions {
-  const { writer, stage, userCalibration, headset, onChange } = options;
+export function createPanelActions(
+  parts: StageParts,
+  measuring: CalibrationControl,
+  files: FileOpener,
+  motionExport: MotionExport,
+): PanelActions {
+  const { writer, stage, userCalibration, headset, onChange } = parts;
   return {
-    ...bodyActions(options),
-    ...avatarActions(options),
-    ...recordingActions(options),
+    ...bodyActions(parts, measuring),
+    ...avatarActions(parts, files),
+    ...recordingActions(parts, files, motionExport),
     change: (part) => writer.change(part),
     keep: (part) => writer.keep(part),
     chooseView(name) {

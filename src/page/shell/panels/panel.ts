@@ -17,10 +17,6 @@ export interface PanelActions extends BodyActions, AvatarActions, RecordingActio
   exitVr(): void;
 }
 
-export interface PanelOptions extends MeasureRanges {
-  readonly palettes: readonly PaletteChoice[];
-}
-
 /** Creates tabs after the ARIA pattern: one tab is in the tab order, and arrow keys move between them. */
 function createTabs(pages: readonly { readonly name: string; readonly content: readonly Node[] }[]): HTMLElement[] {
   const list = element('div', { role: 'tablist', 'aria-label': 'Controls' });
@@ -59,10 +55,15 @@ function createTabs(pages: readonly { readonly name: string; readonly content: r
 }
 
 /** The controls of the desktop page, a page behind each tab. */
-export function createPanel(region: HTMLElement, options: PanelOptions, actions: PanelActions) {
+export function createPanel(
+  region: HTMLElement,
+  ranges: MeasureRanges,
+  palettes: readonly PaletteChoice[],
+  actions: PanelActions,
+) {
   const pages = [
-    createBodyPage(options, actions),
-    createAvatarPage(options.palettes, actions),
+    createBodyPage(ranges, actions),
+    createAvatarPage(palettes, actions),
     createRecordingPage(actions),
     createViewPage(actions),
   ];
