@@ -111,6 +111,12 @@ const studyServerRooms = {
   export: ['storage', 'plugins'],
   routes: ['storage', 'export'],
 };
+const shellRooms = {
+  session: [],
+  stage: ['session'],
+  input: ['session', 'stage'],
+  panels: ['session', 'stage', 'input'],
+};
 /** Every file of the model is in one of its rooms. */
 const knownStudyRooms = Object.keys(studyRooms).map((room) =>
   room === 'model' ? `model/(${Object.keys(modelRooms).join('|')})` : room,
@@ -134,13 +140,14 @@ export default {
     ...roomRules('src/study', studyRooms),
     ...roomRules('src/study/model', modelRooms),
     ...roomRules('src/study/server', studyServerRooms),
+    ...roomRules('src/page/shell', shellRooms, '^src/page/shell/'),
     {
       name: 'rooms-are-known',
       comment: 'A new room of a package needs a line in this file that names the rooms it may import.',
       severity: 'error',
       from: {
-        path: '^src/(threepoint|rooms|study)/.*/',
-        pathNot: `^src/(threepoint/(${Object.keys(libraryRooms).join('|')})|rooms/(${Object.keys(roomsRooms).join('|')})|study/(${knownStudyRooms.join('|')}|cli))/`,
+        path: '^src/(threepoint/|rooms/|study/|page/shell/).*/',
+        pathNot: `^src/(page/shell/(${Object.keys(shellRooms).join('|')})|threepoint/(${Object.keys(libraryRooms).join('|')})|rooms/(${Object.keys(roomsRooms).join('|')})|study/(${knownStudyRooms.join('|')}|cli))/`,
       },
       to: {},
     },

@@ -1,5 +1,5 @@
 import { recordOf } from 'threepoint/core';
-import { stageNames } from '../src/page/shell/frame-timing';
+import { stageNames } from '../src/page/shell/session/frame-timing';
 import type { Allocations } from './allocations';
 import { type WorldCounts, whole } from './counts';
 import type { MeasuredNetwork } from './networks';

@@ -38,7 +38,7 @@ export async function waitForCanvasText(page: Page, text: string, width: number 
   return (await found.jsonValue()) as Written;
 }
 
-/** The menu's centre [m] and yaw in the floor frame, as set in the page's shell/vr-menu. */
+/** The menu's centre [m] and yaw in the floor frame, as set in the page's shell/panels/vr-menu. */
 const menuAt = [1.1, 1.3, -1.15] as const;
 const menuYaw = -0.74;
 /** The head pose that looks at the menu from a distance of 1 m. */

@@ -3,7 +3,7 @@ import { defaultSavings, requestVrSession } from 'threepoint/webxr';
 import { ArcheryPlay } from '../../src/page/archery/archery-play';
 import { createArcheryView } from '../../src/page/archery/archery-view';
 import { installEmulator } from '../../src/page/emulator/emulator';
-import { type Picture, Stage } from '../../src/page/shell/stage';
+import { type Picture, Stage } from '../../src/page/shell/stage/stage';
 import type { DrawnCounts, World, WorldCounts } from '../counts';
 import { Court } from './court';
 import { nextFrame } from './frame-times';

@@ -9,8 +9,8 @@ import {
   skeletonFromCalibration,
 } from 'threepoint/core';
 import { nextRandom } from 'threepoint/math';
-import { createFrameLoop } from '../../src/page/shell/frame/frame-loop';
-import { FrameTiming, stageNames } from '../../src/page/shell/frame-timing';
+import { createFrameLoop } from '../../src/page/shell/frame-loop';
+import { FrameTiming, stageNames } from '../../src/page/shell/session/frame-timing';
 import { quantile } from '../../src/threepoint/core/math/statistics';
 import { parseContract, tensorsOf } from '../../src/threepoint/onnx/model-contract';
 import { createSession } from '../../src/threepoint/onnx/session';

@@ -8,11 +8,11 @@ import {
   pageElement,
 } from 'threepoint-ui';
 import { createPage, type Page } from './shell/create-page';
-import { createFrameLoop } from './shell/frame/frame-loop';
-import type { Headset } from './shell/headset';
-import { readPageContext } from './shell/page-context';
-import { PageLoading } from './shell/page-loading';
-import { joinStudy } from './shell/study/join-study';
+import { createFrameLoop } from './shell/frame-loop';
+import type { Headset } from './shell/session/headset';
+import { readPageContext } from './shell/session/page-context';
+import { PageLoading } from './shell/session/page-loading';
+import { joinStudy } from './shell/stage/join-study';
 
 /** Shows uncaught errors as notices. */
 function reportFaults(notices: Notices): void {

@@ -5,16 +5,24 @@ import type { StudyRun } from 'threepoint-study/participant';
 import { ServerPresence } from 'threepoint-ui';
 import type { ActivityServices } from '../../src/page/activity/activity-context';
 import type { Surroundings } from '../../src/page/scene/surroundings';
-import { fetchBuiltInAvatar } from '../../src/page/shell/avatar-loader';
-import { createSettings, SettingsWriter, type StoredSettings } from '../../src/page/shell/settings';
-import type { PageStudy } from '../../src/page/shell/study/page-study';
-import { readSwitches } from '../../src/page/shell/switches';
+import type { Pointers } from '../../src/page/shell/input/pointers';
+import type { PageStudy } from '../../src/page/shell/session/page-study';
+import { createSettings, SettingsWriter, type StoredSettings } from '../../src/page/shell/session/settings';
+import { readSwitches } from '../../src/page/shell/session/switches';
+import { fetchBuiltInAvatar } from '../../src/page/shell/stage/avatar-loader';
 import type { Notice } from '../../src/ui/notices';
+import { fake } from './shell/fake';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 
 /** The pointers of a page without a session. */
-export const noPointers = { follow: () => undefined, steering: null };
+export const noPointers = fake<Pointers>({ follow: () => undefined, steering: null });
+
+/** The tracker and the body of a page without a session, for the average user. */
+export const noSession = {
+  tracker: { tracking: null, read: () => null },
+  body: { userCalibration: defaultCalibration },
+};
 
 /** A study in which a participant plays, unless `members` say otherwise; it does nothing. */
 export const studyRun = (members: Partial<StudyRun> = {}): StudyRun => ({

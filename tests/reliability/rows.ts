@@ -183,8 +183,8 @@ export const faultRows = {
     tests: [
       'tests/ui/limited-files.test.ts',
       'tests/threepoint/xr/frameless-events.test.ts',
-      'tests/page/shell/switches.test.ts',
-      'tests/page/shell/preferences.test.ts',
+      'tests/page/shell/session/switches.test.ts',
+      'tests/page/shell/session/preferences.test.ts',
     ],
   },
   'long-run': {

@@ -1,5 +1,5 @@
 import { beforeEach, expect, test, vi } from 'vitest';
-import { recorderText } from '../../src/page/shell/panel/recording-page';
+import { recorderText } from '../../src/page/shell/panels/recording-page';
 import { createStatusLine } from '../../src/ui/status-line';
 
 /** The part of an element that a line of text needs; it counts how often its text was set. */

@@ -62,7 +62,6 @@ function createPartSelect(onChoose: (part: BoneName | null) => void) {
   const node = element('label', { class: 'bone' }, name, select);
   return {
     node,
-    /** null: no bone is chosen. */
     show(bone: string | null, part: BoneName | null): void {
       node.hidden = bone === null;
       name.textContent = bone === null ? '' : `${bone} is`;
@@ -151,7 +150,6 @@ export function createBonesForm(actions: BonesActions) {
   let shown: SkeletonToMap | null = null;
   return {
     node,
-    /** null: no file waits for its bones. */
     show(skeleton: SkeletonToMap | null) {
       if (skeleton?.joints !== shown?.joints) {
         mapping = skeleton && createMapping(skeleton, actions);

@@ -23,7 +23,6 @@ export function createLazyBonesForm(actions: BonesActions) {
   }
   return {
     node,
-    /** null: no file waits for its bones. */
     show(skeleton: SkeletonToMap | null): void {
       waiting = skeleton;
       if (form) form.show(waiting);

@@ -1,12 +1,13 @@
-import { BodySolver } from 'threepoint';
+import type { WebGLRenderer } from 'three';
 import { firstLine, reasonOf } from 'threepoint/core';
+import { BodyTracker } from 'threepoint/three';
 import { describeXrSupport } from 'threepoint/webxr';
 import { createEnterButton, element, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
 import { installEmulator } from '../emulator/emulator';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
-import { fetchBuiltInAvatar } from '../shell/avatar-loader';
-import { FrameTiming } from '../shell/frame-timing';
-import { createNetworkLoader } from '../shell/network-loading';
+import { FrameTiming } from '../shell/session/frame-timing';
+import { createNetworkLoader } from '../shell/session/network-loading';
+import { fetchBuiltInAvatar } from '../shell/stage/avatar-loader';
 import type { CheckStep } from './check-steps';
 import { readCheckSwitches } from './check-switches';
 import { CheckWorlds } from './check-worlds';
@@ -52,10 +53,16 @@ async function prepareHeadset(
   return { emulated: true, sentence: `${reason}: its figures are no measurement of a device.` };
 }
 
-/** Creates the body of the user, which the avatar shows, and loads its networks. */
-async function createBody(worlds: CheckWorlds, onProblem: (sentence: string) => void) {
+/** Creates the tracker of the user's body and loads its networks. */
+async function createTracker(
+  renderer: WebGLRenderer,
+  { avatar, scene }: CheckWorlds,
+  onProblem: (sentence: string) => void,
+) {
   const timing = new FrameTiming(() => performance.now());
-  const body = new BodySolver({
+  const tracker = new BodyTracker(renderer, {
+    avatar,
+    deviceBody: true,
     estimator: 'ik',
     networks: createNetworkLoader({
       provider: 'wasm',
@@ -63,14 +70,14 @@ async function createBody(worlds: CheckWorlds, onProblem: (sentence: string) => 
       loading: { report: () => undefined },
     }),
     profiler: timing,
-    events: {
-      calibrated: (calibration) => worlds.avatar.setCalibration(calibration),
-      // The report names the estimator that drew.
-      fallback: (name, reason) => onProblem(`The estimator “${name}” cannot be measured: ${firstLine(reason)}.`),
-    },
   });
-  for (const name of preloaded) await body.setEstimator(name);
-  return { body, timing };
+  scene.add(tracker.object);
+  // The report names the estimator that drew.
+  tracker.addEventListener('fallback', ({ estimator, reason }) =>
+    onProblem(`The estimator “${estimator}” cannot be measured: ${firstLine(reason)}.`),
+  );
+  for (const name of preloaded) await tracker.setEstimator(name);
+  return { tracker, timing };
 }
 
 /** Builds the page. Each click on its button starts a new check. */
@@ -88,7 +95,7 @@ async function start(): Promise<void> {
   const [{ emulated, sentence }, file] = await Promise.all([prepareHeadset(emulate), fetchBuiltInAvatar('mannequin')]);
   const worlds = await CheckWorlds.create(renderer, quality, file);
   const remarks: string[] = [...switches.complaints, ...(sentence ? [sentence] : [])];
-  const { body, timing } = await createBody(worlds, (problem) => remarks.push(problem));
+  const { tracker, timing } = await createTracker(renderer, worlds, (problem) => remarks.push(problem));
   const offer = (label: string) => show(label, remarks.join(' ') || null, true);
 
   async function run(): Promise<void> {
@@ -100,7 +107,7 @@ async function start(): Promise<void> {
       renderer,
       quality,
       worlds,
-      body,
+      tracker,
       timing,
       emulated,
       pace,

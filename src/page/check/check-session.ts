@@ -1,41 +1,15 @@
 import type { WebGLRenderer } from 'three';
-import {
-  bodyFeature,
-  DeviceBodyReader,
-  defaultFeatures,
-  drawSession,
-  isSessionOffered,
-  requestSession,
-  TrackedSession,
-} from 'threepoint/webxr';
+import { bodyFeature, defaultFeatures, drawSession, isSessionOffered, requestSession } from 'threepoint/webxr';
 import type { HeadsetReport } from './headset-report';
 
 /** The optional features that are requested in addition to the defaults. None of them reveals the user's room. */
 const requestedFeatures = [bodyFeature, 'anchors', 'hit-test'] as const;
 const modes = ['inline', 'immersive-vr', 'immersive-ar'] as const;
 
-/** The session of a check. */
-export interface CheckSession {
-  readonly xr: XRSession;
-  readonly tracking: TrackedSession;
-  readonly bodyReader: DeviceBodyReader;
-  readonly offered: OfferedFeatures;
-}
-
-export interface CheckSessionEvents {
-  onDiscontinuity(): void;
-  onEnd(): void;
-}
-
 /** Enters a session, which the renderer draws. Call it in a click. Rejects with a sentence. */
-export async function enterSession(renderer: WebGLRenderer, events: CheckSessionEvents): Promise<CheckSession> {
+export async function enterSession(renderer: WebGLRenderer): Promise<XRSession> {
   const xr = await requestSession('immersive-vr', requestedFeatures);
-  return drawSession(xr, renderer.xr, () => {
-    const bodyReader = new DeviceBodyReader();
-    const tracking = new TrackedSession({ session: xr, drawing: renderer.xr, bodyReader, ...events });
-    tracking.start();
-    return { xr, tracking, bodyReader, offered: new OfferedFeatures(xr) };
-  });
+  return drawSession(xr, renderer.xr, () => xr);
 }
 
 /** Collects the features of a session. Input profiles appear with their devices, so every frame is observed. */

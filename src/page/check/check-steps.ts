@@ -15,7 +15,6 @@ export interface CheckStep {
   readonly leadSeconds: number;
   /** The measured time [s]. */
   readonly seconds: number;
-  /** null: the step measures nothing. */
   readonly measured: MeasuredQuantity | null;
 }
 

@@ -91,7 +91,7 @@ export class CheckWorlds {
       this.#otherBodies.add(avatar.object);
       return { avatar, estimator: createEstimator('ik', defaultCalibration) };
     });
-    this.#studio.scene.add(own.object, this.#mirror.object, this.#archery.bow, this.#otherBodies);
+    this.#studio.scene.add(this.#mirror.object, this.#archery.bow, this.#otherBodies);
     own.setFirstPerson(true);
     this.show('mirror');
   }

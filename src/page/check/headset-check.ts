@@ -1,8 +1,9 @@
 import type { WebGLRenderer } from 'three';
-import type { BodySolver } from 'threepoint';
+import type { BodyTracker } from 'threepoint/three';
+import type { TrackedSession } from 'threepoint/webxr';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
-import type { FrameTiming } from '../shell/frame-timing';
-import { type CheckSession, enterSession } from './check-session';
+import type { FrameTiming } from '../shell/session/frame-timing';
+import { enterSession, OfferedFeatures } from './check-session';
 import { type CheckStep, remainingSteps } from './check-steps';
 import type { CheckWorlds } from './check-worlds';
 import { type HeadsetReport, reportFormat, reportVersion } from './headset-report';
@@ -18,8 +19,8 @@ export interface HeadsetCheckOptions {
   readonly renderer: WebGLRenderer;
   readonly quality: Quality;
   readonly worlds: CheckWorlds;
-  /** The body of the user, whose work `timing` measures. */
-  readonly body: BodySolver;
+  /** Draws the body of the user; `timing` measures its work. */
+  readonly tracker: BodyTracker;
   readonly timing: FrameTiming;
   /** Whether the headset is the emulated one. */
   readonly emulated: boolean;
@@ -53,13 +54,14 @@ class Speaker {
 export class HeadsetCheck {
   readonly #options: HeadsetCheckOptions;
   readonly #timing: FrameTiming;
-  readonly #body: BodySolver;
+  readonly #tracker: BodyTracker;
   readonly #measurements: Measurements;
   readonly #sequence: StepSequence;
   readonly #caption = new StepCaption();
   readonly #speaker = new Speaker();
   readonly #camera = createHeadsetCamera();
-  #session: CheckSession | null = null;
+  /** The tracking of the session; null before its first frame. */
+  #tracking: TrackedSession | null = null;
   #views = 0;
   #startedAt = Number.NaN;
   #time = Number.NaN;
@@ -68,8 +70,8 @@ export class HeadsetCheck {
   constructor(options: HeadsetCheckOptions) {
     this.#options = options;
     this.#timing = options.timing;
-    this.#body = options.body;
-    this.#measurements = new Measurements(this.#body);
+    this.#tracker = options.tracker;
+    this.#measurements = new Measurements(this.#tracker);
     this.#sequence = new StepSequence({
       remaining: () => remainingSteps(this.#measurements.deviceBodySeen),
       pace: options.pace,
@@ -84,32 +86,32 @@ export class HeadsetCheck {
   /** Enters the session and starts the check. Call it in a click. Rejects with a sentence. */
   async start(): Promise<void> {
     const { renderer, quality, emulated } = this.#options;
-    const session = await enterSession(renderer, {
-      onDiscontinuity: () => this.#body.discontinuity(),
-      onEnd: () => void this.#finish(),
-    });
+    const xr = await enterSession(renderer);
+    const offered = new OfferedFeatures(xr);
+    xr.addEventListener('end', () => void this.#finish(xr, offered));
     if (emulated) reduceEmulatedResolution(renderer, quality);
     this.#options.worlds.scene.add(this.#caption.object);
-    this.#session = session;
-    this.#body.startSession();
     renderer.setAnimationLoop((timestampMs, frame) => {
-      if (frame) this.#frame(session, timestampMs, frame);
+      if (!frame) return;
+      this.#frame(xr, timestampMs, frame);
+      offered.observe();
     });
   }
 
-  #frame({ xr, tracking, offered }: CheckSession, timestampMs: number, frame: XRFrame): void {
+  #frame(xr: XRSession, timestampMs: number, frame: XRFrame): void {
     const { worlds, emulated, renderer } = this.#options;
     const startMs = performance.now();
-    const time = this.#body.tick(timestampMs);
+    const { body } = this.#tracker;
+    const time = body.tick(timestampMs);
     if (Number.isNaN(this.#startedAt)) this.#startedAt = time;
     this.#time = time;
     this.#timing.setRate(emulated ? emulatedRateHz : (xr.frameRate ?? usualRateHz));
     this.#timing.begin(time * 1000);
-    const tracked = tracking.read(frame, time);
+    const tracked = this.#tracker.read(frame, time);
     this.#timing.mark('tracking');
-    const pose = this.#body.update(tracked);
+    const pose = body.solve(tracked);
     this.#timing.mark('kinematics');
-    if (tracked && pose) worlds.avatar.setPose(pose, time);
+    if (tracked) this.#tracker.draw(time);
     this.#timing.mark('skinning');
     if (tracked) worlds.update(time, tracked);
     this.#writeCaption(time);
@@ -118,12 +120,14 @@ export class HeadsetCheck {
     this.#timing.mark('render');
     this.#timing.end();
     this.#views = Math.max(this.#views, renderer.xr.getCamera().cameras.length);
-    offered.observe();
     const { predictedDisplayTime } = frame as { readonly predictedDisplayTime?: number };
     const aheadMs = predictedDisplayTime === undefined ? undefined : predictedDisplayTime - startMs;
     this.#measurements.addLatency(aheadMs, startMs - timestampMs);
-    const { kinds } = tracking.inputs;
-    this.#measurements.add({ time, tracked, pose, kinds }, this.#sequence.measured);
+    this.#tracking = this.#tracker.tracking;
+    if (this.#tracking) {
+      const { kinds } = this.#tracking.inputs;
+      this.#measurements.add({ time, tracked, pose, kinds }, this.#sequence.measured);
+    }
     this.#sequence.advance(time);
     if (this.#sequence.over) void xr.end();
   }
@@ -133,7 +137,7 @@ export class HeadsetCheck {
     if (sentence !== this.#spoken) this.#speaker.say(sentence);
     this.#spoken = sentence;
     if (measured?.kind === 'frames') this.#options.worlds.show(measured.world);
-    void this.#body.setEstimator(measured?.kind === 'frames' ? measured.estimator : 'learned');
+    void this.#tracker.setEstimator(measured?.kind === 'frames' ? measured.estimator : 'learned');
     this.#options.onStep(step, this.#sequence.steps);
   }
 
@@ -150,15 +154,12 @@ export class HeadsetCheck {
     this.#caption.write(current.sentence, `${current.title} · ${seconds} s`, number / steps.length);
   }
 
-  async #finish(): Promise<void> {
+  async #finish(xr: XRSession, offered: OfferedFeatures): Promise<void> {
     const { renderer, emulated, onReport } = this.#options;
     renderer.setAnimationLoop(null);
     this.#speaker.stop();
     this.#caption.dispose();
     this.#options.worlds.show('mirror');
-    this.#body.endSession();
-    if (!this.#session) return;
-    const { xr, bodyReader, offered } = this.#session;
     onReport({
       format: reportFormat,
       version: reportVersion,
@@ -171,7 +172,7 @@ export class HeadsetCheck {
         views: this.#views,
       },
       features: await offered.features(),
-      ...this.#measurements.figures(bodyReader.problem),
+      ...this.#measurements.figures(this.#tracking?.bodyReader?.problem ?? null),
     });
   }
 }

@@ -1,9 +1,9 @@
-import type { BodySolver } from 'threepoint';
+import type { Body } from 'threepoint';
 import { type AvatarPose, type EstimatorName, estimatedJoints, type TrackingFrame } from 'threepoint/core';
 import { isTracked, type Side, sides } from 'threepoint/math';
 import type { InputKind } from 'threepoint/webxr';
-import { DeviceDifference } from '../shell/frame/device-difference';
-import { type FrameSummary, quantilesIn } from '../shell/frame-timing';
+import { type FrameSummary, quantilesIn } from '../shell/session/frame-timing';
+import { DeviceDifference } from '../shell/stage/device-difference';
 import type { MeasuredQuantity } from './check-steps';
 import type { HeadsetReport, WorldName } from './headset-report';
 import { TrackerNoise } from './tracker-noise';
@@ -12,7 +12,6 @@ import { TrackingLosses } from './tracking-losses';
 /** The data of one frame of the session. */
 export interface CheckFrame {
   readonly time: number;
-  /** null: the head is not tracked. */
   readonly tracked: TrackingFrame | null;
   readonly pose: AvatarPose | null;
   readonly kinds: Readonly<Record<Side, InputKind>>;
@@ -20,7 +19,7 @@ export interface CheckFrame {
 
 /** Collects the figures of a check from its frames. */
 export class Measurements {
-  readonly #body: Pick<BodySolver, 'calibration' | 'estimator'>;
+  readonly #body: Pick<Body, 'calibration' | 'estimator'>;
   readonly #noise = { head: new TrackerNoise(), left: new TrackerNoise(), right: new TrackerNoise() };
   readonly #losses = { left: new TrackingLosses(), right: new TrackingLosses() };
   readonly #noiseKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
@@ -33,7 +32,7 @@ export class Measurements {
   readonly #ahead: number[] = [];
   readonly #delays: number[] = [];
 
-  constructor(body: Pick<BodySolver, 'calibration' | 'estimator'>) {
+  constructor(body: Pick<Body, 'calibration' | 'estimator'>) {
     this.#body = body;
   }
 

@@ -1,5 +1,5 @@
 import { estimatedJoints } from 'threepoint/core';
-import { jointLabels } from '../shell/frame/device-difference';
+import { jointLabels } from '../shell/stage/device-difference';
 import type { HeadsetReport } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './tracking-losses';
 

@@ -46,7 +46,6 @@ export interface CardActions {
   setPaused(on: boolean): void;
   seek(seconds: number): void;
   choose(estimator: EstimatorName): void;
-  /** null: no second body. */
   compare(estimator: EstimatorName | null): void;
   placeTruth(place: TruthPlace): void;
   copyLink(): void;
@@ -289,7 +288,6 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
       bones.show(skeleton);
       if (hadFocus && !skeleton && isOpen) choices.correct.focus();
     },
-    /** null: no clip is open. */
     show(state: CardState | null): void {
       isOpen = state !== null;
       layOut();

@@ -1,38 +1,52 @@
 import type { Object3D } from 'three';
-import { TrackingDegradation } from 'threepoint/core';
+import { createPageClock, firstLine, TrackingDegradation } from 'threepoint/core';
 import { sides } from 'threepoint/math';
+import { type Avatar, BodyTracker } from 'threepoint/three';
+import { Pointing } from 'threepoint/webxr';
 import { createMouseAim, pageElement, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createActor } from '../emulator/actor';
 import { OfflineCopy } from '../offline/offline-copy';
 import { uploadToGpu } from '../scene/gpu-upload';
 import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
-import { Activities } from './activities/activities';
 import { activities as registeredActivities } from './activity-registry';
-import { fetchBuiltInAvatar } from './avatar-loader';
-import { BoneMapStore } from './bone-map-store';
-import { Controls } from './controls/controls';
-import { Emitter } from './emitter';
-import { DeviceDifference } from './frame/device-difference';
-import { createMousePointer, pressSheetsByMouse } from './frame/mouse-pointer';
-import { PageFrame } from './frame/page-frame';
-import { Pointers } from './frame/pointers';
-import { TrackingSource } from './frame/tracking-source';
-import { FrameTiming } from './frame-timing';
-import { Headset } from './headset';
-import { LazyMocap } from './lazy-mocap';
-import { handleLostGraphics } from './lost-graphics';
-import { createPageBody } from './page-body';
-import type { PageContext } from './page-context';
-import type { PageLoading } from './page-loading';
-import type { PageParts } from './page-parts';
+import type { InputParts } from './input/input-parts';
+import { createMousePointer, pressSheetsByMouse } from './input/mouse-pointer';
+import { Pointers } from './input/pointers';
+import { TrackingSource } from './input/tracking-source';
+import { PageFrame } from './page-frame';
+import { Controls } from './panels/controls';
 import { exposeProbe, readProbe } from './probe';
-import { PassthroughHost } from './session/passthrough-host';
-import { SessionChanges } from './session/session-changes';
-import { Stage } from './stage';
-import type { PageStudy } from './study/page-study';
-import { UserAvatar } from './user-avatar';
-import { UserCalibration } from './user-calibration';
+import { Emitter } from './session/emitter';
+import { estimatorTexts } from './session/estimator-texts';
+import { FrameTiming } from './session/frame-timing';
+import { Headset } from './session/headset';
+import { createNetworkLoader } from './session/network-loading';
+import type { PageContext } from './session/page-context';
+import type { PageLoading } from './session/page-loading';
+import type { SessionParts } from './session/session-parts';
+import { SessionChanges } from './session-changes';
+import { Activities } from './stage/activities';
+import { AvatarLoader, fetchBuiltInAvatar } from './stage/avatar-loader';
+import { BoneMapStore } from './stage/bone-map-store';
+import { DeviceDifference } from './stage/device-difference';
+import { LazyMocap } from './stage/lazy-mocap';
+import { handleLostGraphics } from './stage/lost-graphics';
+import { PassthroughHost } from './stage/passthrough-host';
+import { Stage } from './stage/stage';
+import type { StageParts } from './stage/stage-parts';
+import { UserAvatar } from './stage/user-avatar';
+import { UserCalibration } from './stage/user-calibration';
+
+/** Returns the options of the body that the address and the stored settings decide. */
+const bodyOptions = ({ store, switches }: PageContext) => ({
+  avatar: null,
+  pointing: (session: XRSession) => new Pointing(session),
+  estimator: 'ik' as const,
+  calibration: store.preferences.calibration ?? ('auto' as const),
+  // A study measures its participants itself.
+  autoGrow: switches.study === null,
+});
 
 /** Creates all parts of the page, each from those before it. */
 function createParts(context: PageContext, loading: PageLoading) {
@@ -41,7 +55,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const timing = new FrameTiming(() => performance.now());
   // Downloads start before anything is built.
   const builtInAvatar = fetchBuiltInAvatar(settings.builtInBody, (part) => loading.report('the avatar', part));
-  const { body, networks, clock, bodyEvents } = createPageBody(context, loading, timing);
+  const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
 
   const canvas = pageElement('stage', HTMLCanvasElement);
   const quality = switches.quality ?? affordableQuality();
@@ -51,28 +65,44 @@ function createParts(context: PageContext, loading: PageLoading) {
 
   const { renderer, studio } = stage;
   const { scene } = studio;
+  const clock = createPageClock(() => performance.now());
+  const tracker = new BodyTracker<Avatar | null>(renderer, {
+    ...bodyOptions(context),
+    networks,
+    clock,
+    profiler: timing,
+  });
+  scene.add(tracker.object);
+  const sessionParts: SessionParts = {
+    ...context,
+    loading,
+    timing,
+    tracker,
+    body: tracker.body,
+    networks,
+    headset: new Headset(context, tracker, renderer, quality),
+    study: { run: null, runners: {} },
+    server: new ServerPresence(pageFolder(), onChange),
+    onChange,
+  };
+  const { headset } = sessionParts;
+
   const prepare = (object: Object3D) => uploadToGpu(renderer, scene, object);
   const boneMaps = new BoneMapStore(store);
-  const shown = { scene, settings, body, notices, boneMaps, prepare, onChange };
-  const avatar = new UserAvatar(shown);
+  const avatar = new UserAvatar(sessionParts, new AvatarLoader(boneMaps, prepare));
   const avatarShown = avatar.openBuiltIn(builtInAvatar);
   const recorder = new Recorder(onChange);
-  const mocap = new LazyMocap({ ...shown, recorder, networks, store });
-  const headset = new Headset({ renderer, quality, switches, settings, notices });
-  const pointers = new Pointers({ headset, settings });
-
-  const study: PageStudy = { run: null, runners: {} };
-  const server = new ServerPresence(pageFolder(), onChange);
-  const base = { ...context, timing, body, stage, avatar, recorder, headset, pointers, study, server, onChange };
+  const pointers = new Pointers(sessionParts);
   const mouse = createMouseAim(canvas);
   const mousePointer = createMousePointer(mouse, stage.view);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
+  const drawing = { ...sessionParts, stage, avatar, recorder };
   const activities = new Activities({
-    ...base,
+    ...drawing,
     activities: registeredActivities,
     services: {
-      ...base,
+      ...drawing,
       clock,
       quality,
       fetchBuiltInAvatar,
@@ -81,31 +111,25 @@ function createParts(context: PageContext, loading: PageLoading) {
     },
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     mouse,
-    setPalette: (palette) => avatar.setSeatPalette(palette),
     onArrival: arrivals.emit,
   });
-
-  const actor = createActor();
-  const parts: PageParts = {
-    ...base,
-    loading,
-    networks,
+  const stageParts: StageParts = {
+    ...drawing,
     activities,
-    mocap,
-    source: new TrackingSource({ ...base, actor, activities }),
+    mocap: new LazyMocap({ ...sessionParts, scene, recorder, boneMaps, prepare }),
+    userCalibration: new UserCalibration(sessionParts, stage),
     degradation: new TrackingDegradation(),
-    userCalibration: new UserCalibration(base),
     difference: new DeviceDifference(),
   };
+
+  const actor = createActor();
+  const parts: InputParts = { ...stageParts, pointers, source: new TrackingSource(stageParts, pointers, actor) };
   const controls = new Controls(parts);
-  const passthrough = new PassthroughHost({
-    ...parts,
-    quality,
-    isCovered: () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken),
-  });
-  const frame = new PageFrame({ ...parts, controls, passthrough });
+  const isCovered = () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken);
+  const passthrough = new PassthroughHost(parts, quality, isCovered);
+  const frame = new PageFrame(parts, controls, passthrough);
   const kept = new OfflineCopy();
-  return { ...parts, controls, passthrough, frame, kept, avatarShown, actor, bodyEvents, captions, arrivals };
+  return { ...parts, controls, passthrough, frame, kept, avatarShown, actor, captions, arrivals };
 }
 
 /** The parts of the page, none of them running yet. */
@@ -113,21 +137,26 @@ export type Page = ReturnType<typeof createParts>;
 
 /** Connects what happens to the body, to the session and to the activities with the parts that it changes. */
 function connectParts(page: Page): void {
-  const { settings, changes, timing, stage, avatar, recorder, headset, body, bodyEvents, actor } = page;
+  const { settings, changes, notices, timing, stage, recorder, headset, tracker, actor } = page;
   const { degradation, activities, userCalibration, controls, captions, arrivals } = page;
-  actor.calibrate(body.calibration);
-  bodyEvents.calibrated.listen((calibration, from) => {
-    userCalibration.measured(from);
+  actor.calibrate(tracker.calibration);
+  tracker.addEventListener('calibrated', ({ calibration, source }) => {
+    userCalibration.measured(source);
     actor.calibrate(calibration);
     activities.current?.calibrate?.(calibration);
-    avatar.current?.setCalibration(calibration);
   });
-  bodyEvents.outgrown.listen((difference) => userCalibration.outgrown(difference));
-  bodyEvents.discontinuity.listen(() => {
+  tracker.addEventListener('heightmismatch', ({ difference }) => userCalibration.outgrown(difference));
+  tracker.addEventListener('estimatorchange', changes.emit);
+  tracker.addEventListener('fallback', ({ estimator, reason }) => {
+    const { label } = estimatorTexts[estimator];
+    const text = `${label} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`;
+    notices.show('warning', text);
+  });
+  tracker.addEventListener('discontinuity', () => {
     degradation.reset();
     activities.current?.discontinuity?.();
   });
-  const sessions = new SessionChanges(page);
+  const sessions = new SessionChanges(page, controls, page.passthrough);
   headset.listen(sessions);
   sessions.followWindow();
   changes.listen(() => controls.show());
@@ -139,7 +168,7 @@ function connectParts(page: Page): void {
   arrivals.listen(() => {
     recorder.stop();
     if (activities.current) controls.setPanelOpen(false);
-    body.discontinuity();
+    tracker.body.discontinuity();
     timing.reset();
     controls.show();
   });
@@ -151,6 +180,6 @@ function connectParts(page: Page): void {
 export function createPage(context: PageContext, loading: PageLoading): Page {
   const page = createParts(context, loading);
   connectParts(page);
-  exposeProbe(() => readProbe(page));
+  exposeProbe(() => readProbe(page, page.frame, page.passthrough, page.kept));
   return page;
 }

@@ -3,19 +3,14 @@ import type { Side, Vec3 } from 'threepoint/math';
 import type { PlayerProbe } from '../activity/activity';
 import type { OfflineCopy } from '../offline/offline-copy';
 import type { GameProbe } from './activity-registry';
-import type { PageFrame } from './frame/page-frame';
-import type { PageParts } from './page-parts';
-import type { PassthroughHost } from './session/passthrough-host';
+import type { InputParts } from './input/input-parts';
+import type { PageFrame } from './page-frame';
+import type { PassthroughHost } from './stage/passthrough-host';
+import type { Stage } from './stage/stage';
+import type { UserAvatar } from './stage/user-avatar';
 
 /** A point of the floor frame [m]. */
 type Triple = readonly [number, number, number];
-
-/** The parts of the page that a probe reads. */
-export interface ProbeParts extends PageParts {
-  readonly frame: PageFrame;
-  readonly passthrough: PassthroughHost;
-  readonly kept: OfflineCopy;
-}
 
 const triple = ({ x, y, z }: Vec3): Triple => [x, y, z];
 
@@ -34,7 +29,7 @@ const triples = <Name extends string>(points: Readonly<Partial<Record<Name, Vec3
   ) as Readonly<Partial<Record<Name, Triple>>>;
 
 /** Joints of the avatar's bones as drawn, and the tips of its fingers; floor frame [m]. */
-function avatarOf({ current, name }: ProbeParts['avatar'], { view }: ProbeParts['stage']) {
+function avatarOf({ current, name }: UserAvatar, { view }: Stage) {
   const tips = (side: Side) => triples(current?.fingertips(side));
   return {
     name,
@@ -46,7 +41,7 @@ function avatarOf({ current, name }: ProbeParts['avatar'], { view }: ProbeParts[
 }
 
 /** Returns the memory and draw calls of the graphics device, and the darkness of the vignette (0 to 1). */
-const drawingOf = ({ renderer, vignette, drawn, savings }: ProbeParts['stage']) => ({
+const drawingOf = ({ renderer, vignette, drawn, savings }: Stage) => ({
   ...renderer.info.memory,
   programs: renderer.info.programs?.length ?? 0,
   darkness: vignette.darkness,
@@ -58,12 +53,12 @@ const drawingOf = ({ renderer, vignette, drawn, savings }: ProbeParts['stage']) 
 });
 
 /** The user's own room; null: no session shows it. */
-const passthroughOf = ({ room }: ProbeParts['passthrough']) =>
+const passthroughOf = ({ room }: PassthroughHost) =>
   room && { showsRoom: room.showsRoom, mirror: { ...room.mirror.place }, anchored: room.mirror.anchored };
 
 /** Reads the state of the page as plain data, for tests and tools; read-only. */
-export function readProbe(parts: ProbeParts) {
-  const { loading, kept, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
+export function readProbe(parts: InputParts, frame: PageFrame, passthrough: PassthroughHost, kept: OfflineCopy) {
+  const { loading, settings, notices, timing, source, body, headset, recorder, study, stage } = parts;
   const { current } = parts.activities;
   const activity: 'loading' | 'desktop' | 'vr' = headset.worn ? 'vr' : loading.ready ? 'desktop' : 'loading';
   return {
@@ -78,7 +73,7 @@ export function readProbe(parts: ProbeParts) {
     tracking: trackingOf(source.newest),
     calibration: { ...body.calibration, source: settings.calibrationSource },
     session: { state: headset.visibility, emulated: headset.emulator !== null },
-    passthrough: passthroughOf(parts.passthrough),
+    passthrough: passthroughOf(passthrough),
     view: stage.view.view,
     recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
     notices: notices.current(),

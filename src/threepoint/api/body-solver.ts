@@ -7,15 +7,13 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { type TrackedPoint, TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
+import { type TrackedPoint, TrackedPoints, TrackingGate, validFrames } from '../core/tracking/tracking-gate';
 import { type AfterFrame, createAfterFrame } from './after-frame';
 import { assertOptions, optionNames } from './assert-options';
 import { EstimatorSelector } from './estimator-selector';
 import { HeightEstimator } from './height-estimator';
 import { type InferenceProfiler, withProfiler } from './inference-profiler';
 import { warnAfterDispose } from './warnings';
-
-export type { TrackedPoint } from '../core/tracking/tracking-validator';
 
 /**
  * The origin of a body's measures: given by the page, the headset's height at the start of a session, a user who
@@ -131,9 +129,10 @@ export class BodySolver {
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
   readonly #pinning: Pinning | undefined;
-  readonly #validator = new TrackingValidator({
-    onChange: (point, tracked) => (tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point)),
-  });
+  readonly #gate = new TrackingGate();
+  readonly #points = new TrackedPoints((point, tracked) =>
+    tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point),
+  );
   #afterFrame: AfterFrame | null = null;
   /** The measures in force: the user's, or a stand-in's. */
   #calibration: Calibration;
@@ -263,7 +262,7 @@ export class BodySolver {
     this.#inSession = false;
     this.#request = null;
     this.#pose = null;
-    this.#validator.reset();
+    this.#points.reset();
     this.#choice.reset();
     if (ends) this.#events.sessionend?.();
   }
@@ -297,11 +296,19 @@ export class BodySolver {
    * `pinning`, or what a callback throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
+    return this.solve(this.#gate.validate(tracked), standIn);
+  }
+
+  /**
+   * Solves a frame as `update` does, without checking it: one that `TrackedSession`, `BodyTracker` or `parseRecording`
+   * has returned, or that was made from it.
+   */
+  solve(frame: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     if (this.#disposed) {
       warnAfterDispose(this, 'Body');
       return null;
     }
-    const frame = this.#validator.validate(tracked);
+    this.#points.follow(frame);
     if (frame === null) {
       this.#height.onHeadLost();
       return this.#pose;

@@ -5,25 +5,29 @@ import type { Calibration } from '../core/body/calibration';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
+import type { TrackedPoint } from '../core/tracking/tracking-gate';
 import { DeviceBodyReader } from '../xr/device-body-reader';
+import type { Pointing } from '../xr/pointing';
 import { TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
 import { Body, type BodyOptions } from './body';
-import { type CalibrationSource, bodyOptions as solverOptions, type TrackedPoint } from './body-solver';
+import { type CalibrationSource, bodyOptions as solverOptions } from './body-solver';
 import { loadLearned } from './load-learned';
 import { warnAfterDispose, warnOfFallback } from './warnings';
 
-export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
+export interface BodyTrackerOptions<Shown extends Avatar | null = Avatar> extends Omit<BodyOptions, 'events'> {
   /**
-   * The avatar, from `loadAvatar`; the tracker owns it and disposes of it. Add `tracker.object` to the scene, or to the
-   * group that moves the cameras.
+   * The avatar, from `loadAvatar`; null: `setAvatar` follows. The tracker owns it and disposes of it. Add
+   * `tracker.object` to the scene, or to the group that moves the cameras.
    */
-  readonly avatar: Avatar;
+  readonly avatar: Shown;
   /**
    * Whether to read the body that the device tracks (WebXR Body Tracking), which the estimator 'device' uses. The page
    * must request the session with the feature 'body-tracking'. Default: false.
    */
   readonly deviceBody?: boolean;
+  /** Creates the reader of what the input sources of a session point at and press: `Pointing` of threepoint/webxr. */
+  readonly pointing?: (session: XRSession) => Pointing;
   /**
    * Returns the trackers beyond head and hands in each frame of a session, floor frame [m], for trackers that another
    * program sends; null: none is seen. They need `trackerOffsets` in the calibration, and the option `pinning`.
@@ -50,6 +54,7 @@ export interface BodyTrackerEvents {
 const trackerOptions = [
   'avatar',
   'deviceBody',
+  'pointing',
   'trackers',
   'modelUrl',
   ...solverOptions.filter((name) => name !== 'events'),
@@ -97,8 +102,7 @@ function assertAvatar(avatar: unknown): asserts avatar is Avatar {
  *   renderer.render(scene, camera);
  * });
  */
-export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
-  readonly avatar: Avatar;
+export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDispatcher<BodyTrackerEvents> {
   /**
    * The object to add to the scene. Its origin is that of the renderer's reference space; it is visible while there is
    * a pose. `avatar.object` inside it is placed on the floor, also where the page has moved its user.
@@ -106,12 +110,15 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly object: Object3D = new Group();
   /** The solver of this tracker: the selected and the unavailable estimators, and the network's backend. */
   readonly body: Body;
+  /** Whether the body that the device tracks is read in the sessions that start from now on. */
+  deviceBody: boolean;
   readonly #renderer: WebGLRenderer;
-  readonly #deviceBody: boolean;
+  readonly #pointing: ((session: XRSession) => Pointing) | undefined;
   readonly #trackers: (() => BodyTrackers | null) | undefined;
   /** The renderer's session and its tracking; null: there is none. */
   #session: XRSession | null = null;
-  #tracked: TrackedSession | null = null;
+  #tracking: TrackedSession | null = null;
+  #avatar: Shown;
   /** Whether the avatar's head is hidden from the user's eyes. */
   #firstPerson = false;
   #disposed = false;
@@ -122,15 +129,16 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * Throws a RangeError for a calibration that no person has or an unknown estimator; a TypeError for a missing avatar,
    * an unknown option or `trackers` without `pinning`; an Error for an avatar of another tracker.
    */
-  constructor(renderer: WebGLRenderer, options: BodyTrackerOptions) {
+  constructor(renderer: WebGLRenderer, options: BodyTrackerOptions<Shown>) {
     super();
     assertOptions('BodyTracker', options, trackerOptions);
-    const { avatar, modelUrl, deviceBody = false, trackers, ...bodyOptions } = options;
+    const { avatar, modelUrl, deviceBody = false, pointing, trackers, ...bodyOptions } = options;
     assertRenderer(renderer);
-    assertAvatar(avatar);
+    if (avatar !== null) assertAvatar(avatar);
     assertPinning(trackers, bodyOptions.pinning);
-    this.avatar = avatar;
-    this.#deviceBody = deviceBody;
+    this.#avatar = avatar;
+    this.deviceBody = deviceBody;
+    this.#pointing = pointing;
     this.#trackers = trackers;
     this.#renderer = renderer;
     const networks =
@@ -147,7 +155,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
       ...bodyOptions,
       events: {
         calibrated: (calibration, source) => {
-          avatar.setCalibration(calibration);
+          this.#avatar?.setCalibration(calibration);
           this.dispatchEvent({ type: 'calibrated', calibration, source });
         },
         heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
@@ -164,11 +172,30 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
         sessionend: passes('sessionend'),
       },
     });
-    ownedAvatars.set(avatar, 'drawn');
-    avatar.setCalibration(this.body.calibration);
     this.object.name = 'body';
-    this.object.add(avatar.object);
     this.object.visible = false;
+    if (avatar !== null) this.#own(avatar);
+  }
+
+  /** The avatar that is drawn; null until `setAvatar`, for a tracker that was created without one. */
+  get avatar(): Shown {
+    return this.#avatar;
+  }
+
+  /**
+   * Draws another avatar from the next frame on and disposes of the one before. A tracker that was disposed of disposes
+   * of it at once. Throws an Error for an avatar of another tracker.
+   */
+  setAvatar(avatar: Avatar & Shown): void {
+    assertAvatar(avatar);
+    if (this.#disposed) {
+      avatar.dispose();
+      return;
+    }
+    this.#disposeOfAvatar();
+    this.#avatar = avatar;
+    this.#own(avatar);
+    avatar.setFirstPerson(this.#firstPerson);
   }
 
   override addEventListener<T extends keyof BodyTrackerEvents>(
@@ -223,15 +250,11 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     if (this.#isDisposed()) return;
     const time = this.body.tick(timeMs);
     this.#followSession();
-    const session = this.#tracked;
     // The renderer may still have the space of the session before: the first frame starts the tracking.
-    if (!session || !frame || !session.start()) return;
-    const tracked = session.read(frame, time);
-    const { position, orientation } = session.floorPose;
-    this.avatar.object.position.copy(position);
-    this.avatar.object.quaternion.copy(orientation);
-    const trackers = this.#trackers?.();
-    this.#draw(tracked && trackers ? { ...tracked, trackers } : tracked, null);
+    if (!frame || !this.#tracking?.start()) return;
+    const tracked = this.read(frame, time);
+    this.body.solve(tracked);
+    this.#show(tracked, null);
   }
 
   /**
@@ -241,7 +264,42 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   updateFromFrame(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
     if (this.#isDisposed()) return;
     this.#followSession();
-    this.#draw(frame, standIn);
+    this.body.update(frame, standIn);
+    this.#show(frame, standIn);
+  }
+
+  /**
+   * The tracking of the renderer's session, with its buttons, pointers and floor; null without a session, and before
+   * its first frame.
+   */
+  get tracking(): TrackedSession | null {
+    return this.#tracking;
+  }
+
+  /**
+   * Returns head and hands of a session's frame, floor frame [m], at the `time` [s] of `body.tick`; null while the head
+   * is not seen. A page that needs or changes them before the body is solved calls `read`, `body.solve` and `draw`
+   * instead of `update`.
+   */
+  read(frame: XRFrame, time: number): TrackingFrame | null {
+    this.#followSession();
+    const tracking = this.#tracking;
+    if (!tracking) return null;
+    const tracked = tracking.read(frame, time);
+    const { position, orientation } = tracking.floorPose;
+    this.#avatar?.object.position.copy(position);
+    this.#avatar?.object.quaternion.copy(orientation);
+    const trackers = this.#trackers?.();
+    return tracked && trackers ? { ...tracked, trackers } : tracked;
+  }
+
+  /** Poses the avatar by the body's newest pose, at a time [s]. Without a pose nothing changes. */
+  draw(time: number): void {
+    const { pose } = this.body;
+    const avatar = this.#avatar;
+    if (!pose || !avatar) return;
+    avatar.setPose(pose, time);
+    this.object.visible = true;
   }
 
   /**
@@ -250,7 +308,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    */
   recentre(): void {
     if (this.#disposed) return;
-    if (this.#tracked) this.#tracked.recentre();
+    if (this.#tracking) this.#tracking.recentre();
     else this.body.discontinuity();
   }
 
@@ -262,9 +320,20 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#disposed = true;
     this.#endTracking();
     this.object.removeFromParent();
-    this.avatar.dispose();
-    ownedAvatars.set(this.avatar, 'disposed');
+    this.#disposeOfAvatar();
     return this.body.dispose();
+  }
+
+  #own(avatar: Avatar): void {
+    ownedAvatars.set(avatar, 'drawn');
+    avatar.setCalibration(this.body.calibration);
+    this.object.add(avatar.object);
+  }
+
+  #disposeOfAvatar(): void {
+    if (!this.#avatar) return;
+    this.#avatar.dispose();
+    ownedAvatars.set(this.#avatar, 'disposed');
   }
 
   /** Returns whether the tracker was disposed of; warns once if so. */
@@ -273,12 +342,9 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     return this.#disposed;
   }
 
-  #draw(tracked: TrackingFrame | null, standIn: Calibration | null): void {
-    const pose = this.body.update(tracked, standIn);
+  #show(frame: TrackingFrame | null, standIn: Calibration | null): void {
     this.#setFirstPerson(this.#session !== null && standIn === null);
-    if (!tracked || !pose) return;
-    this.avatar.setPose(pose, tracked.time);
-    this.object.visible = true;
+    if (frame) this.draw(frame.time);
   }
 
   /** Starts tracking when the renderer has another session, and ends that of the previous one. */
@@ -287,12 +353,13 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     if (session === this.#session) return;
     this.#endTracking();
     this.#session = session;
-    this.#tracked =
+    this.#tracking =
       session &&
       new TrackedSession({
         session,
         drawing: this.#renderer.xr,
-        bodyReader: this.#deviceBody ? new DeviceBodyReader() : null,
+        bodyReader: this.deviceBody ? new DeviceBodyReader() : null,
+        pointing: this.#pointing?.(session) ?? null,
         onStart: () => this.body.startSession(),
         onDiscontinuity: () => this.body.discontinuity(),
         onEnd: () => this.#endTracking(),
@@ -301,12 +368,12 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   #endTracking(): void {
     if (!this.#session) return;
-    this.#tracked?.dispose();
-    this.#tracked = null;
+    this.#tracking?.dispose();
+    this.#tracking = null;
     this.#session = null;
     this.#setFirstPerson(false);
-    this.avatar.object.position.set(0, 0, 0);
-    this.avatar.object.quaternion.identity();
+    this.#avatar?.object.position.set(0, 0, 0);
+    this.#avatar?.object.quaternion.identity();
     this.object.visible = false;
     this.body.endSession();
   }
@@ -315,7 +382,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   #setFirstPerson(on: boolean): void {
     if (on === this.#firstPerson) return;
     this.#firstPerson = on;
-    this.avatar.setFirstPerson(on);
+    this.#avatar?.setFirstPerson(on);
   }
 }
 

@@ -206,7 +206,7 @@ class SessionBody {
     this.#estimatedMs = this.#frameMs;
     const time = this.#body.tick(this.#frameMs);
     const tracked = this.#tracked.read(frame, time);
-    const pose = this.#body.update(tracked);
+    const pose = this.#body.solve(tracked);
     // One body serves all sessions: until this session has a head, the pose is that of the previous session.
     if (!tracked) return this.#joints;
     const { calibration } = this.#body;

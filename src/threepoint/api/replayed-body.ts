@@ -30,7 +30,7 @@ export function* warmUpFrames(recording: Replayable, seconds: number, time: numb
   }
 }
 
-type DrivenBody = Pick<BodySolver, 'update' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
+type DrivenBody = Pick<BodySolver, 'solve' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
 
 /**
  * Drives a body by a replay. While the replay is paused, the body's time stands still and its state does not change.
@@ -56,17 +56,17 @@ export class ReplayedBody {
     this.#replay = replay;
   }
 
-  /** Solves one tracking frame; see `update` of the body. */
+  /** Solves one tracking frame; see `solve` of the body. */
   update(frame: TrackingFrame | null, standIn: Calibration | null): AvatarPose | null {
     const { mode, paused } = this.#replay;
     if (!frame || mode !== 'replaying') {
       this.stop();
-      return this.#body.update(frame, standIn);
+      return this.#body.solve(frame, standIn);
     }
     if (paused) return this.#updatePaused(frame, standIn);
     this.#time = frame.time;
     if (this.#hasRestarted()) this.#body.discontinuity();
-    const pose = this.#body.update(this.#withBodyTime(frame), standIn);
+    const pose = this.#body.solve(this.#withBodyTime(frame), standIn);
     this.#updateDrawn();
     return pose;
   }
@@ -82,7 +82,7 @@ export class ReplayedBody {
     this.#time = frame.time;
     if (!this.#updateDrawn()) return this.#body.pose;
     const solved = this.#withBodyTime(frame);
-    this.#body.update(solved, standIn);
+    this.#body.solve(solved, standIn);
     const { recording, seconds } = this.#replay;
     if (recording) void this.#body.warmUp(warmUpFrames(recording, seconds, solved.time));
     return this.#body.pose;

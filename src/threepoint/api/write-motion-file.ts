@@ -7,7 +7,7 @@ import { writeBvh } from '../core/motion/write-bvh';
 import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
 import type { Replayable, TrackingFrames } from '../core/tracking/recording';
-import { TrackingValidator, validFrames } from '../core/tracking/tracking-validator';
+import { TrackingGate, validFrames } from '../core/tracking/tracking-gate';
 import { type MotionFile, type MotionFileOptions, type MotionWriter, motionFormats } from './motion-file';
 import { runWork } from './run-work';
 
@@ -39,12 +39,12 @@ const validFramesOf = (frames: TrackingFrames): TrackingFrames => ({
   length: frames.length,
   at: (index) => frames.at(index),
   *[Symbol.iterator]() {
-    const validator = new TrackingValidator();
+    const gate = new TrackingGate();
     let number = 0;
     let last = Number.NEGATIVE_INFINITY;
     for (const frame of frames) {
       number += 1;
-      const valid = validator.validate(frame);
+      const valid = gate.validate(frame);
       if (!valid) continue;
       if (valid.time <= last) throw new Error(`Frame ${number} of the recording is not later than the one before it.`);
       last = valid.time;

@@ -3,7 +3,7 @@ import { conjugate, fromAxisAngle, identity, multiply, type Quat, rotate, setQua
 import { setVec3, subtract, up, type Vec3 } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { TrackingValidator } from '../core/tracking/tracking-validator';
+import { TrackingGate } from '../core/tracking/tracking-gate';
 import type { DeviceBodyReader } from './device-body-reader';
 import { InputReader } from './input-reader';
 import type { Pointing } from './pointing';
@@ -43,7 +43,7 @@ export class TrackedSession {
   readonly #options: TrackedSessionOptions;
   readonly #session: XRSession;
   readonly #drawing: DrawingSpace;
-  readonly #validator = new TrackingValidator({ assumesTracked: true });
+  readonly #gate = new TrackingGate({ assumesTracked: true });
   /** The renderer's own space; null before the session started. */
   #own: XRReferenceSpace | null = null;
   /** The space that is tracked in; null before the session started. */
@@ -110,7 +110,7 @@ export class TrackedSession {
     this.#lastHead = head;
     const deviceBody = this.bodyReader?.read(frame, this.#floor);
     const poses = { time, head, leftHand: left, rightHand: right, fingers: this.inputs.fingers };
-    return this.#validator.validate({ ...poses, ...(deviceBody && { deviceBody }), ...(suspended && { suspended }) });
+    return this.#gate.validate({ ...poses, ...(deviceBody && { deviceBody }), ...(suspended && { suspended }) });
   }
 
   /**

@@ -1,8 +1,8 @@
 import { Body } from 'threepoint';
 import type { AvatarPose, TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
-import { createFrameLoop, type FrameParts } from '../../../src/page/shell/frame/frame-loop';
-import { FrameTiming } from '../../../src/page/shell/frame-timing';
+import { createFrameLoop, type FrameParts } from '../../../src/page/shell/frame-loop';
+import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
 
 /** A frame whose head is as high [m] as its time [s] is long. */
 const trackedAt = (time: number): TrackingFrame => ({

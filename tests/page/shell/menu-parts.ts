@@ -1,5 +1,5 @@
 import { expect } from 'vitest';
-import type { VrMenuState } from '../../../src/page/shell/vr-menu/menu-buttons';
+import type { VrMenuState } from '../../../src/page/shell/panels/vr-menu/menu-buttons';
 
 /** The menu in the studio without a notice; tests change what they are about. */
 export const studioMenu: VrMenuState = {

@@ -1,22 +1,25 @@
 import { expect, test } from 'vitest';
-import { PageFrame, type PageFrameOptions } from '../../../src/page/shell/frame/page-frame';
+import type { InputParts } from '../../../src/page/shell/input/input-parts';
+import { PageFrame } from '../../../src/page/shell/page-frame';
+import type { Controls } from '../../../src/page/shell/panels/controls';
+import type { PassthroughHost } from '../../../src/page/shell/stage/passthrough-host';
+import { fake } from './fake';
 
 /**
  * A page that draws nothing, frame by frame as its device asks for them: a window, or a session, which lets windows
  * rest.
  */
 function page(draw: () => void = () => undefined): PageFrame {
-  const parts = {
+  const parts = fake<InputParts>({
     settings: { mirror: false },
     headset: { visibility: 'visible', worn: true, commands: null, turnIfAsked: () => false },
     activities: { name: 'studio', current: null, show: () => undefined },
-    controls: { point: () => undefined },
     study: { run: null },
     stage: { look: () => undefined, draw },
-    avatar: { current: null },
+    tracker: { avatar: null },
     mocap: { aside: 0 },
-  };
-  return new PageFrame(parts as unknown as PageFrameOptions);
+  });
+  return new PageFrame(parts, fake<Controls>({ point: () => undefined }), fake<PassthroughHost>({}));
 }
 
 test('who waits for the next picture waits for the device that draws it, and no longer', async () => {

@@ -1,13 +1,14 @@
-import { BodySolver } from 'threepoint';
 import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { expect, test, vi } from 'vitest';
 import type { OpenActivity } from '../../../src/page/activity/activity';
-import { FrameTiming } from '../../../src/page/shell/frame-timing';
-import type { Headset } from '../../../src/page/shell/headset';
-import { SessionChanges, type SessionChangesOptions } from '../../../src/page/shell/session/session-changes';
+import type { InputParts } from '../../../src/page/shell/input/input-parts';
+import type { Controls } from '../../../src/page/shell/panels/controls';
+import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
+import type { Headset } from '../../../src/page/shell/session/headset';
+import { SessionChanges } from '../../../src/page/shell/session-changes';
+import type { PassthroughHost } from '../../../src/page/shell/stage/passthrough-host';
 import { Recorder } from '../../../src/page/studio/recorder';
-
-const noNetworks = () => Promise.reject(new Error('inverse kinematics needs no network'));
+import { fake } from './fake';
 
 /**
  * A player in a match, with a headset to put on and a window that may lie behind others; `recorder`: keeps what is
@@ -18,14 +19,13 @@ function player(recorder = new Recorder()) {
   vi.stubGlobal('document', page);
   const headset = { pictureRateHz: 72, visibility: 'none' as Headset['visibility'] };
   let away = false;
-  const body = new BodySolver({ estimator: 'ik', calibration: defaultCalibration, networks: noNetworks });
   const nothing = () => undefined;
-  const changes = new SessionChanges({
+  const parts = fake<InputParts>({
     headset,
     recorder,
     timing: new FrameTiming(() => 0),
-    stage: { view: { view: 'third-person', setView: nothing } } as unknown as SessionChangesOptions['stage'],
-    body,
+    stage: { view: { view: 'third-person', setView: nothing } },
+    body: { discontinuity: nothing },
     activities: {
       sessionChanged: nothing,
       current: {
@@ -34,13 +34,12 @@ function player(recorder = new Recorder()) {
         },
       } as OpenActivity,
     },
-    controls: { show: nothing, setWorn: nothing, layOut: nothing },
     study: { run: null },
-    passthrough: { sessionChanged: async () => undefined },
   });
+  const controls = fake<Controls>({ show: nothing, setWorn: nothing, layOut: nothing });
+  const changes = new SessionChanges(parts, controls, fake<PassthroughHost>({ sessionChanged: async () => undefined }));
   changes.followWindow();
   return {
-    body,
     isAway: () => away,
     setWindow(hidden: boolean) {
       page.hidden = hidden;
@@ -100,13 +99,4 @@ test('a recording made in a session ends with it: what moves the body afterwards
   leave();
   track(3);
   expect([recorder.mode, recorder.frameCount]).toEqual(['idle', 2]);
-});
-
-test('the body of a session ends with it: no pose and no lost hand of the headset stays', () => {
-  const { body, enter, leave } = player();
-  enter();
-  body.tick(1000);
-  expect(body.update(actorFrame(1, defaultCalibration))).not.toBeNull();
-  leave();
-  expect(body.pose).toBeNull();
 });

@@ -1,19 +1,16 @@
 import { setImmediate } from 'node:timers/promises';
 import fc from 'fast-check';
 import { BodySolver } from 'threepoint';
-import {
-  type Calibration,
-  type EstimatorName,
-  nothingPressed,
-  TrackingDegradation,
-  type TrackingFrame,
-} from 'threepoint/core';
+import { type Calibration, type EstimatorName, TrackingDegradation, type TrackingFrame } from 'threepoint/core';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { createActor } from '../../../src/page/emulator/actor';
-import { createFrameLoop } from '../../../src/page/shell/frame/frame-loop';
-import { PageFrame, type PageFrameOptions } from '../../../src/page/shell/frame/page-frame';
-import { TrackingSource } from '../../../src/page/shell/frame/tracking-source';
-import { FrameTiming } from '../../../src/page/shell/frame-timing';
+import { createFrameLoop } from '../../../src/page/shell/frame-loop';
+import { TrackingSource } from '../../../src/page/shell/input/tracking-source';
+import { PageFrame } from '../../../src/page/shell/page-frame';
+import type { Controls } from '../../../src/page/shell/panels/controls';
+import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
+import type { PassthroughHost } from '../../../src/page/shell/stage/passthrough-host';
+import type { StageParts } from '../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../src/page/studio/recorder';
 import { cases } from '../../nightly';
 import { seed } from '../../threepoint/core/arbitraries';
@@ -30,6 +27,7 @@ import {
   watched,
 } from '../../threepoint/core/estimation/still-people';
 import { noPointers } from '../activity-services';
+import { fake } from './fake';
 
 type Networks = ConstructorParameters<typeof BodySolver>[0]['networks'];
 
@@ -48,13 +46,15 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     worn: true,
     emulator: null,
     visibility: 'visible',
-    tracking: {
-      inputs: { buttons: nothingPressed },
-      read: (_: unknown, time: number) => reported && { ...reported, time },
-    },
     buzz: () => undefined,
     commands: null,
     turnIfAsked: () => false,
+  };
+  const tracker = {
+    avatar: null,
+    tracking: null,
+    read: (_: unknown, time: number) => reported && { ...reported, time },
+    draw: () => undefined,
   };
   const activities = {
     current: null,
@@ -64,36 +64,30 @@ async function openPage(estimator: EstimatorName, calibration: Calibration, netw
     grasp: () => false,
     show: () => undefined,
   };
-  const source = new TrackingSource({
-    settings: { actor: false },
-    headset,
-    recorder,
-    body,
-    actor: createActor(),
-    activities,
-    study: { run: null },
-    pointers: noPointers,
-  });
   const faults: unknown[] = [];
-  const parts = {
-    settings: { mirror: false },
+  const parts = fake<StageParts>({
+    settings: { actor: false, mirror: false },
     notices: { show: (_: unknown, fault: unknown) => faults.push(fault) },
     timing: { lastMs: 0 },
-    source,
     degradation,
+    tracker,
     body,
     recorder,
     difference: { observe: () => undefined },
-    avatar: { current: null },
     headset,
     activities,
-    controls: { observe: () => undefined, point: () => undefined },
     study: { run: null },
     stage: { look: () => undefined, draw: () => undefined },
     mocap: { frame: () => undefined, aside: 0 },
-    passthrough: { update: () => undefined },
-  };
-  const loop = createFrameLoop(new PageFrame(parts as unknown as PageFrameOptions), body, new FrameTiming(() => 0));
+  });
+  const source = new TrackingSource(parts, noPointers, createActor());
+  const controls = fake<Controls>({ observe: () => undefined, point: () => undefined });
+  const frame = new PageFrame(
+    { ...parts, source, pointers: noPointers },
+    controls,
+    fake<PassthroughHost>({ update: () => undefined }),
+  );
+  const loop = createFrameLoop(frame, body, new FrameTiming(() => 0));
   return {
     /** Draws a frame, and lets a network that answers later answer. */
     async show(frame: TrackingFrame) {

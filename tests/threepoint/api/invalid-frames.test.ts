@@ -5,7 +5,7 @@ import type { EstimatorName } from '../../../src/threepoint/core/estimation/pose
 import type { TrackedPose } from '../../../src/threepoint/core/math/pose';
 import { deviceBodySize } from '../../../src/threepoint/core/tracking/device-body';
 import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
-import { TrackingValidator } from '../../../src/threepoint/core/tracking/tracking-validator';
+import { TrackingGate } from '../../../src/threepoint/core/tracking/tracking-gate';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { numbersIn } from '../core/numbers-in';
@@ -147,7 +147,7 @@ test('a body is warmed up without invalid points', async () => {
 });
 
 test('a frame without a slip is taken as it is: nothing is copied', () => {
-  const validator = new TrackingValidator();
+  const gate = new TrackingGate();
   const whole = { ...at(0), deviceBody: new Float32Array(deviceBodySize) };
-  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(validator.validate(frame)).toBe(frame);
+  for (const frame of [at(0), { ...at(0), leftHand: null }, whole]) expect(gate.validate(frame)).toBe(frame);
 });

@@ -1,6 +1,6 @@
 import { Group, type Mesh, type WebGLRenderer } from 'three';
 import { describe, expect, test, vi } from 'vitest';
-import { BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../../src/threepoint/api/three';
+import { type Avatar, BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../../src/threepoint/api/three';
 import { pinning, trackerAtJoint } from '../../../src/threepoint/api/trackers';
 import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
@@ -12,7 +12,7 @@ import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import type { BodyTrackers, TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { mannequin } from '../avatar/glb';
 import { controller } from '../xr/fake-headset';
-import { begin, left, right } from './three-session';
+import { begin, left, right, wornHeadset } from './three-session';
 
 /** Whether the head is drawn for the eyes that are in it. */
 function ownHeadSeen(tracker: BodyTracker): boolean {
@@ -206,6 +206,52 @@ describe('a body in a session of three.js', () => {
     expect(wrist()).toBeGreaterThan(0.1);
     run(100);
     expect(wrist()).toBeGreaterThan(0.1);
+  });
+
+  test('draws a frame that the page changes between reading and solving as `update` draws one', async () => {
+    const { headset, tracker } = await begin({ calibration: defaultCalibration, estimator: 'ik' });
+    headset.putOn();
+    const raised = { ...standing.head, position: { x: 0.2, y: 1.7, z: 0 } };
+    for (let frame = 0; frame < 40; frame++) {
+      const time = tracker.body.tick(1000 + (frame * 1000) / 72);
+      const read = tracker.read(headset.frame, time)!;
+      expect(tracker.tracking!.inputs.buttons.left.trigger).toBe(0);
+      tracker.body.solve({ ...read, rightHand: raised });
+      tracker.draw(time);
+    }
+    const { leftHand, rightHand } = tracker.avatar.jointPositions();
+    expect(distance(rightHand!, raised.position)).toBeLessThan(0.001);
+    expect(distance(leftHand!, left.position)).toBeLessThan(0.12);
+    expect(tracker.object.visible).toBe(true);
+  });
+
+  test('continues with another avatar from the next frame on, and disposes of the first', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
+    headset.putOn();
+    run(40);
+    const [first, second] = [tracker.avatar, await loadAvatar(mannequin())];
+    tracker.setAvatar(second);
+    run(1);
+    expect(tracker.object.children).toEqual([second.object]);
+    expect(distance(second.jointPositions().leftHand!, tracker.pose!.leftHand!.position)).toBeLessThan(0.001);
+    expect(ownHeadSeen(tracker)).toBe(false);
+    expect(() => tracker.setAvatar(first)).toThrow('This avatar was disposed of with its BodyTracker.');
+  });
+
+  test('starts without an avatar, which follows', async () => {
+    const { renderer } = wornHeadset();
+    const tracker = new BodyTracker<Avatar | null>(renderer, { avatar: null, estimator: 'ik' });
+    expect(tracker.avatar).toBeNull();
+    tracker.updateFromFrame(standing);
+    expect(tracker.pose).not.toBeNull();
+    expect(tracker.object.visible).toBe(false);
+    tracker.setAvatar(await loadAvatar(mannequin()));
+    tracker.updateFromFrame({ ...standing, time: 1.1 });
+    expect(tracker.object.visible).toBe(true);
+    await tracker.dispose();
+    const late = await loadAvatar(mannequin());
+    tracker.setAvatar(late);
+    expect(tracker.avatar).not.toBe(late);
   });
 
   test('says which hand is lost and which is found', async () => {

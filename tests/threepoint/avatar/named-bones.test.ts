@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { BoneChoices } from '../../../src/page/bones/bone-choices';
-import { BoneMapStore } from '../../../src/page/shell/bone-map-store';
-import { createPreferenceStore } from '../../../src/page/shell/preferences';
+import { createPreferenceStore } from '../../../src/page/shell/session/preferences';
+import { BoneMapStore } from '../../../src/page/shell/stage/bone-map-store';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
 import { boneNode } from '../../../src/threepoint/avatar/humanoid/needed-bones';

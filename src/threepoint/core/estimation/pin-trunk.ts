@@ -47,7 +47,8 @@ import type { CompletedFrame, CompletedHand } from './complete-hands';
 import limits from './kinematic-limits.json' with { type: 'json' };
 import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from './pin';
 import type { TrackedJoints } from './tracked-joints';
-import { makeTrunkRotations, placeShoulder, type TorsoBones, type TorsoPose, trunkBones } from './trunk/fit-torso';
+import { makeTrunkRotations, placeShoulder, type TorsoPose, trunkBones } from './trunk/fit-torso';
+import type { TorsoBones } from './trunk/torso-bones';
 
 /**
  * The fastest turn [rad/s] of the side to which the trunk bends, and the fastest way [m/s] of a joint by it: near

@@ -8,7 +8,8 @@ import type { CompletedFrame } from './complete-hands';
 import { makePinTrunkState, pinTrunk, resetPinTrunk } from './pin-trunk';
 import { makeTrackedJointsState, placeTrackedJoints } from './tracked-joints';
 import { type TrackerReport, TrackerWatch } from './tracker-watch';
-import type { TorsoBones, TorsoPose } from './trunk/fit-torso';
+import type { TorsoPose } from './trunk/fit-torso';
+import type { TorsoBones } from './trunk/torso-bones';
 
 /** The joints of one estimator that trackers pin. */
 export class Pins {

@@ -25,7 +25,8 @@ import { HeadsetMountCorrection } from './online-calibration/headset-mount-corre
 import type { Pinning, Pins } from './pinning';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeSteadyTrackersState, resetSteadyTrackers, steadyTrackers } from './steady-trackers';
-import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './trunk/fit-torso';
+import { fitTorso, makeFitTorsoState, resetFitTorso } from './trunk/fit-torso';
+import { torsoBones } from './trunk/torso-bones';
 
 /** The longest gap between frames [s] that counts as motion; after a longer one filters and memories are reset. */
 const longestGapSeconds = 0.5;

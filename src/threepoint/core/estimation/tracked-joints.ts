@@ -1,7 +1,7 @@
 import { type TrackerName, type TrackerOffsets, trackerNames } from '../body/tracker-offsets';
 import { isTracked, type MutablePose, makePose, transformPose } from '../math/pose';
 import type { BodyTrackers } from '../tracking/tracking-frame';
-import { validPose } from '../tracking/tracking-validator';
+import { validPose } from '../tracking/tracking-gate';
 
 /** The joints by their trackers, floor frame; null: not tracked, invalid, or without an offset. */
 export type TrackedJoints = Record<TrackerName, MutablePose<'floor'> | null>;

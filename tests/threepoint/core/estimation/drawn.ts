@@ -9,7 +9,8 @@ import { armBones, fitArms, makeFitArmsState } from '../../../../src/threepoint/
 import type { CompletedFrame, CompletedHand } from '../../../../src/threepoint/core/estimation/complete-hands';
 import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
 import type { PoseEstimator } from '../../../../src/threepoint/core/estimation/pose-estimator';
-import { fitTorso, makeFitTorsoState, torsoBones } from '../../../../src/threepoint/core/estimation/trunk/fit-torso';
+import { fitTorso, makeFitTorsoState } from '../../../../src/threepoint/core/estimation/trunk/fit-torso';
+import { torsoBones } from '../../../../src/threepoint/core/estimation/trunk/torso-bones';
 import type { Pose } from '../../../../src/threepoint/core/math/pose';
 import { copyQuat, identity } from '../../../../src/threepoint/core/math/quat';
 import { copyVec3, normalise, vec3 } from '../../../../src/threepoint/core/math/vec3';

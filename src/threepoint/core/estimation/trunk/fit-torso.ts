@@ -1,6 +1,4 @@
 import { clavicleRest, clavicleRoot } from '../../body/arm-rotations';
-import limbLimits from '../../body/limb-limits.json' with { type: 'json' };
-import { armBonesOf, type Skeleton } from '../../body/skeleton';
 import { clamp, smoothingFactor, smoothstep } from '../../math/damper';
 import {
   alignDirections,
@@ -9,8 +7,6 @@ import {
   multiply,
   type Quat,
   quat,
-  type RestDirections,
-  restDirections,
   rotate,
   rotationBetween,
 } from '../../math/quat';
@@ -41,6 +37,7 @@ import type { CompletedFrame } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
 import limits from '../kinematic-limits.json' with { type: 'json' };
 import { followLean, increaseLean, type Lean, makeLean, startLeanFrame } from './lean-after-hand';
+import type { TorsoBones } from './torso-bones';
 
 const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
@@ -102,48 +99,6 @@ export const makeFitTorsoState = (): FitTorsoState => ({
   lean: { left: makeLean(), right: makeLean() },
 });
 
-/** The measures of a skeleton for `fitTorso`. */
-export interface TorsoBones {
-  readonly skeleton: Skeleton;
-  /**
-   * From chest joint to neck, from hips to chest joint, and from the neck to the head, at rest; their side is the
-   * body's right.
-   */
-  readonly thorax: RestDirections;
-  readonly thoraxLength: number;
-  readonly lowerBack: RestDirections;
-  readonly lowerBackLength: number;
-  readonly neck: RestDirections;
-  readonly neckLength: number;
-  /** From the neck to the middle of the shoulders, at rest. */
-  readonly shouldersFromNeck: Vec3;
-  readonly shoulderWidth: number;
-  /** Slightly less than the length of a straight arm [m], so that the elbow has a direction. */
-  readonly reach: number;
-}
-
-/** Measures a skeleton for `fitTorso`: [m], T-pose facing −Z. Both arms have the length of the right one. */
-export function torsoBones(skeleton: Skeleton): TorsoBones {
-  const offsets = skeleton.restOffsets;
-  const thorax = add(offsets.upperChest, offsets.neck);
-  const lowerBack = add(offsets.spine, offsets.chest);
-  const left = add(offsets.leftShoulder, offsets.leftUpperArm);
-  const rightShoulder = add(offsets.rightShoulder, offsets.rightUpperArm);
-  const { upper, lower } = armBonesOf(skeleton, 'right');
-  return {
-    skeleton,
-    thorax: restDirections(thorax, right),
-    thoraxLength: length(thorax),
-    lowerBack: restDirections(lowerBack, right),
-    lowerBackLength: length(lowerBack),
-    neck: restDirections(offsets.head, right),
-    neckLength: length(offsets.head),
-    shouldersFromNeck: subtract(lerp(left, rightShoulder, 0.5), offsets.neck),
-    shoulderWidth: 2 * rightShoulder.x,
-    reach: (upper + lower) * limbLimits.straightest,
-  };
-}
-
 /** The input of `fitTorso` in one frame, floor frame. */
 interface TorsoInput {
   readonly joints: JointPositions;
@@ -153,30 +108,21 @@ interface TorsoInput {
 }
 
 /** The placed thorax, for the spine below it; floor frame, unit. */
-interface PlacedThorax {
+const thorax = {
   /** From the chest joint to the neck. */
-  readonly up: MutableVec3;
-  /** From the left to the right shoulder as the thorax faces. */
-  readonly line: MutableVec3;
-}
-
-/** The thorax of a frame before leaning, floor frame. */
-interface UnleanedThorax {
-  /** From the chest joint to the neck, unit. */
-  readonly up: MutableVec3;
-  /** From the left to the right side of the thorax, at right angles to `up`, unit. */
-  readonly line: MutableVec3;
-  /** From the neck to the head joint [m]. */
-  readonly neckToHead: MutableVec3;
-  /** The part of the neck's displacement onto its bone length that chest joint and hips follow [m]. */
-  readonly moved: MutableVec3;
-}
-
-const thorax: PlacedThorax = { up: vec3(0, 0, 0), line: vec3(0, 0, 0) };
-const unleaned: UnleanedThorax = {
   up: vec3(0, 0, 0),
+  /** From the left to the right shoulder as the thorax faces. */
   line: vec3(0, 0, 0),
+};
+/** The thorax of a frame before leaning, floor frame. */
+const unleaned = {
+  /** From the chest joint to the neck, unit. */
+  up: vec3(0, 0, 0),
+  /** From the left to the right side of the thorax, at right angles to `up`, unit. */
+  line: vec3(0, 0, 0),
+  /** From the neck to the head joint [m]. */
   neckToHead: vec3(0, 0, 0),
+  /** The part of the neck's displacement onto its bone length that chest joint and hips follow [m]. */
   moved: vec3(0, 0, 0),
 };
 /** The targets of the shoulders, floor frame. */
@@ -191,9 +137,12 @@ const shoulderMiddle = vec3(0, 0, 0);
 const impliedNeck = vec3(0, 0, 0);
 /** From the neck to the head on a neck at rest [m]. */
 const neckAtRest = vec3(0, 0, 0);
-const a = vec3(0, 0, 0);
-const b = vec3(0, 0, 0);
-const c = vec3(0, 0, 0);
+const turnAxis = vec3(0, 0, 0);
+const unleanedNeck = vec3(0, 0, 0);
+const leanedNeck = vec3(0, 0, 0);
+const clavicle = { root: vec3(0, 0, 0), rest: vec3(0, 0, 0), wanted: vec3(0, 0, 0) };
+const spine = { hips: vec3(0, 0, 0), up: vec3(0, 0, 0), pelvis: vec3(0, 0, 0), vertebra: vec3(0, 0, 0) };
+const hipsBefore = vec3(0, 0, 0);
 const rotation = quat(0, 0, 0, 1);
 const swing = quat(0, 0, 0, 1);
 
@@ -250,12 +199,12 @@ function followShoulderLine(
 
 /** Turns `before` towards `wanted` by min(share·angle, most) [rad] and writes the result into `wanted`; all unit. */
 function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: number): void {
-  const angle = Math.atan2(length(cross(before, wanted, b)), dot(before, wanted));
+  const angle = Math.atan2(length(cross(before, wanted, turnAxis)), dot(before, wanted));
   const turn = Math.min(angle * share, most);
   if (angle - turn < 1e-9) return;
-  normalise(cross(b, before, b), headingRight, b);
+  normalise(cross(turnAxis, before, turnAxis), headingRight, turnAxis);
   scale(before, Math.cos(turn), wanted);
-  normalise(addScaled(wanted, b, Math.sin(turn), wanted), before, wanted);
+  normalise(addScaled(wanted, turnAxis, Math.sin(turn), wanted), before, wanted);
 }
 
 /**
@@ -269,16 +218,16 @@ const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number
 function placeUprightNeck(
   shoulderLine: Vec3,
   { joints, frame, bones }: TorsoInput,
-  { up: thoraxUp, line, neckToHead, moved }: UnleanedThorax,
+  { up: thoraxUp, line, neckToHead, moved }: typeof unleaned,
 ): void {
   lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, shoulderMiddle);
   normalise(subtract(shoulderMiddle, joints.chest, thoraxUp), up, thoraxUp);
   const chest = alignDirections(bones.thorax, thoraxUp, shoulderLine, rotation);
   rotate(chest, right, line);
-  subtract(shoulderMiddle, rotate(chest, bones.shouldersFromNeck, a), impliedNeck);
+  subtract(shoulderMiddle, rotate(chest, bones.shouldersFromNeck, impliedNeck), impliedNeck);
   rotate(chest, bones.neck.main, neckAtRest);
   limitAngle(
-    rotationBetween(neckAtRest, subtract(frame.headJoint, impliedNeck, a), swing),
+    rotationBetween(neckAtRest, subtract(frame.headJoint, impliedNeck, neckToHead), swing),
     torsoLimits.neckBend,
     swing,
   );
@@ -300,7 +249,7 @@ function placeThorax(
   { joints, frame, bones }: TorsoInput,
   leftLean: Vec3,
   rightLean: Vec3,
-  { up: thoraxUp, line }: PlacedThorax,
+  { up: thoraxUp, line }: typeof thorax,
 ): void {
   const { pose, lean } = state;
   const neckBend = limitOf('neckBend', Math.max(lean.left.extremity, lean.right.extremity));
@@ -314,11 +263,11 @@ function placeThorax(
 
   const roughChest = turnThorax(bones, thoraxUp, line, rotation);
   rotate(roughChest, bones.neck.main, neckAtRest);
-  normalise(unleaned.neckToHead, up, a);
-  leanDirection(a, bones.neckLength, scale(meanLean, -1, meanLean), b);
-  limitAngle(rotationBetween(neckAtRest, b, swing), neckBend, swing);
-  subtract(frame.headJoint, rotate(swing, neckAtRest, a), pose.neck);
-  normalise(subtract(pose.neck, add(joints.chest, unleaned.moved, a), thoraxUp), unleaned.up, thoraxUp);
+  normalise(unleaned.neckToHead, up, unleanedNeck);
+  leanDirection(unleanedNeck, bones.neckLength, scale(meanLean, -1, meanLean), leanedNeck);
+  limitAngle(rotationBetween(neckAtRest, leanedNeck, swing), neckBend, swing);
+  subtract(frame.headJoint, rotate(swing, neckAtRest, neckAtRest), pose.neck);
+  normalise(subtract(pose.neck, add(joints.chest, unleaned.moved, thoraxUp), thoraxUp), unleaned.up, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
   turnThorax(bones, thoraxUp, line, upperChest);
   placeShoulder('left', pose, bones, shoulderTargets.left, limitOf('clavicleSwing', lean.left.extremity));
@@ -351,10 +300,10 @@ export function placeShoulder(
   target: Vec3,
   furthestSwing: number,
 ): void {
-  const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, a);
-  const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), b);
-  limitAngle(rotationBetween(rest, subtract(target, root, c), swing), furthestSwing, swing);
-  add(root, rotate(swing, rest, b), shoulders[side]);
+  const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, clavicle.root);
+  const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), clavicle.rest);
+  limitAngle(rotationBetween(rest, subtract(target, root, clavicle.wanted), swing), furthestSwing, swing);
+  add(root, rotate(swing, rest, rest), shoulders[side]);
   multiply(swing, rotations.upperChest, clavicles[side]);
 }
 
@@ -365,21 +314,21 @@ export function placeShoulder(
 function placeSpine(
   state: FitTorsoState,
   { joints, frame, bones, deltaSeconds }: TorsoInput,
-  { up: thoraxUp, line }: PlacedThorax,
+  { up: thoraxUp, line }: typeof thorax,
 ): void {
   const { pose } = state;
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
-  hangHips(state, add(joints.hips, unleaned.moved, a), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
-  const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
-  const pelvisLine = normalise(lerp(line, headingRight, torsoLimits.pelvisToHead, b), line, b);
+  hangHips(state, add(joints.hips, unleaned.moved, spine.hips), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
+  const lowerBackUp = normalise(subtract(chest, hips, spine.up), up, spine.up);
+  const pelvisLine = normalise(lerp(line, headingRight, torsoLimits.pelvisToHead, spine.pelvis), line, spine.pelvis);
   alignDirections(bones.lowerBack, lowerBackUp, pelvisLine, rotations.hips);
-  lerp(pelvisLine, line, spineToShoulders, c);
-  alignDirections(bones.lowerBack, lowerBackUp, c, rotations.spine);
-  lerp(pelvisLine, line, torsoLimits.chestToShoulders, c);
-  alignDirections(bones.thorax, thoraxUp, c, rotations.chest);
-  lerp(line, rotate(head.orientation, right, a), 0.5, c);
-  alignDirections(bones.neck, subtract(headJoint, neck, a), c, rotations.neck);
+  lerp(pelvisLine, line, spineToShoulders, spine.vertebra);
+  alignDirections(bones.lowerBack, lowerBackUp, spine.vertebra, rotations.spine);
+  lerp(pelvisLine, line, torsoLimits.chestToShoulders, spine.vertebra);
+  alignDirections(bones.thorax, thoraxUp, spine.vertebra, rotations.chest);
+  lerp(line, rotate(head.orientation, right, spine.vertebra), 0.5, spine.vertebra);
+  alignDirections(bones.neck, subtract(headJoint, neck, spine.up), spine.vertebra, rotations.neck);
 }
 
 /**
@@ -396,7 +345,7 @@ function hangHips(
 ): void {
   const { chest, hips } = pose;
   const most = known ? hipsTurnSpeed * Math.max(deltaSeconds, 0) : Number.POSITIVE_INFINITY;
-  const before = rotate(bodyTurn, towards, c);
+  const before = rotate(bodyTurn, towards, hipsBefore);
   normalise(subtract(estimate, chest, hips), down, hips);
   setVec3(towards, hips.x, 0, hips.z);
   turnTowards(hips, before, 1, most);

@@ -1,0 +1,114 @@
+import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
+import { isSkeletonMap } from 'threepoint/motion';
+import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
+import type { StageParts } from '../stage/stage-parts';
+
+/** Twice the size of the longest recording that the recorder stores. */
+const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
+
+const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
+/** A map of a skeleton is a page of text [bytes]. */
+const largestMap = 2 ** 18;
+const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma|gltf)$/i.test(name);
+/** Files with a body, its motion or both: bodies, unless they were chosen as motion. */
+const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
+
+/** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
+export class FileOpener {
+  readonly #parts: StageParts;
+
+  constructor(parts: StageParts) {
+    this.#parts = parts;
+  }
+
+  /**
+   * Files that came together: those of motion capture make one motion, others are opened one by one. `asMotion`: they
+   * were chosen as motion capture.
+   */
+  openAll(files: readonly File[], { asMotion = false } = {}): void {
+    const isMotion = (file: File): boolean => isMocap(file) || (asMotion && mayBeMocap(file));
+    // Beside motion, JSON is a map of its skeleton.
+    const mocap = files.some(isMotion) ? files.filter((file) => isMotion(file) || isJson(file)) : [];
+    if (mocap.length > 0) void this.#parts.mocap.open(mocap);
+    for (const file of files) if (!mocap.includes(file)) void this.open(file);
+  }
+
+  /**
+   * A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a
+   * notice.
+   */
+  async open(file: File): Promise<void> {
+    const requestNumber = this.#parts.recorder.nextRequest();
+    if (!isJson(file)) await this.openAvatar(file);
+    else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#parts.mocap.open([file]);
+    else await this.openRecording(file, requestNumber);
+  }
+
+  /** Shows an avatar; a file of motion without a body is opened as motion capture. */
+  async openAvatar(source: string | File): Promise<void> {
+    const { avatar, notices, mocap } = this.#parts;
+    const outcome = await avatar.open(source);
+    if (outcome === 'motion') await mocap.open([source]);
+    else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`);
+  }
+
+  /**
+   * Sets the bones of the file that waits for them; null: forgets the user's map. Never rejects: the form shows what is
+   * wrong.
+   */
+  async applyBones(bones: BoneMap | null): Promise<void> {
+    const { avatar, notices } = this.#parts;
+    const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
+    if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`);
+  }
+
+  /** Shows the page's avatar, also after a reload. */
+  showBuiltInAvatar(): void {
+    const address = new URL(location.href);
+    address.searchParams.delete('avatar');
+    history.replaceState(null, '', address);
+    void this.#parts.avatar.openBuiltIn();
+  }
+
+  /**
+   * Replays a recording, with the body of the person in it. `requestNumber`: its number among the recorder's requests.
+   * Never rejects: what goes wrong becomes a notice.
+   */
+  async openRecording(source: string | File, requestNumber = this.#parts.recorder.nextRequest()): Promise<void> {
+    const { recorder, notices } = this.#parts;
+    const name = fileNameOf(source);
+    try {
+      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), requestNumber);
+      this.replay();
+    } catch (error) {
+      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
+      notices.show('error', `${name} could not be replayed: ${reason}`);
+    }
+  }
+
+  /** Replays the current recording from its start. */
+  replay(): void {
+    const { recorder, body, onChange } = this.#parts;
+    recorder.replay();
+    body.discontinuity();
+    onChange();
+  }
+}
+
+/** Takes files dropped anywhere on the page, and shows where they may be dropped while one is dragged. */
+export function acceptDroppedFiles(onFiles: (files: readonly File[]) => void): void {
+  let depth = 0;
+  const hover = (by: number) => {
+    depth = Math.max(0, depth + by);
+    document.body.classList.toggle('dragging', depth > 0);
+  };
+  window.addEventListener('dragenter', () => hover(1));
+  window.addEventListener('dragleave', () => hover(-1));
+  window.addEventListener('dragover', (event) => event.preventDefault());
+  window.addEventListener('drop', (event) => {
+    event.preventDefault();
+    depth = 0;
+    hover(0);
+    onFiles([...(event.dataTransfer?.files ?? [])]);
+  });
+}

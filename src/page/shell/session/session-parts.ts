@@ -1,0 +1,24 @@
+import type { Body, BodySolverOptions } from 'threepoint';
+import type { Avatar, BodyTracker } from 'threepoint/three';
+import type { ServerPresence } from 'threepoint-ui';
+import type { FrameTiming } from './frame-timing';
+import type { Headset } from './headset';
+import type { PageContext } from './page-context';
+import type { PageLoading } from './page-loading';
+import type { PageStudy } from './page-study';
+
+/** The parts of the page that need no picture. */
+export interface SessionParts extends PageContext {
+  readonly loading: PageLoading;
+  readonly timing: FrameTiming;
+  readonly tracker: BodyTracker<Avatar | null>;
+  /** The tracker's. */
+  readonly body: Body;
+  /** Loads separate networks for what is computed from recordings. */
+  readonly networks: BodySolverOptions['networks'];
+  readonly headset: Headset;
+  readonly study: PageStudy;
+  readonly server: ServerPresence;
+  /** Something changed that is on the screen. */
+  onChange(): void;
+}

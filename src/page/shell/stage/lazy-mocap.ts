@@ -1,0 +1,99 @@
+import type { Object3D } from 'three';
+import { type AvatarPose, estimatorNames, firstLine, reasonOf, recordOf, type TrackingFrame } from 'threepoint/core';
+import { type Avatar, palettes } from 'threepoint/three';
+import { pageElement } from 'threepoint-ui';
+import type { MocapView } from '../../mocap/mocap-view';
+import type { ClipView } from '../../mocap/motion-bones';
+import type { Recorder } from '../../studio/recorder';
+import { estimatorTexts } from '../session/estimator-texts';
+import type { SessionParts } from '../session/session-parts';
+import { buildBuiltIn } from './avatar-loader';
+import type { BoneMapStore } from './bone-map-store';
+
+export interface LazyMocapOptions extends SessionParts {
+  readonly scene: Object3D;
+  readonly recorder: Recorder;
+  readonly boneMaps: BoneMapStore;
+  /** Compiles the materials of an object and uploads its textures before it is shown. */
+  prepare(object: Object3D): Promise<void>;
+}
+
+const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
+
+/** Loads the motion capture viewer with the first file. */
+export class LazyMocap {
+  readonly #options: LazyMocapOptions;
+  #view: MocapView | null = null;
+
+  constructor(options: LazyMocapOptions) {
+    this.#options = options;
+  }
+
+  /**
+   * Shows the motion of files of this device or of addresses. Never rejects: faults become notices. `requestNumber`:
+   * its number among the recorder's requests.
+   */
+  async open(
+    sources: readonly (File | string)[],
+    view: ClipView = {},
+    requestNumber = this.#options.recorder.nextRequest(),
+  ): Promise<void> {
+    try {
+      const { MocapView } = await import('../../mocap/mocap-view');
+      this.#view ??= this.#build(MocapView);
+    } catch (error) {
+      const reason = firstLine(reasonOf(error));
+      this.#options.notices.show('error', `The motion capture viewer could not be loaded: ${reason}`);
+    }
+    await this.#view?.open(sources, view, requestNumber);
+  }
+
+  /** The distance of the middle of what is shown to the right of the body [m]. */
+  get aside(): number {
+    return this.#view?.aside ?? 0;
+  }
+
+  /** Updates the view to a frame of the page. */
+  frame(frame: TrackingFrame, pose: AvatarPose): void {
+    this.#view?.frame(frame, pose);
+  }
+
+  /** Updates the card; called several times a second. */
+  show(): void {
+    this.#view?.show();
+  }
+
+  #build(View: typeof MocapView): MocapView {
+    const { body, recorder, store, onChange } = this.#options;
+    return new View({
+      ...this.#options,
+      labels,
+      region: pageElement('play', HTMLElement),
+      replay: recorder,
+      method: {
+        get selected() {
+          return body.selectedEstimator;
+        },
+        select(estimator) {
+          store.remember({ estimator });
+          void body.setEstimator(estimator);
+          onChange();
+        },
+      },
+      loadAvatar: () => this.#loadAvatar(),
+      onJump() {
+        body.discontinuity();
+        onChange();
+      },
+    });
+  }
+
+  /** Loads a built-in avatar in other colours than those of the first. */
+  async #loadAvatar(): Promise<Avatar> {
+    const { builtInBody, palette } = this.#options.settings;
+    const avatar = await buildBuiltIn(builtInBody);
+    avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
+    await this.#options.prepare(avatar.object);
+    return avatar;
+  }
+}

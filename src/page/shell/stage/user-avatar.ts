@@ -1,0 +1,290 @@
+import {
+  type BoneMap,
+  type BuiltInBody,
+  bodyOf,
+  defaultAvatar,
+  firstLine,
+  reasonOf,
+  skinToneOf,
+  UnknownBonesError,
+} from 'threepoint/core';
+import { type Avatar, bodyLabelOf, type CheckedAvatar, MotionOnlyError } from 'threepoint/three';
+import type { OwnAvatar } from 'threepoint-rooms';
+import { fileNameOf } from 'threepoint-ui';
+import type { SkeletonToMap } from '../../bones/skeleton-to-map';
+import type { SessionParts } from '../session/session-parts';
+import { type AvatarFile, type AvatarLoader, fetchBuiltInAvatar, type LoadedUserAvatar } from './avatar-loader';
+
+/** An avatar that was requested, until it is shown, refused or cancelled. */
+interface Request {
+  readonly turn: number;
+  readonly name: string;
+  /** It is a built-in avatar. */
+  readonly isBuiltIn: boolean;
+  readonly cancellation: AbortController;
+  /** The checked file; null: not loaded yet, or a built-in avatar. */
+  checked: CheckedAvatar | null;
+}
+
+/** Returns the reason of a failure without the name of its file. */
+const reasonFor = (name: string, error: unknown): string => firstLine(reasonOf(error)).replace(`${name}: `, '');
+
+/** The avatar on the stage. Another one replaces it only when it has been loaded completely. */
+export class UserAvatar {
+  readonly #parts: SessionParts;
+  readonly #loader: AvatarLoader;
+  #name = bodyLabelOf(defaultAvatar);
+  #worn: OwnAvatar = defaultAvatar;
+  #source: LoadedUserAvatar['source'] = null;
+  #seatPalette: string | null = null;
+  #pending: string | null = null;
+  /** The number of requests, and that of the request that is shown. */
+  #requested = 0;
+  #shown = 0;
+  /** The file that is loading; null: none. */
+  #loading: Request | null = null;
+  #waiting: (SkeletonToMap & { readonly checked: AvatarFile }) | null = null;
+
+  constructor(parts: SessionParts, loader: AvatarLoader) {
+    this.#parts = parts;
+    this.#loader = loader;
+  }
+
+  get current(): Avatar | null {
+    return this.#parts.tracker.avatar;
+  }
+
+  get name(): string {
+    return this.#name;
+  }
+
+  /** Whether it is a built-in avatar, whose colours can be chosen. */
+  get isBuiltIn(): boolean {
+    return typeof this.#worn === 'string';
+  }
+
+  /** The built-in avatar that is shown; null: it is a file. */
+  get builtInBody(): BuiltInBody | null {
+    return typeof this.#worn === 'string' ? bodyOf(this.#worn) : null;
+  }
+
+  /** The avatar for other players: the same object for as long as it is shown. */
+  get worn(): OwnAvatar {
+    return this.#worn;
+  }
+
+  /** Returns the file of the avatar. Rejects with a reason if it can no longer be read. */
+  file(): Promise<ArrayBuffer> {
+    return typeof this.#worn === 'string' ? fetchBuiltInAvatar(bodyOf(this.#worn)) : this.#worn.file.arrayBuffer();
+  }
+
+  /** The state of the last request in words; null: it is shown. */
+  get pending(): string | null {
+    return this.#pending;
+  }
+
+  /** Whether a file is loading, which the user can cancel. */
+  get isLoading(): boolean {
+    return this.#loading !== null;
+  }
+
+  /** Whether the shown avatar is a file, whose bones the user can correct. */
+  get canCorrectBones(): boolean {
+    return this.#source !== null && this.#waiting === null && !this.isLoading;
+  }
+
+  /** A file whose bones the user maps; null: none. */
+  get waiting(): SkeletonToMap | null {
+    return this.#waiting;
+  }
+
+  /** Sets the palette of a seat; null: the palette that the user chose. */
+  setSeatPalette(palette: string | null): void {
+    this.#seatPalette = palette;
+    this.recolour();
+  }
+
+  /** Applies the palette of the seat, else the user's, to a built-in avatar. */
+  recolour(): void {
+    if (this.isBuiltIn) this.current?.setPalette(this.#seatPalette ?? this.#parts.settings.palette);
+  }
+
+  /** Cancels the file that is loading or waits for its bones. The shown avatar stays. */
+  cancel(): void {
+    this.#loading?.cancellation.abort();
+    this.#loading = null;
+    this.#waiting = null;
+    this.#pending = null;
+    this.#parts.onChange();
+  }
+
+  /**
+   * Shows the built-in avatar that the user chose. Requests before this are ignored when they arrive. `bytes`: its
+   * file, if the download has started already. Returns false after a notice if it fails.
+   */
+  openBuiltIn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
+    const { builtInBody, skinTone } = this.#parts.settings;
+    const request = this.#request(bodyLabelOf(builtInBody), true);
+    return this.#arrive(request, () => this.#loader.loadBuiltIn(builtInBody, skinTone, bytes));
+  }
+
+  /**
+   * Shows the avatar of a file or an address. Returns false after a notice if it fails, and 'motion' where the file
+   * holds motion and no body. Of several requests the last one is shown.
+   */
+  open(source: string | File): Promise<boolean | 'motion'> {
+    const request = this.#request(fileNameOf(source), false);
+    return this.#arrive(request, async () => {
+      const { signal } = request.cancellation;
+      request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });
+      return this.#loader.build(request.checked, request.name);
+    }).catch((error: unknown) => {
+      if (!(error instanceof MotionOnlyError)) throw error;
+      return 'motion' as const;
+    });
+  }
+
+  /** Offers the bones of the shown file for correction: `waiting` has them. A failure becomes a notice. */
+  async correctBones(): Promise<void> {
+    const [source, name, turn] = [this.#source, this.#name, this.#requested];
+    if (!source) return;
+    const { checked, bones } = source;
+    try {
+      const { joints, matched, confidence, accepted } = await this.#loader.bonesOf(checked, name);
+      if (this.#requested !== turn || this.#source !== source || this.#waiting) return;
+      const [own, sure] = bones ? [bones, {}] : [matched, confidence];
+      const canForgetMap = bones !== undefined && accepted;
+      this.#waiting = {
+        name,
+        joints,
+        bones: own,
+        confidence: sure,
+        complaint: null,
+        isShown: true,
+        canForgetMap,
+        checked,
+      };
+    } catch (error) {
+      const text = `The bones of ${name} could not be read: ${reasonFor(name, error)}. Open the file again.`;
+      this.#parts.notices.show('error', text);
+    } finally {
+      this.#parts.onChange();
+    }
+  }
+
+  /**
+   * Maps the bones of the file that waits for them; null: forgets the user's map. Returns false if they do not fit;
+   * `waiting` has the reason.
+   */
+  async applyBones(bones: BoneMap | null): Promise<boolean> {
+    const waiting = this.#waiting;
+    if (!waiting) return false;
+    const { name, checked } = waiting;
+    try {
+      const loaded = await this.#loader.buildWith(checked, name, bones);
+      if (this.#waiting !== waiting) {
+        loaded.avatar.dispose();
+        return false;
+      }
+      this.#requested += 1;
+      this.#show(loaded, name, this.#requested);
+      return true;
+    } catch (error) {
+      if (this.#waiting === waiting)
+        this.#waiting = { ...waiting, bones: bones ?? waiting.bones, complaint: reasonFor(name, error) };
+      return false;
+    } finally {
+      this.#parts.onChange();
+    }
+  }
+
+  #request(name: string, isBuiltIn: boolean): Request {
+    this.#requested += 1;
+    const request: Request = {
+      turn: this.#requested,
+      name,
+      isBuiltIn,
+      cancellation: new AbortController(),
+      checked: null,
+    };
+    this.#loading = isBuiltIn ? null : request;
+    this.#waiting = null;
+    this.#report(request, `${name} is loading.`);
+    return request;
+  }
+
+  #report({ turn, isBuiltIn }: Request, text: string): void {
+    if (turn !== this.#requested || isBuiltIn) return;
+    this.#pending = text;
+    this.#parts.onChange();
+  }
+
+  #progressOf(request: Request): (share: number) => void {
+    const { name } = request;
+    let reported = 0;
+    return (share) => {
+      const percent = Math.floor(share * 20) * 5;
+      if (percent > reported)
+        this.#report(request, percent < 100 ? `${name} is loading: ${percent} %.` : `${name} is being checked.`);
+      reported = percent;
+    };
+  }
+
+  /**
+   * Shows the avatar that `load` returns, unless a later request has been shown before. Rejects only where the file
+   * holds motion and no body.
+   */
+  async #arrive(request: Request, load: () => Promise<LoadedUserAvatar>): Promise<boolean> {
+    const { turn, name, cancellation } = request;
+    try {
+      const loaded = await load();
+      if (turn < this.#shown || cancellation.signal.aborted) {
+        loaded.avatar.dispose();
+        return false;
+      }
+      this.#show(loaded, name, turn);
+      return true;
+    } catch (error) {
+      if (cancellation.signal.aborted) return false;
+      if (error instanceof MotionOnlyError) {
+        if (turn === this.#requested) this.#pending = null;
+        throw error;
+      }
+      this.#refuse(request, error);
+      return false;
+    } finally {
+      if (this.#loading === request) this.#loading = null;
+      this.#parts.onChange();
+    }
+  }
+
+  #refuse({ turn, name, isBuiltIn, checked }: Request, error: unknown): void {
+    const { notices } = this.#parts;
+    const isNewest = turn === this.#requested;
+    if (error instanceof UnknownBonesError && checked && isNewest) {
+      const { joints, matched: bones, confidence } = error;
+      const asked = { complaint: null, isShown: false, canForgetMap: false };
+      this.#waiting = { name, joints, bones, confidence, ...asked, checked };
+      this.#pending = `${name} is waiting for its bones to be mapped.`;
+      const how = 'Map them by hand: Controls, Avatar, Bones of this file.';
+      notices.show('error', `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`);
+      return;
+    }
+    notices.show('error', `${name} could not be shown: ${reasonFor(name, error)}`);
+    if (isNewest) this.#pending = isBuiltIn ? null : `${name} could not be shown.`;
+  }
+
+  #show({ avatar, worn, source }: LoadedUserAvatar, name: string, turn: number): void {
+    const { tracker, settings } = this.#parts;
+    tracker.setAvatar(avatar);
+    this.#name = name;
+    this.#worn = worn;
+    this.#source = source;
+    this.#shown = turn;
+    this.#waiting = null;
+    if (turn === this.#requested) this.#pending = null;
+    this.recolour();
+    if (typeof worn === 'string') avatar.setSkinTone(skinToneOf(worn));
+    avatar.setUpperBodyOnly(settings.upperBodyOnly);
+  }
+}

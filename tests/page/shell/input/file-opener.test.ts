@@ -1,0 +1,193 @@
+import { type Calibration, type TrackingFrame, writeRecording } from 'threepoint/core';
+import { describe, expect, test } from 'vitest';
+import { FileOpener } from '../../../../src/page/shell/input/file-opener';
+import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
+import { Recorder } from '../../../../src/page/studio/recorder';
+import type { Notice, NoticeLevel } from '../../../../src/ui/notices';
+import { fake } from '../fake';
+
+const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
+
+function frameAt(time: number): TrackingFrame {
+  const orientation = { x: 0, y: 0, z: 0, w: 1 };
+  const head = { position: { x: 0, y: 1.7, z: 0 }, orientation, tracking: 'tracked' } as const;
+  return { time, head, leftHand: null, rightHand: null };
+}
+
+/** A file of one second of this person. */
+const recordingFile = (name = 'walk.json') =>
+  new File(
+    [writeRecording({ device: 'a test', rateHz: 72, calibration: person, frames: [frameAt(1), frameAt(2)] })],
+    name,
+  );
+
+/** A file of this size [MB]; whether its bytes were asked for. */
+function largeFile(name: string, megabytes: number) {
+  const file = new File(['{}'], name);
+  const asked = { bytes: false };
+  Object.defineProperties(file, {
+    size: { value: megabytes * 2 ** 20 },
+    arrayBuffer: {
+      value: async () => {
+        asked.bytes = true;
+        return new ArrayBuffer(2);
+      },
+    },
+  });
+  return { file, asked };
+}
+
+/** A recording whose bytes come when `arrive` is called. */
+function slowRecording(name: string) {
+  const file = recordingFile(name);
+  let arrive = (): void => undefined;
+  const arrival = new Promise<void>((resolve) => {
+    arrive = resolve;
+  });
+  const bytes = file.arrayBuffer();
+  Object.defineProperty(file, 'arrayBuffer', { value: () => arrival.then(() => bytes) });
+  return { file, arrive };
+}
+
+/** The files of a page, with its real recorder; what they do to body and avatar is written down. */
+function files() {
+  const notices: Notice[] = [];
+  const done: string[] = [];
+  const opened: (string | File)[] = [];
+  const mocap: (readonly (string | File)[])[] = [];
+  const recorder = new Recorder();
+  return {
+    notices,
+    done,
+    opened,
+    mocap,
+    recorder,
+    files: new FileOpener(
+      fake<StageParts>({
+        recorder,
+        notices: { show: (level: NoticeLevel, text: string) => void notices.push({ level, text }) },
+        avatar: {
+          name: 'robot.vrm',
+          async open(source: string | File) {
+            opened.push(source);
+            return true;
+          },
+          openBuiltIn: async () => true,
+          applyBones: async () => true,
+          waiting: null,
+        },
+        mocap: { open: async (sources: readonly (string | File)[]) => void mocap.push(sources) },
+        body: { discontinuity: () => void done.push(`the body begins anew while ${recorder.mode}`) },
+        onChange: () => void done.push('shown'),
+      }),
+    ),
+  };
+}
+
+describe('a dropped file', () => {
+  test('that is a recording of 300 MB is refused by a sentence before it is read', async () => {
+    const { files: page, notices, recorder } = files();
+    const { file, asked } = largeFile('walk.json', 300);
+    await page.open(file);
+    expect(notices).toEqual([
+      {
+        level: 'error',
+        text: 'walk.json could not be replayed: larger than 100 MB, the limit for a recording',
+      },
+    ]);
+    expect(asked.bytes).toBe(false);
+    expect(recorder.mode).toBe('idle');
+  });
+
+  test('that is a recording is replayed at once, by the body of the person in it', async () => {
+    const { files: page, notices, recorder, done } = files();
+    await page.open(recordingFile());
+    expect(notices).toEqual([]);
+    expect(recorder.mode).toBe('replaying');
+    expect(recorder.name).toBe('walk.json');
+    expect(recorder.person).toEqual(person);
+    expect(done).toEqual(['the body begins anew while replaying', 'shown']);
+    recorder.stop();
+    expect(recorder.person).toBeNull();
+  });
+
+  test('that is no recording leaves what was replayed as it was', async () => {
+    const { files: page, notices, recorder } = files();
+    await page.open(recordingFile('walk.json'));
+    await page.open(new File(['{"frames": 3}'], 'other.JSON'));
+    expect(notices).toHaveLength(1);
+    expect(notices[0]?.text).toMatch(/^other\.JSON could not be replayed: /);
+    expect(recorder.name).toBe('walk.json');
+    expect(recorder.mode).toBe('replaying');
+  });
+
+  test('that is a recording leaves one that is being made as it is, and a sentence says so', async () => {
+    const { files: page, notices, recorder } = files();
+    recorder.record({ device: 'a test', rateHz: 72, calibration: person });
+    recorder.observe(frameAt(1));
+    await page.open(recordingFile());
+    recorder.observe(frameAt(2));
+    expect(notices).toEqual([
+      { level: 'error', text: 'walk.json could not be replayed: a recording is in progress; stop it first' },
+    ]);
+    recorder.stop();
+    expect([recorder.name, recorder.duration]).toEqual(['recording-1.json', 1]);
+    await page.open(recordingFile());
+    expect([recorder.name, recorder.mode]).toEqual(['walk.json', 'replaying']);
+  });
+
+  test('that is read for longer than a recording opened after it comes too late, and a sentence says so', async () => {
+    const { files: page, notices, recorder } = files();
+    const { file, arrive } = slowRecording('slow.json');
+    const slow = page.openRecording(file);
+    await page.open(recordingFile('quick.json'));
+    arrive();
+    await slow;
+    expect([recorder.name, recorder.mode]).toEqual(['quick.json', 'replaying']);
+    expect(notices).toEqual([
+      { level: 'error', text: 'slow.json could not be replayed: a newer recording was opened' },
+    ]);
+  });
+
+  test('that was opened before another is replayed where that is no recording', async () => {
+    const { files: page, recorder } = files();
+    const { file, arrive } = slowRecording('slow.json');
+    const slow = page.open(file);
+    await page.open(new File(['{"frames": 3}'], 'broken.json'));
+    arrive();
+    await slow;
+    expect([recorder.name, recorder.mode]).toEqual(['slow.json', 'replaying']);
+  });
+
+  test('of any other name is opened as an avatar, and its name is told when it stands there', async () => {
+    const { files: page, notices, opened, recorder } = files();
+    const file = new File(['glTF'], 'robot.vrm');
+    await page.open(file);
+    expect(opened).toEqual([file]);
+    expect(recorder.mode).toBe('idle');
+    expect(notices).toEqual([{ level: 'info', text: 'robot.vrm is your avatar now.' }]);
+  });
+
+  test('of motion capture goes with its skeleton, and what came with both is opened too', () => {
+    const { files: page, opened, mocap } = files();
+    const [motion, skeleton, robot] = ['01_02.AMC', '01.asf', 'robot.vrm'].map((name) => new File([''], name)) as [
+      File,
+      File,
+      File,
+    ];
+    page.openAll([robot, motion, skeleton]);
+    expect(mocap).toEqual([[motion, skeleton]]);
+    expect(opened).toEqual([robot]);
+  });
+
+  test('takes JSON for a map beside motion and where it is one, else for a recording', async () => {
+    const { files: page, mocap, recorder } = files();
+    const [motion, map] = [new File(['HIERARCHY'], 'dance.bvh'), new File(['{"joints": {}}'], 'map.json')];
+    page.openAll([map, motion]);
+    expect(mocap).toEqual([[map, motion]]);
+    await page.open(map);
+    expect(mocap.at(-1)).toEqual([map]);
+    await page.open(recordingFile());
+    expect([mocap.length, recorder.name]).toEqual([2, 'walk.json']);
+  });
+});
