@@ -3,13 +3,13 @@ import {
   type Avatar,
   checkInWorker,
   createAvatarBetweenFrames,
-  decoders,
   loadUntrustedAvatar,
   parseAvatar,
 } from 'threepoint/three';
 import type { AvatarExchange } from 'threepoint-rooms';
 import { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityContext } from '../activity/activity-context';
+import { decoders } from '../scene/decoders';
 import type { BallPlay } from './match/ball-play';
 import type { Voices } from './voices/voices';
 

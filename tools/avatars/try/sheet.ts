@@ -1,7 +1,9 @@
 // The page of `npm run tool -- avatars:try`: one file in, a sheet of pictures out.
+
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { defaultCalibration, reasonOf, type TrackingFrame } from 'threepoint/core';
-import { type Avatar, checkInWorker, decoders, parseChecked, thirdPersonOnlyLayer } from 'threepoint/three';
+import { type Avatar, checkInWorker, parseChecked, thirdPersonOnlyLayer } from 'threepoint/three';
+import { decoders } from '../../../src/page/scene/decoders';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { trackerAtJoint } from '../../../src/threepoint/core/body/tracker-offsets';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';

@@ -1,7 +1,8 @@
 import { firstLine, reasonOf } from 'threepoint/core';
 import { exportMotion, type MotionFormat, type MotionWriter } from 'threepoint/motion';
-import { avatarMotionWriter, decoders } from 'threepoint/three';
+import { avatarMotionWriter } from 'threepoint/three';
 import { offerDownload } from 'threepoint-ui';
+import { decoders } from '../../scene/decoders';
 import { estimatorTexts } from '../session/estimator-texts';
 import type { StageParts } from '../stage/stage-parts';
 import type { ExportChoice, ExportState } from './panel-state';

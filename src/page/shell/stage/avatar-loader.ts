@@ -6,7 +6,6 @@ import {
   type CheckedAvatar,
   checkInWorker,
   createAvatarBetweenFrames,
-  decoders,
   parseAvatar,
   parseChecked,
   type ReadBones,
@@ -15,6 +14,7 @@ import {
 } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
 import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
+import { decoders } from '../../scene/decoders';
 import type { BoneMapStore } from './bone-map-store';
 
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };

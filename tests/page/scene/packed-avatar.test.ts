@@ -1,11 +1,11 @@
 import { MeshoptEncoder } from 'meshoptimizer';
+import { parseAvatar } from 'threepoint/three';
 import { describe, expect, test } from 'vitest';
-import { decoders } from '../../../src/threepoint/avatar/decoders/decoders';
-import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
-import { builtRig } from './built-rig';
-import { glbOf, padded, partsOf } from './glb';
-import { vroid } from './rig-namings';
-import { expectBody, wear } from './worn-body';
+import { decoders } from '../../../src/page/scene/decoders';
+import { builtRig } from '../../threepoint/avatar/built-rig';
+import { glbOf, padded, partsOf } from '../../threepoint/avatar/glb';
+import { vroid } from '../../threepoint/avatar/rig-namings';
+import { expectBody, wear } from '../../threepoint/avatar/worn-body';
 
 /**
  * Returns the file with the corners of its skin packed by meshopt, as exporters write it; `claimed`: their number in

@@ -1,7 +1,7 @@
 import type { TypedArray } from 'three';
 import wasmAddress from 'three/addons/libs/draco/gltf/draco_decoder.wasm?url';
 import makeDraco from 'three/addons/libs/draco/gltf/draco_wasm_wrapper.js';
-import { reasonOf } from '../../core/errors/reasons';
+import { reasonOf } from 'threepoint/core';
 
 /** A request to decode a mesh: Draco's ids of its attributes, and the array type of each. */
 export interface DracoRequest {
