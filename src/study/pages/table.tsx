@@ -1,59 +1,60 @@
-import { element } from 'threepoint-ui';
+import type { ComponentChildren } from 'preact';
 
-/** A cell: text or a node. */
-export type TableCell = string | Node;
+type Cell<Row> = (row: Row) => ComponentChildren;
 
-export interface TableHead {
-  readonly text: string;
-  readonly title?: string;
-  readonly numeric?: boolean;
+/** A column: its heading with an explanation, and its cell in a row. The first column names the rows. */
+export interface Column<Row> {
+  readonly head: string;
+  readonly cell: Cell<Row>;
+  readonly title: string | undefined;
+  readonly numeric: boolean;
 }
 
-export interface TableRow {
-  readonly cells: readonly TableCell[];
-  readonly look?: string;
+const columnsWith =
+  (numeric: boolean) =>
+  <Row,>(head: string, cell: Cell<Row>, title?: string): Column<Row> => ({ head, cell, title, numeric });
+
+export const textColumn = columnsWith(false);
+/** Returns a column of numbers, which are aligned to the right. */
+export const numberColumn = columnsWith(true);
+
+interface TableProps<Row> {
+  readonly caption: string;
+  readonly columns: readonly Column<Row>[];
+  readonly rows: readonly Row[];
+  /** Returns the class of a row. */
+  readonly look?: (row: Row) => string;
+  /** Whether the table has many columns. */
+  readonly dense?: boolean;
 }
 
-/** Returns a table with a caption, with numeric columns aligned to the right. `dense` is for tables with many rows. */
-export function tableNode(
-  caption: string,
-  heads: readonly TableHead[],
-  rows: readonly TableRow[],
-  look: 'dense' | '' = '',
-): HTMLElement {
-  return element(
-    'div',
-    { class: `table ${look}`.trim() },
-    element(
-      'table',
-      {},
-      element('caption', {}, caption),
-      element(
-        'thead',
-        {},
-        element(
-          'tr',
-          {},
-          ...heads.map(({ text, title, numeric }) =>
-            element('th', { scope: 'col', title, class: numeric ? 'number' : undefined }, text),
-          ),
-        ),
-      ),
-      element(
-        'tbody',
-        {},
-        ...rows.map(({ cells, look }) =>
-          element(
-            'tr',
-            { class: look },
-            ...cells.map((cell, index) =>
-              index === 0
-                ? element('th', { scope: 'row' }, cell)
-                : element('td', { class: heads[index]?.numeric ? 'number' : undefined }, cell),
-            ),
-          ),
-        ),
-      ),
-    ),
-  );
-}
+/** A table with a caption. */
+export const Table = <Row,>({ caption, columns, rows, look, dense = false }: TableProps<Row>) => (
+  <div class={dense ? 'table dense' : 'table'}>
+    <table>
+      <caption>{caption}</caption>
+      <thead>
+        <tr>
+          {columns.map(({ head, title, numeric }) => (
+            <th scope="col" title={title} class={numeric ? 'number' : undefined}>
+              {head}
+            </th>
+          ))}
+        </tr>
+      </thead>
+      <tbody>
+        {rows.map((row) => (
+          <tr class={look?.(row)}>
+            {columns.map(({ numeric, cell }, index) =>
+              index === 0 ? (
+                <th scope="row">{cell(row)}</th>
+              ) : (
+                <td class={numeric ? 'number' : undefined}>{cell(row)}</td>
+              ),
+            )}
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  </div>
+);

@@ -1,34 +1,18 @@
-import { button, element, fileField, pageFolder, storePreviewPlan } from 'threepoint-ui';
-import { type StudyPlan, studyTitle } from '../../model/plan/plan';
+import { signal } from '@preact/signals';
+import { pageFolder, storePreviewPlan } from 'threepoint-ui';
+import { Button, FileField, Tick } from 'threepoint-ui/controls';
+import { studyTitle } from '../../model/plan/plan';
 import { remarksOn } from '../../model/plan/plan-remarks';
-import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';
-import { tableNode } from '../table';
-import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
+import { Table } from '../table';
+import { type OpenStudy, refreshedAt } from './experimenter-state';
+import { download, receiptText } from './participant-actions';
+import { participantColumns, participantLook, shownParticipants } from './participant-row';
+import { addStudy, deleteSimulated, simulate } from './study-actions';
 
-/** A study that is open on the experimenter's page. */
-export interface OpenStudy extends StudyInfo {
-  readonly states: readonly ParticipantState[];
-  /** The time at which the states were received, by the clock of this page [s since 1970]. */
-  readonly receivedAt: number;
-  readonly receipts: readonly Receipt[];
-}
-
-export interface StudyActions extends ParticipantActions {
-  /** Stores simulated participants of the plan in a separate study. */
-  simulate(): void;
-  /** Deletes a simulated study completely. */
-  deleteSimulated(): void;
-  /** Exports the records under this version of the plan. */
-  exportAll(version: number): void;
-}
-
-export const receiptText = ({ number, participant, reason, records, motionFiles, at }: Receipt) =>
-  `Receipt ${number}: ${participant}, ${reason}, ${records} records and ${motionFiles} recordings, ${new Date(at * 1000).toLocaleString()}`;
-
-/** Returns a sentence about the versions of the plan, or an empty text if there is only one. */
-export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string {
+/** Returns a sentence about the versions of the plan, or null if there is only one. */
+function versionsText({ versions }: OpenStudy): string | null {
   const newest = versions.at(-1);
-  if (!newest || versions.length < 2) return '';
+  if (!newest || versions.length < 2) return null;
   const stays = versions
     .slice(0, -1)
     .filter(({ participants }) => participants.length > 0)
@@ -39,123 +23,110 @@ export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string 
   );
 }
 
-/** Returns the plan of the version that a participant follows, or the newest plan. */
-export const planOf = ({ plan, versions }: Pick<OpenStudy, 'plan' | 'versions'>, followed: number | undefined) =>
-  versions.find(({ version }) => version === followed)?.plan ?? plan;
+/** An open study: heading, participants, receipts. */
+export const Study = ({ study }: { readonly study: OpenStudy }) => (
+  <>
+    <StudyHead study={study} />
+    <Table
+      caption="Participants"
+      columns={participantColumns(study.versions.length > 1)}
+      rows={shownParticipants(study, Math.max(0, refreshedAt.value - study.receivedAt))}
+      look={participantLook}
+    />
+    {study.receipts.length > 0 && (
+      <>
+        <h2>Receipts of deletions</h2>
+        <ul>
+          {study.receipts.map((receipt) => (
+            <li>{receiptText(receipt)}</li>
+          ))}
+        </ul>
+      </>
+    )}
+    <p style="margin-top:24px">
+      <a href="./experimenter.html">Begin or open another study</a>
+    </p>
+  </>
+);
 
-/**
- * Returns the parts of an open study at `now` [s since 1970, by the clock of this page]: heading, participants,
- * receipts.
- */
-export const openStudy = (study: OpenStudy, now: number, actions: StudyActions): readonly Node[] => [
-  ...studyHead(study, actions),
-  tableNode(
-    'Participants',
-    participantHeads,
-    study.states.map((state) => {
-      const several = study.versions.length > 1;
-      return participantRow(
-        state,
-        { plan: planOf(study, state.version), several },
-        Math.max(0, now - study.receivedAt),
-        actions,
-      );
-    }),
-  ),
-  ...receiptList(study.receipts),
-];
-
-function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
+function StudyHead({ study }: { readonly study: OpenStudy }) {
   const { plan, simulated, retentionUntil, versions } = study;
   const until = new Date(retentionUntil * 1000).toLocaleDateString();
-  const notice = 'SIMULATED: a program takes part in this study. Its data say nothing about people.';
-  return [
-    ...(simulated ? [element('p', { class: 'simulated' }, notice)] : []),
-    element('h2', {}, studyTitle(plan)),
-    element(
-      'p',
-      { class: 'soft' },
-      `${plan.id} · ${plan.participants} participants · consent ${plan.consent.version} · deleted after ${until}`,
-    ),
-    ...(versions.length > 1 ? [element('p', {}, versionsText(study))] : []),
-    ...remarkList(remarksOn(plan)),
-    element(
-      'div',
-      { class: 'bar', style: 'margin-top:12px' },
-      ...versions.toReversed().map(({ version }, index) =>
-        button(versions.length > 1 ? `Export version ${version}` : 'Export all', () => actions.exportAll(version), {
-          class: index === 0 ? 'primary' : undefined,
-        }),
-      ),
-      element('a', { href: `./results.html?study=${plan.id}` }, 'Results'),
-      previewLink(plan),
-      simulated
-        ? button('Delete this simulated study …', actions.deleteSimulated, { class: 'danger' })
-        : button('Simulate …', actions.simulate),
-    ),
-  ];
+  const changed = versionsText(study);
+  return (
+    <>
+      {simulated && (
+        <p class="simulated">SIMULATED: a program takes part in this study. Its data say nothing about people.</p>
+      )}
+      <h2>{studyTitle(plan)}</h2>
+      <p class="soft">
+        {`${plan.id} · ${plan.participants} participants · consent ${plan.consent.version} · deleted after ${until}`}
+      </p>
+      {changed && <p>{changed}</p>}
+      <Remarks remarks={remarksOn(plan)} />
+      <div class="bar" style="margin-top:12px">
+        {versions.toReversed().map(({ version }, index) => (
+          <Button
+            label={versions.length > 1 ? `Export version ${version}` : 'Export all'}
+            class={index === 0 ? 'primary' : ''}
+            onClick={() => download({ version })}
+          />
+        ))}
+        <a href={`./results.html?study=${plan.id}`}>Results</a>
+        <a href="./preview.html" onClick={() => storePreviewPlan(plan)}>
+          Preview
+        </a>
+        {simulated ? (
+          <Button label="Delete this simulated study …" class="danger" onClick={() => deleteSimulated(plan.id)} />
+        ) : (
+          <Button label="Simulate …" onClick={() => simulate(plan)} />
+        )}
+      </div>
+    </>
+  );
 }
 
-/** Returns the link to a preview of every screen of the plan. */
-function previewLink(plan: StudyPlan): HTMLElement {
-  const link = element('a', { href: './preview.html' }, 'Preview');
-  link.addEventListener('click', () => storePreviewPlan(plan));
-  return link;
-}
+/** The remarks to read before the first participant comes. */
+const Remarks = ({ remarks }: { readonly remarks: readonly string[] }) =>
+  remarks.length > 0 && (
+    <section class="remarks">
+      <h3 id="before-you-begin">Before you begin</h3>
+      <ul aria-labelledby="before-you-begin">
+        {remarks.map((text) => (
+          <li>{text}</li>
+        ))}
+      </ul>
+    </section>
+  );
 
-/** Returns the remarks to read before the first participant comes. */
-const remarkList = (remarks: readonly string[]): readonly Node[] =>
-  remarks.length === 0
-    ? []
-    : [
-        element(
-          'section',
-          { class: 'remarks' },
-          element('h3', { id: 'before-you-begin' }, 'Before you begin'),
-          element('ul', { 'aria-labelledby': 'before-you-begin' }, ...remarks.map((text) => element('li', {}, text))),
-        ),
-      ];
+/** Whether a new study is marked as simulated. */
+const simulated = signal(false);
 
-const receiptList = (receipts: readonly Receipt[]): readonly Node[] =>
-  receipts.length === 0
-    ? []
-    : [
-        element('h2', {}, 'Receipts of deletions'),
-        element('ul', {}, ...receipts.map((receipt) => element('li', {}, receiptText(receipt)))),
-      ];
-
-/** A new study: `name` is for messages, `json` reads its file. */
-export interface NewStudy {
-  readonly name: string;
-  readonly simulated: boolean;
-  json(): Promise<string>;
-}
-
-export interface NewStudyActions {
-  begin(study: NewStudy): void;
-  /** Called when the mark changes, because the card is rebuilt after an invalid file. */
-  mark(simulated: boolean): void;
-}
-
-/** Returns the card on which a study is started; `marked`: it is marked as simulated. */
-export function newStudyCard(marked: boolean, { begin, mark }: NewStudyActions): HTMLElement {
-  const simulated = element('input', { type: 'checkbox', checked: marked });
-  simulated.addEventListener('change', () => mark(simulated.checked));
-  const open = (file: File) => begin({ name: file.name, simulated: simulated.checked, json: () => file.text() });
+/** The card on which a study is started. */
+export function NewStudy() {
+  const begin = (name: string, json: () => Promise<string>) =>
+    void addStudy({ name, json, simulated: simulated.value });
   const paper = async () => (await fetch(`${pageFolder()}/studies/paper.json`)).text();
-  return element(
-    'section',
-    { class: 'card' },
-    element('h2', { style: 'margin-top:0' }, 'Begin a study'),
-    element(
-      'div',
-      { class: 'bar' },
-      button('The paper’s study', () =>
-        begin({ name: 'The paper’s study', simulated: simulated.checked, json: paper }),
-      ),
-      fileField('Or a study file (JSON, docs/study.md)', 'Study file', '.json,application/json', open),
-      element('a', { href: './preview.html' }, 'Preview a study file first'),
-      element('label', { class: 'inline' }, simulated, element('span', {}, 'simulated: a program takes part')),
-    ),
+  return (
+    <section class="card">
+      <h2 style="margin-top:0">Begin a study</h2>
+      <div class="bar">
+        <Button label="The paper’s study" onClick={() => begin('The paper’s study', paper)} />
+        <FileField
+          label="Or a study file (JSON, docs/study.md)"
+          name="Study file"
+          accept=".json,application/json"
+          open={(file) => begin(file.name, () => file.text())}
+        />
+        <a href="./preview.html">Preview a study file first</a>
+        <Tick
+          label="simulated: a program takes part"
+          checked={simulated}
+          onChange={({ currentTarget }) => {
+            simulated.value = currentTarget.checked;
+          }}
+        />
+      </div>
+    </section>
   );
 }

@@ -1,55 +1,69 @@
-import { button, element, labelled } from 'threepoint-ui';
+import { useSignal } from '@preact/signals';
+import { type ComponentChildren, render } from 'preact';
+import { useLayoutEffect, useRef } from 'preact/hooks';
+import { element } from 'threepoint-ui';
+import { Button, Labelled } from 'threepoint-ui/controls';
 
-/** The content of a dialog and the button that confirms it. */
-interface DialogContent {
-  readonly content: readonly Node[];
-  readonly confirm: HTMLButtonElement;
-}
-
-/**
- * Opens a dialog with a title, content and a button to cancel; resolves with the answer, or with null if it is
- * cancelled.
- */
-export function askInDialog<T>(title: string, ask: (answer: (value: T) => void) => DialogContent): Promise<T | null> {
-  return new Promise((resolve) => {
-    const dialog = element('dialog', { 'aria-label': title });
-    const close = (value: T | null) => {
-      dialog.close();
-      dialog.remove();
-      resolve(value);
-    };
-    const { content, confirm } = ask(close);
-    const bar = element(
-      'div',
-      { class: 'bar' },
-      confirm,
-      button('Cancel', () => close(null)),
-    );
-    dialog.addEventListener('cancel', () => close(null));
-    dialog.append(element('form', { method: 'dialog' }, element('h2', { style: 'margin:0' }, title), ...content, bar));
-    document.body.append(dialog);
-    dialog.showModal();
-  });
-}
-
-/** The texts of a dialog that asks for a sentence. */
-export interface SentenceDialog {
+/** The texts and fields of a dialog. */
+interface InputDialog {
   readonly title: string;
-  readonly label: string;
   /** The label of the confirming button. */
   readonly confirm: string;
-  /** Further controls below the field. */
-  readonly extra?: readonly Node[];
+  /** The label of a field for a sentence. The dialog cannot be confirmed without the sentence. */
+  readonly sentence?: string;
+  /** Further content, with named fields. */
+  readonly content?: ComponentChildren;
 }
 
-/** Asks for a sentence in a dialog; resolves with null if it is cancelled. */
-export function askForSentence({ title, label, confirm, extra = [] }: SentenceDialog): Promise<string | null> {
-  const text = element('textarea', { maxlength: 500, 'aria-label': label });
-  return askInDialog<string>(title, (answer) => {
-    const go = button(confirm, () => answer(text.value.trim()), { class: 'primary', disabled: true });
-    text.addEventListener('input', () => {
-      go.disabled = text.value.trim() === '';
-    });
-    return { content: [labelled(label, text), ...extra], confirm: go };
+type Answer = (fields: FormData | null) => void;
+
+function Dialog({ title, confirm, sentence, content, answer }: InputDialog & { readonly answer: Answer }) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const form = useRef<HTMLFormElement>(null);
+  const incomplete = useSignal(sentence !== undefined);
+  useLayoutEffect(() => dialog.current?.showModal(), []);
+  const close = () => answer(dialog.current?.returnValue && form.current ? new FormData(form.current) : null);
+  return (
+    <dialog ref={dialog} aria-label={title} onClose={close}>
+      <form ref={form} method="dialog" noValidate>
+        <h2 style="margin:0">{title}</h2>
+        {sentence !== undefined && (
+          <Labelled label={sentence}>
+            <textarea
+              name="sentence"
+              maxlength={500}
+              aria-label={sentence}
+              onInput={({ currentTarget }) => {
+                incomplete.value = currentTarget.value.trim() === '';
+              }}
+            />
+          </Labelled>
+        )}
+        {content}
+        <div class="bar">
+          <button type="submit" class="primary" value="confirmed" disabled={incomplete}>
+            {confirm}
+          </button>
+          <Button label="Cancel" onClick={() => dialog.current?.close()} />
+        </div>
+      </form>
+    </dialog>
+  );
+}
+
+/** Opens a dialog; resolves with its fields, or with null if it is cancelled. */
+export function askInDialog(question: InputDialog): Promise<FormData | null> {
+  const place = element('div');
+  document.body.append(place);
+  return new Promise((resolve) => {
+    const answer: Answer = (fields) => {
+      resolve(fields);
+      render(null, place);
+      place.remove();
+    };
+    render(<Dialog {...question} answer={answer} />, place);
   });
 }
+
+/** Returns the sentence of a dialog's fields. */
+export const sentenceOf = (fields: FormData): string => String(fields.get('sentence')).trim();

@@ -1,71 +1,56 @@
-import { button, element } from 'threepoint-ui';
+import { Button } from 'threepoint-ui/controls';
 import { studyLink } from '../../client/study-link';
-import type { StudyPlan } from '../../model/plan/plan';
 import { type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';
 import { clockText } from '../../model/progress/progress';
-import type { ParticipantState, StudyCommand } from '../../model/progress/study-api';
-import type { TableRow } from '../table';
+import type { ParticipantState } from '../../model/progress/study-api';
+import { type Column, numberColumn, textColumn } from '../table';
+import { type OpenStudy, planOf } from './experimenter-state';
+import {
+  copyLink,
+  download,
+  reinvite,
+  release,
+  remark,
+  remove,
+  sendCommand,
+  stop,
+  voidBlock,
+} from './participant-actions';
 
 /** A page that was silent for longer than this counts as lost [s]. */
 const silentAfter = 12;
 
-/** What an experimenter can do about a participant. */
-export interface ParticipantActions {
-  command(participant: string, command: StudyCommand): void;
-  voidBlock(participant: string): void;
-  /** Ends the participant's session. */
-  stop(participant: string): void;
-  remark(participant: string): void;
-  release(participant: string): void;
-  exportZip(participant: string): void;
-  remove(participant: string): void;
-  copyLink(participant: string, link: string): void;
-  reinvite(participant: string): void;
-}
+/** Returns what the table shows of participants, `age` seconds after their states were received. */
+export const shownParticipants = (study: OpenStudy, age: number) =>
+  study.states.map((state) => {
+    const plan = planOf(study, state.version);
+    const silence = state.session ? state.session.silence + age : 0;
+    return { state, plan, schedule: scheduleFor(plan, state.participant), silence };
+  });
 
-export const participantHeads = [
-  { text: 'Code' },
-  { text: 'State' },
-  { text: 'Step' },
-  { text: 'Time', title: 'The time left of this step', numeric: true },
-  { text: 'Seen', title: 'The time since the page last reported', numeric: true },
-  { text: 'Records', numeric: true },
-  { text: '' },
-  { text: 'Order of conditions' },
-  { text: 'Page' },
-] as const;
+type ShownParticipant = ReturnType<typeof shownParticipants>[number];
 
-/** The plan that a participant follows; `several`: participants follow different versions. */
-export interface FollowedPlan {
-  readonly plan: StudyPlan;
-  readonly several: boolean;
-}
+export const participantLook = ({ silence }: ShownParticipant) => (silence > silentAfter ? 'stale' : '');
 
-/** Returns a participant's row, `age` seconds after the state was received. */
-export function participantRow(
-  state: ParticipantState,
-  { plan, several }: FollowedPlan,
-  age: number,
-  actions: ParticipantActions,
-): TableRow {
-  const { participant, session, records } = state;
-  const schedule = scheduleFor(plan, participant);
-  const silence = session ? session.silence + age : 0;
-  return {
-    look: silence > silentAfter ? 'stale' : '',
-    cells: [
-      several ? `${participant}, version ${state.version}` : participant,
-      stateBadge(state, silence),
-      session ? placeText(schedule, session.step) : '',
-      session?.remainingSeconds != null && session.kind !== 'end' ? clockText(session.remainingSeconds) : '',
-      session ? lastSeenText(silence) : '',
-      String(records),
-      actionsCell(state, actions),
-      element('div', { class: 'soft' }, ...orderTexts(schedule, plan).map((line) => element('div', {}, line))),
-      linkCell(plan.id, state, actions),
-    ],
-  };
-}
+/** Returns the columns; `several`: participants follow different versions of the plan. */
+export const participantColumns = (several: boolean): readonly Column<ShownParticipant>[] => [
+  textColumn('Code', ({ state }) => (several ? `${state.participant}, version ${state.version}` : state.participant)),
+  textColumn('State', (shown) => <StateBadge {...shown} />),
+  textColumn('Step', ({ state, schedule }) => state.session && placeText(schedule, state.session.step)),
+  numberColumn('Time', ({ state }) => remainingText(state), 'The time left of this step'),
+  numberColumn(
+    'Seen',
+    ({ state, silence }) => state.session && lastSeenText(silence),
+    'The time since the page last reported',
+  ),
+  numberColumn('Records', ({ state }) => state.records),
+  textColumn('', ({ state }) => <Commands {...state} />),
+  textColumn('Order of conditions', (shown) => <Order {...shown} />),
+  textColumn('Page', ({ state, plan }) => <PageLink {...state} study={plan.id} />),
+];
+
+const remainingText = ({ session }: ParticipantState) =>
+  session?.remainingSeconds != null && session.kind !== 'end' && clockText(session.remainingSeconds);
 
 const lastSeenText = (seconds: number) =>
   seconds < 120
@@ -84,11 +69,11 @@ function placeText(schedule: Schedule, id: string): string {
   return `${step.task}, block ${step.block}${of}: ${step.kind}`;
 }
 
-/** Returns the cohort, if there is one, and the order of conditions in each task. */
-function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
+/** The cohort, if there is one, and the order of conditions in each task. */
+function Order({ schedule, plan }: ShownParticipant) {
   // Makes a name that is not broken between two lines.
   const whole = (id: string) => id.replaceAll('-', '\u2011');
-  const orders = of.tasks.map(({ id, groupSize }) => {
+  const orders = plan.tasks.map(({ id, groupSize }) => {
     const blocks = schedule.steps.flatMap((step) =>
       step.kind === 'trial' && step.task === id && step.repetition === 1 ? [step.condition] : [],
     );
@@ -97,67 +82,71 @@ function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
       groupSize > 1 && group ? ` with ${group.members.filter((name) => name !== schedule.participant).join(', ')}` : '';
     return `${id}: ${blocks.map(whole).join(' → ')}${together}`;
   });
-  return schedule.cohort === null ? orders : [`cohort: ${whole(schedule.cohort)}`, ...orders];
-}
-
-function stateBadge({ session, claimed, withdrawn }: ParticipantState, silence: number): HTMLElement {
-  const badge = (text: string, look = '') => element('span', { class: `badge ${look}` }, text);
-  if (withdrawn) return badge('withdrawn');
-  if (!session) return badge(claimed ? 'begins' : 'free');
-  if (session.kind === 'end') return badge(session.stopped ? 'stopped' : 'finished', session.stopped ? 'lost' : '');
-  if (silence > silentAfter) return badge('no contact', 'lost');
-  if (session.unwell) return badge('unwell?', 'lost');
-  if (session.paused) return badge('paused', 'paused');
-  return badge(session.running ? 'running' : 'waiting', 'live');
-}
-
-function actionsCell(
-  { participant, session, claimed, withdrawn, records }: ParticipantState,
-  actions: ParticipantActions,
-): HTMLElement {
-  const small = (label: string, act: () => void, disabled: boolean, look = '') =>
-    button(label, act, { class: `small ${look}`, disabled });
-  const active = session !== null && session.kind !== 'end' && !withdrawn;
-  const startable =
-    active && !session.paused && !session.running && (session.kind === 'trial' || session.kind === 'tutorial');
-  return element(
-    'div',
-    { class: 'row-actions commands' },
-    small('Start', () => actions.command(participant, { type: 'start' }), !startable),
-    session?.paused
-      ? small('Go on', () => actions.command(participant, { type: 'resume' }), !active)
-      : small('Pause', () => actions.command(participant, { type: 'pause' }), !active),
-    small('Void block …', () => actions.voidBlock(participant), !active || !session.step.includes('/')),
-    small('Stop …', () => actions.stop(participant), !active, 'danger'),
-    small('Remark …', () => actions.remark(participant), records === 0 || withdrawn),
-    small('Release', () => actions.release(participant), !claimed),
-    small('Export', () => actions.exportZip(participant), records === 0),
-    small('Delete …', () => actions.remove(participant), !claimed && records === 0, 'danger'),
+  return (
+    <div class="soft">
+      {schedule.cohort !== null && <div>{`cohort: ${whole(schedule.cohort)}`}</div>}
+      {orders.map((order) => (
+        <div>{order}</div>
+      ))}
+    </div>
   );
 }
 
-/** Returns the participant's page to open or to copy, and the invitation to type if a link cannot be sent. */
-function linkCell(
-  study: string,
-  { participant, invitation }: ParticipantState,
-  actions: ParticipantActions,
-): HTMLElement | string {
-  if (invitation === null) return '';
+function StateBadge({ state, silence }: ShownParticipant) {
+  const [text, look = ''] = badgeOf(state, silence);
+  return <span class={`badge ${look}`}>{text}</span>;
+}
+
+/** Returns the text of a participant's state, and its class. */
+function badgeOf({ session, claimed, withdrawn }: ParticipantState, silence: number): readonly [string, string?] {
+  if (withdrawn) return ['withdrawn'];
+  if (!session) return [claimed ? 'begins' : 'free'];
+  if (session.kind === 'end') return session.stopped ? ['stopped', 'lost'] : ['finished'];
+  if (silence > silentAfter) return ['no contact', 'lost'];
+  if (session.unwell) return ['unwell?', 'lost'];
+  if (session.paused) return ['paused', 'paused'];
+  return [session.running ? 'running' : 'waiting', 'live'];
+}
+
+function Commands({ participant, session, claimed, withdrawn, records }: ParticipantState) {
+  const small = (label: string, act: () => Promise<void>, disabled: boolean, look = '') => (
+    <Button label={label} class={`small ${look}`} disabled={disabled} onClick={act} />
+  );
+  const active = session !== null && session.kind !== 'end' && !withdrawn;
+  const startable =
+    active && !session.paused && !session.running && (session.kind === 'trial' || session.kind === 'tutorial');
+  return (
+    <div class="row-actions commands">
+      {small('Start', () => sendCommand(participant, { type: 'start' }), !startable)}
+      {session?.paused
+        ? small('Go on', () => sendCommand(participant, { type: 'resume' }), !active)
+        : small('Pause', () => sendCommand(participant, { type: 'pause' }), !active)}
+      {small('Void block …', () => voidBlock(participant), !active || !session.step.includes('/'))}
+      {small('Stop …', () => stop(participant), !active, 'danger')}
+      {small('Remark …', () => remark(participant), records === 0 || withdrawn)}
+      {small('Release', () => release(participant), !claimed)}
+      {small('Export', () => download({ participant }), records === 0)}
+      {small('Delete …', () => remove(participant), !claimed && records === 0, 'danger')}
+    </div>
+  );
+}
+
+/** The participant's page to open or to copy, and the invitation to type if a link cannot be sent. */
+function PageLink({ study, participant, invitation }: ParticipantState & { readonly study: string }) {
+  if (invitation === null) return null;
   const link = studyLink({ study, participant, invitation });
-  return element(
-    'div',
-    {},
-    element(
-      'div',
-      { class: 'row-actions link' },
-      element('a', { href: link, target: '_blank', rel: 'noopener' }, 'open'),
-      button('Copy', () => actions.copyLink(participant, link), { class: 'small', title: 'Copy the link' }),
-      button('New …', () => actions.reinvite(participant), { class: 'small', title: 'Make a new link' }),
-    ),
-    element(
-      'code',
-      { class: 'soft', title: 'The invitation, which the page asks for if the link lacks it' },
-      invitation,
-    ),
+  return (
+    <div>
+      <div class="row-actions link">
+        <a href={link} target="_blank" rel="noopener">
+          open
+        </a>
+        <Button label="Copy" class="small" title="Copy the link" onClick={() => copyLink(participant, link)} />
+        <Button label="New …" class="small" title="Make a new link" onClick={() => reinvite(participant)} />
+      </div>
+      <code class="soft" title="The invitation, which the page asks for if the link lacks it">
+        {invitation}
+      </code>
+    </div>
   );
 }

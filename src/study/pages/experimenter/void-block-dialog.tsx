@@ -1,18 +1,8 @@
-import { element } from 'threepoint-ui';
+import { Tick } from 'threepoint-ui/controls';
 import { scheduleFor } from '../../model/plan/schedule';
 import type { TargetBlock } from '../../model/progress/study-api';
-import { type OpenStudy, planOf } from './experimenter-view';
-import { askForSentence } from './input-dialog';
-
-/** The block to void. */
-export interface VoidedBlock {
-  readonly reason: string;
-  readonly repeat: boolean;
-  /** The participants whose block it is, several if they play it together. */
-  readonly participants: readonly string[];
-  /** null: the participant is in no block. */
-  readonly of: TargetBlock | null;
-}
+import { type OpenStudy, planOf } from './experimenter-state';
+import { askInDialog, sentenceOf } from './input-dialog';
 
 /** Returns the place of a participant in the schedule of the plan that they follow. */
 function placeOf(study: OpenStudy, participant: string) {
@@ -36,25 +26,29 @@ function companions(study: OpenStudy, participant: string): readonly string[] {
   return members.filter((member) => member !== participant && isIn(study, member, block));
 }
 
-const option = (text: string) => {
-  const input = element('input', { type: 'checkbox', checked: true });
-  return { input, node: element('label', { class: 'inline' }, input, element('span', {}, text)) };
-};
-
-/** Asks why and how a participant's present block is voided; resolves with null if it is cancelled. */
-export async function askHowToVoid(study: OpenStudy, participant: string): Promise<VoidedBlock | null> {
+/**
+ * Asks why and how a participant's present block is voided; resolves with null if it is cancelled. `of` is the block,
+ * or null if the participant is in none.
+ */
+export async function askHowToVoid(study: OpenStudy, participant: string) {
   const others = companions(study, participant);
-  const repeat = option('Repeat the block at once (otherwise the next one follows)');
-  const together = option(
-    `Also for ${others.join(' and ')}: they play the match together, and a repeated match waits for all`,
-  );
-  const reason = await askForSentence({
+  const together = `Also for ${others.join(' and ')}: they play the match together, and a repeated match waits for all`;
+  const fields = await askInDialog({
     title: `Void the present block of ${participant}`,
-    label: 'Why? It is recorded and stated in the results.',
+    sentence: 'Why? It is recorded and stated in the results.',
     confirm: 'Void it',
-    extra: [repeat.node, ...(others.length > 0 ? [together.node] : [])],
+    content: (
+      <>
+        <Tick name="repeat" defaultChecked label="Repeat the block at once (otherwise the next one follows)" />
+        {others.length > 0 && <Tick name="together" defaultChecked label={together} />}
+      </>
+    ),
   });
-  if (reason === null) return null;
-  const participants = [participant, ...(together.input.checked ? others : [])];
-  return { reason, repeat: repeat.input.checked, participants, of: placeOf(study, participant).block };
+  if (!fields) return null;
+  return {
+    reason: sentenceOf(fields),
+    repeat: fields.has('repeat'),
+    participants: [participant, ...(fields.has('together') ? others : [])],
+    of: placeOf(study, participant).block,
+  };
 }

@@ -1,9 +1,7 @@
 import type { Comparison } from '../../model/results/compare-conditions';
-import { type TableHead, type TableRow, tableNode } from '../table';
+import { type Column, numberColumn, Table, textColumn } from '../table';
 import { fixed, meanCell, measureCell, pText } from './result-cells';
 import type { ShownComparison } from './shown-results';
-
-const significance = 0.05;
 
 /** The headings of tests of conditions, and of tests between cohorts. */
 const testHeads = {
@@ -21,65 +19,42 @@ const testHeads = {
   },
 } as const;
 
-function headsOf({ labels, between }: ShownComparison): readonly TableHead[] {
+const isSignificant = ({ holmP }: Comparison) => (holmP ?? 1) < 0.05;
+const holmText = (one: Comparison) => `${pText(one.holmP)}${isSignificant(one) ? ' *' : ''}`;
+
+/** Returns the columns of a table of comparisons; `tagged`: planned ones are marked. */
+function columnsOf({ results, labels, between }: ShownComparison, tagged: boolean): readonly Column<Comparison>[] {
   const heads = between ? testHeads.between : testHeads.paired;
   const [d, dTitle] = heads.d;
   const [ranks, ranksTitle] = heads.ranks;
+  const effectTitle = `Rank-biserial correlation, the effect size of ${ranks}, with its 95 % interval`;
+  const nText = ({ first, second }: Comparison['values']) =>
+    between ? `${first.length}, ${second.length}` : first.length;
   return [
-    { text: 'Measure' },
-    { text: 'n', title: heads.n, numeric: true },
-    { text: labels.first, numeric: true },
-    { text: labels.second, numeric: true },
-    { text: 'difference', numeric: true },
-    { text: 't', title: heads.t, numeric: true },
-    { text: 'df', numeric: true },
-    { text: 'p', title: 'Two-sided, of the t-test', numeric: true },
-    { text: d, title: dTitle, numeric: true },
-    { text: ranks, title: ranksTitle, numeric: true },
-    {
-      text: 'r',
-      title: `Rank-biserial correlation, the effect size of ${ranks}, with its 95 % interval`,
-      numeric: true,
-    },
-    { text: `p (${ranks})`, title: 'Two-sided, of Wilcoxon’s test', numeric: true },
-    { text: `Holm p (${ranks})`, title: 'Wilcoxon’s p adjusted over the family', numeric: true },
-    { text: 'Holm p', title: 'The t-test’s p adjusted over the family', numeric: true },
+    textColumn('Measure', (one) => measureCell(results, one, tagged)),
+    numberColumn('n', ({ values }) => nText(values), heads.n),
+    numberColumn(labels.first, ({ first }) => meanCell(first?.mean, first?.interval, 2)),
+    numberColumn(labels.second, ({ second }) => meanCell(second?.mean, second?.interval, 2)),
+    numberColumn('difference', ({ test }) => meanCell(test?.meanDifference, test?.interval, 2)),
+    numberColumn('t', ({ test }) => fixed(test?.t, 3), heads.t),
+    numberColumn('df', ({ test }) => fixed(test?.df, between ? 1 : 0)),
+    numberColumn('p', ({ test }) => pText(test?.p), 'Two-sided, of the t-test'),
+    numberColumn(d, ({ test }) => meanCell(test?.d, test?.dInterval, 2), dTitle),
+    numberColumn(ranks, (one) => fixed(one.ranks?.statistic, 1), ranksTitle),
+    numberColumn('r', (one) => meanCell(one.ranks?.effect, one.ranks?.effectInterval, 2), effectTitle),
+    numberColumn(`p (${ranks})`, (one) => pText(one.ranks?.p), 'Two-sided, of Wilcoxon’s test'),
+    numberColumn(`Holm p (${ranks})`, (one) => pText(one.ranksHolmP), 'Wilcoxon’s p adjusted over the family'),
+    numberColumn('Holm p', holmText, 'The t-test’s p adjusted over the family'),
   ];
 }
 
-function rowOf({ results, between }: ShownComparison, one: Comparison, tagged: boolean): TableRow {
-  const { first, second, values, test, ranks, holmP, ranksHolmP } = one;
-  const significant = (holmP ?? 1) < significance;
-  return {
-    look: significant ? 'significant' : '',
-    cells: [
-      measureCell(results, one, tagged),
-      between ? `${values.first.length}, ${values.second.length}` : String(values.first.length),
-      meanCell(first?.mean, first?.interval, 2),
-      meanCell(second?.mean, second?.interval, 2),
-      meanCell(test?.meanDifference, test?.interval, 2),
-      fixed(test?.t, 3),
-      fixed(test?.df, between ? 1 : 0),
-      pText(test?.p),
-      meanCell(test?.d, test?.dInterval, 2),
-      fixed(ranks?.statistic, 1),
-      meanCell(ranks?.effect, ranks?.effectInterval, 2),
-      pText(ranks?.p),
-      pText(ranksHolmP),
-      `${pText(holmP)}${significant ? ' *' : ''}`,
-    ],
-  };
-}
-
 /** Returns a table of comparisons. Planned ones are marked if the table also has others. */
-export const comparedTable = (
-  compared: ShownComparison,
-  caption: string,
-  comparisons: readonly Comparison[],
-): HTMLElement =>
-  tableNode(
-    caption,
-    headsOf(compared),
-    comparisons.map((one) => rowOf(compared, one, comparisons !== compared.planned)),
-    'dense',
-  );
+export const comparedTable = (compared: ShownComparison, caption: string, comparisons: readonly Comparison[]) => (
+  <Table
+    caption={caption}
+    columns={columnsOf(compared, comparisons !== compared.planned)}
+    rows={comparisons}
+    look={(one) => (isSignificant(one) ? 'significant' : '')}
+    dense
+  />
+);

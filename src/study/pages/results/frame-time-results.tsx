@@ -1,53 +1,42 @@
-import { element } from 'threepoint-ui';
 import { cohortLookup } from '../../model/results/exported-results';
 import { frameTimes } from '../../model/results/frame-times';
 import { frameTimeTable } from '../../model/results/result-tables';
-import { tableNode } from '../table';
-import { bar, csvButton, fixed } from './result-cells';
+import { type Column, numberColumn, Table, textColumn } from '../table';
+import { csvButton, fixed } from './result-cells';
 import type { ShownResults } from './shown-results';
 
-const frameTimeHeads = [
-  { text: 'Task' },
-  { text: 'Condition' },
-  { text: 'Cohort' },
-  { text: 'Stage' },
-  { text: 'trials', numeric: true },
-  { text: 'frames', numeric: true },
-  { text: 'min', numeric: true },
-  { text: 'max', numeric: true },
-  { text: 'mean', numeric: true },
-  { text: 'worst p95', numeric: true, title: 'Largest of the trials’ 95th percentiles' },
-  { text: 'late', numeric: true, title: 'Frames that were shown late' },
-] as const;
+type FrameTimeRow = ReturnType<typeof frameTimes>[number];
 
-/** Returns the work per frame, separately for each cohort. */
-export function frameTimeParts({ study, titleOf, labelOf, fileOf }: ShownResults): readonly Node[] {
-  const { plan, records } = study;
-  const times = frameTimes(records, cohortLookup(plan));
-  const several = plan.cohorts !== undefined;
-  const lateText = (missed: number, frames: number) =>
-    `${missed} (${((100 * missed) / Math.max(1, frames)).toFixed(1)} %)`;
-  return [
-    element('h2', {}, 'Frame times'),
-    tableNode(
-      'Work of the page per frame [ms] (the paper’s tables 5 and 6)',
-      frameTimeHeads.filter(({ text }) => several || text !== 'Cohort'),
-      times.map((row) => ({
-        cells: [
-          titleOf(row.task),
-          labelOf(row.condition),
-          ...(several ? [labelOf(row.cohort)] : []),
-          row.stage,
-          String(row.trials),
-          String(row.frames),
-          fixed(row.minMs, 2),
-          fixed(row.maxMs, 2),
-          fixed(row.meanMs, 2),
-          fixed(row.worstP95Ms, 2),
-          row.stage === 'frame' ? lateText(row.missed, row.frames) : '',
-        ],
-      })),
-    ),
-    bar(csvButton(frameTimeTable(times, study), fileOf('frame-times'))),
-  ];
+const lateText = ({ missed, frames }: FrameTimeRow) =>
+  `${missed} (${((100 * missed) / Math.max(1, frames)).toFixed(1)} %)`;
+
+const columnsOf = ({ study, titleOf, labelOf }: ShownResults): readonly Column<FrameTimeRow>[] => [
+  textColumn('Task', ({ task }) => titleOf(task)),
+  textColumn('Condition', ({ condition }) => labelOf(condition)),
+  ...(study.plan.cohorts ? [textColumn('Cohort', ({ cohort }: FrameTimeRow) => labelOf(cohort))] : []),
+  textColumn('Stage', ({ stage }) => stage),
+  numberColumn('trials', ({ trials }) => trials),
+  numberColumn('frames', ({ frames }) => frames),
+  numberColumn('min', ({ minMs }) => fixed(minMs, 2)),
+  numberColumn('max', ({ maxMs }) => fixed(maxMs, 2)),
+  numberColumn('mean', ({ meanMs }) => fixed(meanMs, 2)),
+  numberColumn('worst p95', ({ worstP95Ms }) => fixed(worstP95Ms, 2), 'Largest of the trials’ 95th percentiles'),
+  numberColumn('late', (row) => row.stage === 'frame' && lateText(row), 'Frames that were shown late'),
+];
+
+/** The work per frame, separately for each cohort. */
+export function FrameTimes({ results }: { readonly results: ShownResults }) {
+  const { study, fileOf } = results;
+  const times = frameTimes(study.records, cohortLookup(study.plan));
+  return (
+    <>
+      <h2>Frame times</h2>
+      <Table
+        caption="Work of the page per frame [ms] (the paper’s tables 5 and 6)"
+        columns={columnsOf(results)}
+        rows={times}
+      />
+      <div class="bar">{csvButton(frameTimeTable(times, study), fileOf('frame-times'))}</div>
+    </>
+  );
 }

@@ -1,93 +1,88 @@
-import { element } from 'threepoint-ui';
 import type { OverallComparison } from '../../model/results/compare-all';
 import { hasOverallAnalysis, overallComparisons } from '../../model/results/exported-results';
 import { effectsOf, overallTable } from '../../model/results/result-tables';
-import { type TableRow, tableNode } from '../table';
-import { bar, csvButton, fixed, meanCell, measureCell, none, plannedNote, pText } from './result-cells';
+import { type Column, numberColumn, Table, textColumn } from '../table';
+import { csvButton, fixed, meanCell, measureCell, none, PlannedNote, pText } from './result-cells';
 import type { ShownResults } from './shown-results';
 
-const heads = [
-  { text: 'Measure' },
-  { text: 'n', title: 'Participants (for scores: groups) with complete values', numeric: true },
-  { text: 'effect' },
-  { text: 'F', numeric: true },
-  { text: 'df', numeric: true },
-  { text: 'p', title: 'Corrected by Greenhouse and Geisser’s ε, if there is one', numeric: true },
-  { text: 'ε', title: 'Greenhouse and Geisser', numeric: true },
-  { text: 'partial η²', title: 'With its 90 % confidence interval', numeric: true },
-  { text: 'Holm p', title: 'Adjusted over all measures of this table', numeric: true },
-  {
-    text: 'χ²',
-    title: 'Friedman’s test of the conditions; with one condition, Kruskal and Wallis’s of the cohorts',
-    numeric: true,
-  },
-  { text: 'p (χ²)', numeric: true },
-  { text: 'Holm p (χ²)', numeric: true },
-] as const;
-
-/** Returns a row for each effect of a measure. The test by ranks is in the first row. */
-function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean): readonly TableRow[] {
-  const { n, variance, ranks, holmP, ranksHolmP } = one;
-  return effectsOf(variance).map(([name, effect], index) => {
-    const first = index === 0;
-    return {
-      cells: [
-        first ? measureCell(results, one, tagged) : '',
-        first ? String(n) : '',
-        name,
-        fixed(effect.f, 3),
-        effect.df.join(', '),
-        pText(effect.correctedP ?? effect.p),
-        fixed(effect.epsilon, 3),
-        meanCell(effect.partialEtaSquared, effect.interval, 2),
-        first ? pText(holmP) : none,
-        first ? fixed(ranks?.chiSquared, 3) : none,
-        first ? pText(ranks?.p) : none,
-        first ? pText(ranksHolmP) : none,
-      ],
-    };
-  });
+/** An effect of a measure. The test by ranks is in the row of the first effect. */
+interface EffectRow {
+  readonly name: string;
+  readonly effect: ReturnType<typeof effectsOf>[number][1];
+  readonly of: OverallComparison;
+  readonly first: boolean;
 }
+
+const ofFirst = ({ first }: EffectRow, text: string) => (first ? text : none);
+const etaCell = ({ partialEtaSquared, interval }: EffectRow['effect']) => meanCell(partialEtaSquared, interval, 2);
+
+const rowsOf = (of: OverallComparison): readonly EffectRow[] =>
+  effectsOf(of.variance).map(([name, effect], index) => ({ name, effect, of, first: index === 0 }));
+
+const pTitle = 'Corrected by Greenhouse and Geisser’s ε, if there is one';
+const ranksTitle = 'Friedman’s test of the conditions; with one condition, Kruskal and Wallis’s of the cohorts';
+
+/** Returns the columns of a table; `tagged`: planned measures are marked. */
+const columnsOf = (results: ShownResults, tagged: boolean): readonly Column<EffectRow>[] => [
+  textColumn('Measure', ({ of, first }) => first && measureCell(results, of, tagged)),
+  numberColumn('n', ({ of, first }) => first && of.n, 'Participants (for scores: groups) with complete values'),
+  textColumn('effect', ({ name }) => name),
+  numberColumn('F', ({ effect }) => fixed(effect.f, 3)),
+  numberColumn('df', ({ effect }) => effect.df.join(', ')),
+  numberColumn('p', ({ effect }) => pText(effect.correctedP ?? effect.p), pTitle),
+  numberColumn('ε', ({ effect }) => fixed(effect.epsilon, 3), 'Greenhouse and Geisser'),
+  numberColumn('partial η²', ({ effect }) => etaCell(effect), 'With its 90 % confidence interval'),
+  numberColumn('Holm p', (row) => ofFirst(row, pText(row.of.holmP)), 'Adjusted over all measures of this table'),
+  numberColumn('χ²', (row) => ofFirst(row, fixed(row.of.ranks?.chiSquared, 3)), ranksTitle),
+  numberColumn('p (χ²)', (row) => ofFirst(row, pText(row.of.ranks?.p))),
+  numberColumn('Holm p (χ²)', (row) => ofFirst(row, pText(row.of.ranksHolmP))),
+];
 
 const analyses = 'analyses of variance, and tests by ranks';
 
 /**
- * Returns the analyses of all conditions and cohorts at once, with the participants that are left out; nothing for two
+ * The analyses of all conditions and cohorts at once, with the participants that are left out; nothing for two
  * conditions without cohorts, which are compared in pairs.
  */
-export function overallResults(results: ShownResults): readonly Node[] {
+export function OverallResults({ results }: { readonly results: ShownResults }) {
   const { study, measures, fileOf } = results;
-  if (!hasOverallAnalysis(study.plan)) return [];
+  if (!hasOverallAnalysis(study.plan)) return null;
   const families = [
     ['planned', measures.planned, ''],
     ['answers', measures.answers, 'questions'],
     ['scales', measures.scales, 'scales'],
     ['scores', measures.points, 'scores in points'],
   ] as const;
-  const parts = families.flatMap(([name, measured, what]) => {
-    const compared = overallComparisons(measured, study.plan);
-    if (compared.length === 0) return [];
-    const planned = name === 'planned';
-    const file = `${name}-overall`;
-    const table = overallTable(file, compared, { ...study, family: planned ? 'planned' : 'explored' });
-    const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
-    const missing = `Left out of some analyses because a value is missing:  ${leftOut.join(', ')}.`;
-    return [
-      tableNode(
-        planned
-          ? `Planned: ${analyses}; Holm over these ${compared.length} alone`
-          : `Exploratory: ${what}: ${analyses}`,
-        heads,
-        compared.flatMap((one) => rowsOf(results, one, !planned)),
-        'dense',
-      ),
-      bar(csvButton(table, fileOf(file))),
-      ...(leftOut.length === 0 ? [] : [element('p', { class: 'soft' }, missing)]),
-      ...(planned ? [plannedNote()] : []),
-    ];
-  });
-  return [
-    element('h2', {}, study.plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
-    ...parts,
-  ];
+  return (
+    <>
+      <h2>{study.plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'}</h2>
+      {families.map(([name, measured, what]) => {
+        const compared = overallComparisons(measured, study.plan);
+        if (compared.length === 0) return null;
+        const planned = name === 'planned';
+        const file = `${name}-overall`;
+        const table = overallTable(file, compared, { ...study, family: planned ? 'planned' : 'explored' });
+        const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
+        return (
+          <>
+            <Table
+              caption={
+                planned
+                  ? `Planned: ${analyses}; Holm over these ${compared.length} alone`
+                  : `Exploratory: ${what}: ${analyses}`
+              }
+              columns={columnsOf(results, !planned)}
+              rows={compared.flatMap(rowsOf)}
+              dense
+            />
+            <div class="bar">{csvButton(table, fileOf(file))}</div>
+            {leftOut.length > 0 && (
+              <p class="soft">{`Left out of some analyses because a value is missing: ${leftOut.join(', ')}.`}</p>
+            )}
+            {planned && <PlannedNote />}
+          </>
+        );
+      })}
+    </>
+  );
 }

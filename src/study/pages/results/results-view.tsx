@@ -1,44 +1,53 @@
-import { type Choice, chooser, element } from 'threepoint-ui';
-import type { StudyPlan } from '../../model/plan/plan';
+import { type ReadonlySignal, type Signal, useComputed, useSignal } from '@preact/signals';
+import { useMemo } from 'preact/hooks';
+import type { Choice } from 'threepoint-ui';
+import { Chooser } from 'threepoint-ui/controls';
 import type { StudyRecord } from '../../model/records/study-record';
 import { cohortViews, hasOverallAnalysis } from '../../model/results/exported-results';
 import type { Exclusion } from '../../model/results/measures';
 import { studyTables } from '../../model/tables/study-tables';
 import { meanSummary } from '../../statistics/summaries';
-import { frameTimeParts } from './frame-time-results';
-import { overallResults } from './overall-results';
-import { bar, csvButton } from './result-cells';
+import { FrameTimes } from './frame-time-results';
+import { OverallResults } from './overall-results';
+import { csvButton } from './result-cells';
 import { type ShownResults, type ShownStudy, shownResults } from './shown-results';
-import { cohortResults, pairResults } from './two-sided-results';
+import { type ComparedPair, cohortResults, comparePair, pairResults } from './two-sided-results';
 
-/** The sides that are compared on the page: first − second. */
-export interface Selection {
-  /** null: the plan has one condition. */
-  readonly conditions: readonly [string, string] | null;
-  /** null: the plan has no cohorts. */
-  readonly cohorts: readonly [string, string] | null;
-  /** The conditions under which cohorts are compared. */
-  readonly under: readonly string[];
+/** The ids of two sides that are compared: first − second. */
+type Sides = readonly [string, string];
+
+/** Returns the initial sides: the second entry against the first, which is the reference; null: there is only one. */
+const initialSides = ([baseline, other]: readonly Choice[]): Sides | null =>
+  baseline && other ? [other.id, baseline.id] : null;
+
+interface ResultsProps {
+  readonly results: ShownResults;
 }
 
-/** Returns the initial selection: the second entry of the plan against the first, which is the reference. */
-export function firstSelection(plan: Pick<StudyPlan, 'conditions' | 'cohorts'>): Selection {
-  const pairOf = ([baseline, other]: readonly { readonly id: string }[]) =>
-    baseline && other ? ([other.id, baseline.id] as const) : null;
-  const [under = []] = cohortViews(plan);
-  return { conditions: pairOf(plan.conditions), cohorts: pairOf(plan.cohorts ?? []), under };
-}
-
-/** Returns lines such as "P03 (archery, ball): voided: the phone rang", one for each participant and reason. */
-function exclusionList(all: readonly Exclusion[]): readonly string[] {
-  const lines = new Map<string, { readonly participant: string; readonly reason: string; readonly of: Set<string> }>();
-  for (const { participant, of, reason } of all) {
-    const key = `${participant} ${reason}`;
-    const line = lines.get(key) ?? { participant, reason, of: new Set<string>() };
-    line.of.add(of);
-    lines.set(key, line);
-  }
-  return [...lines.values()].map(({ participant, reason, of }) => `${participant} (${[...of].join(', ')}): ${reason}`);
+/** Everything computed from a study: figures, tables, exclusions. */
+export function StudyResults({ study }: { readonly study: ShownStudy }) {
+  const results = useMemo(() => shownResults(study), [study]);
+  const sides = useSignal(initialSides(study.plan.conditions));
+  const pair = useComputed(() => {
+    if (!sides.value) return null;
+    return sides.value[0] === sides.value[1] ? 'alike' : comparePair(results, sides.value);
+  });
+  return (
+    <>
+      <Summary results={results} />
+      <OverallResults results={results} />
+      <Conditions results={results} sides={sides} pair={pair} />
+      <Cohorts results={results} />
+      <FrameTimes results={results} />
+      <LeftOut results={results} pair={pair} />
+      <h2>Tables of the export</h2>
+      <div class="bar">
+        {studyTables(study.records, study.plan).map((table) =>
+          csvButton(table, results.fileOf(table.name), `${table.name}.csv`),
+        )}
+      </div>
+    </>
+  );
 }
 
 function demographicsText(records: readonly StudyRecord[]): string {
@@ -55,129 +64,135 @@ function demographicsText(records: readonly StudyRecord[]): string {
   );
 }
 
-/** Returns the notice above all results of simulated participants. */
-export const simulatedNotice = ({ simulated }: Pick<ShownStudy, 'simulated'>): readonly Node[] => {
-  const text = 'SIMULATED: a program made these data. They say nothing about people.';
-  return simulated ? [element('p', { class: 'simulated', role: 'note' }, text)] : [];
-};
-
-/** Returns everything computed from a study: figures, tables, exclusions. `choose` is called with another selection. */
-export function studyResults(
-  study: ShownStudy,
-  selection: Selection,
-  choose: (selection: Selection) => void,
-): readonly Node[] {
-  if (!study.records.some(({ kind }) => kind === 'answers' || kind === 'trial')) {
-    return [element('p', { class: 'card' }, 'Nothing has been answered or played yet.')];
-  }
-  const results = shownResults(study);
-  const pairs = conditionParts(results, selection, choose);
-  return [
-    ...summary(results),
-    ...overallResults(results),
-    ...pairs.nodes,
-    ...cohortParts(results, selection, choose),
-    ...frameTimeParts(results),
-    ...leftOutParts(results, pairs.excluded),
-    ...exportParts(results),
-  ];
-}
-
-function summary({ study: { plan, records }, measures }: ShownResults): readonly Node[] {
+function Summary({ results: { study, measures } }: ResultsProps) {
+  const { plan, records } = study;
   const participants = new Set(records.map(({ participant }) => participant));
-  const text = `${participants.size} of ${plan.participants} participants have records. ${demographicsText(records)}`;
-  const planned =
-    measures.planned.length === 0
-      ? 'The plan names no measure as planned: everything here is exploratory.'
-      : 'Planned measures come first, as a separate family. All other tables are exploratory; planned measures are marked in them.';
-  return [
-    element(
-      'section',
-      { class: 'card' },
-      element('p', {}, text),
-      element('p', { class: 'soft', role: 'note' }, planned),
-    ),
-  ];
+  return (
+    <section class="card">
+      <p>{`${participants.size} of ${plan.participants} participants have records. ${demographicsText(records)}`}</p>
+      <p class="soft" role="note">
+        {measures.planned.length === 0
+          ? 'The plan names no measure as planned: everything here is exploratory.'
+          : 'Planned measures come first, as a separate family. All other tables are exploratory; planned measures are marked in them.'}
+      </p>
+    </section>
+  );
 }
 
-type Choose = (selection: Selection) => void;
+/** The compared conditions. null: the plan has one condition. alike: the same condition is chosen twice. */
+type ChosenPair = ReadonlySignal<ComparedPair | 'alike' | null>;
 
-function conditionParts(results: ShownResults, selection: Selection, choose: Choose) {
-  const { conditions } = selection;
-  const { plan } = results.study;
-  if (!conditions) {
-    const { answers, scales, points } = results.measures;
-    return { nodes: [], excluded: [...answers, ...scales, ...points].flatMap(({ voided }) => voided) };
-  }
-  const head = [
-    element('h2', {}, hasOverallAnalysis(plan) ? 'Two conditions' : 'Both conditions'),
-    ...pairChooser('condition', plan.conditions, conditions, (pair) => choose({ ...selection, conditions: pair })),
-  ];
-  if (conditions[0] === conditions[1]) {
-    const complaint = element('p', { class: 'complaint' }, 'Choose two different conditions.');
-    return { nodes: [...head, complaint], excluded: [] };
-  }
-  const { nodes, excluded } = pairResults(results, conditions);
-  return { nodes: [...head, ...nodes], excluded };
+interface PairProps extends ResultsProps {
+  readonly sides: Signal<Sides | null>;
+  readonly pair: ChosenPair;
 }
 
-function cohortParts(results: ShownResults, selection: Selection, choose: Choose): readonly Node[] {
-  const { cohorts, under } = selection;
+function Conditions({ results, sides, pair }: PairProps) {
   const { plan } = results.study;
-  if (!cohorts) return [];
+  if (!pair.value) return null;
+  return (
+    <>
+      <h2>{hasOverallAnalysis(plan) ? 'Two conditions' : 'Both conditions'}</h2>
+      {sidesChooser('condition', plan.conditions, sides)}
+      {pair.value === 'alike' ? (
+        <p class="complaint">Choose two different conditions.</p>
+      ) : (
+        pairResults(results, pair.value)
+      )}
+    </>
+  );
+}
+
+function Cohorts({ results }: ResultsProps) {
+  const { plan } = results.study;
+  const { cohorts = [] } = plan;
   const views = cohortViews(plan).map((view) => ({
     id: view.join(' '),
     label: view.length === 1 ? results.labelOf(view[0] ?? '') : 'all conditions, the mean of each participant',
   }));
-  const choosing = [
-    ...pairChooser('cohort', plan.cohorts ?? [], cohorts, (pair) => choose({ ...selection, cohorts: pair })),
-    ...(views.length === 1
-      ? []
-      : [bar(chooser('Under', views, under.join(' '), (id) => choose({ ...selection, under: id.split(' ') })))]),
-  ];
-  return [
-    element('h2', {}, 'Two cohorts'),
-    ...choosing,
-    ...(cohorts[0] === cohorts[1]
-      ? [element('p', { class: 'complaint' }, 'Choose two different cohorts.')]
-      : cohortResults(results, { sides: cohorts, conditions: under })),
-  ];
+  const sides = useSignal(initialSides(cohorts));
+  const under = useSignal(views[0]?.id ?? '');
+  if (!sides.value) return null;
+  return (
+    <>
+      <h2>Two cohorts</h2>
+      {sidesChooser('cohort', cohorts, sides)}
+      {views.length > 1 && (
+        <div class="bar">
+          <Chooser
+            name="Under"
+            choices={views}
+            chosen={under.value}
+            choose={(id) => {
+              under.value = id;
+            }}
+          />
+        </div>
+      )}
+      {sides.value[0] === sides.value[1] ? (
+        <p class="complaint">Choose two different cohorts.</p>
+      ) : (
+        cohortResults(results, { sides: sides.value, conditions: under.value.split(' ') })
+      )}
+    </>
+  );
 }
 
 /** Returns the choice of which two of several `what` are compared; nothing if there are only two. */
-function pairChooser(
-  what: 'condition' | 'cohort',
-  choices: readonly Choice[],
-  [first, second]: readonly [string, string],
-  choose: (pair: readonly [string, string]) => void,
-): readonly Node[] {
-  if (choices.length < 3) return [];
-  return [
-    bar(
-      chooser(`Compare ${what}`, choices, first, (id) => choose([id, second])),
-      chooser(`with ${what}`, choices, second, (id) => choose([first, id])),
-    ),
-  ];
+function sidesChooser(what: 'condition' | 'cohort', choices: readonly Choice[], sides: Signal<Sides | null>) {
+  if (choices.length < 3 || !sides.value) return null;
+  const [first, second] = sides.value;
+  const choose = (...chosen: Sides) => {
+    sides.value = chosen;
+  };
+  return (
+    <div class="bar">
+      <Chooser name={`Compare ${what}`} choices={choices} chosen={first} choose={(id) => choose(id, second)} />
+      <Chooser name={`with ${what}`} choices={choices} chosen={second} choose={(id) => choose(first, id)} />
+    </div>
+  );
 }
 
-const listNode = (lines: readonly string[]) => element('ul', {}, ...lines.map((line) => element('li', {}, line)));
+/** Returns lines such as "P03 (archery, ball): voided: the phone rang", one for each participant and reason. */
+function exclusionList(all: readonly Exclusion[]): readonly string[] {
+  const lines = new Map<string, { readonly participant: string; readonly reason: string; readonly of: Set<string> }>();
+  for (const { participant, of, reason } of all) {
+    const key = `${participant} ${reason}`;
+    const line = lines.get(key) ?? { participant, reason, of: new Set<string>() };
+    line.of.add(of);
+    lines.set(key, line);
+  }
+  return [...lines.values()].map(({ participant, reason, of }) => `${participant} (${[...of].join(', ')}): ${reason}`);
+}
 
-function leftOutParts({ study: { records } }: ShownResults, all: readonly Exclusion[]): readonly Node[] {
-  const excluded = exclusionList(all);
-  const assisted = records.flatMap((record) => {
+const List = ({ lines }: { readonly lines: readonly string[] }) => (
+  <ul>
+    {lines.map((line) => (
+      <li>{line}</li>
+    ))}
+  </ul>
+);
+
+function LeftOut({ results: { study, measures }, pair }: Omit<PairProps, 'sides'>) {
+  const { answers, scales, points } = measures;
+  const all = pair.value ?? { excluded: [...answers, ...scales, ...points].flatMap(({ voided }) => voided) };
+  const excluded = all === 'alike' ? [] : exclusionList(all.excluded);
+  const assisted = study.records.flatMap((record) => {
     if (record.kind !== 'trial' || record.body.outcome.assists.length === 0) return [];
     const { place, outcome } = record.body;
     return [`${record.participant}, ${place.task} block ${place.block}: ${outcome.assists.join(', ')}`];
   });
-  return [
-    element('h2', {}, 'Left out'),
-    excluded.length === 0 ? element('p', {}, 'Nothing was left out of the comparisons above.') : listNode(excluded),
-    element('p', { class: 'soft' }, 'Tutorials and interrupted attempts are recorded but not evaluated.'),
-    ...(assisted.length === 0 ? [] : [element('h2', {}, 'Played with aids'), listNode(assisted)]),
-  ];
+  return (
+    <>
+      <h2>Left out</h2>
+      {excluded.length === 0 ? <p>Nothing was left out of the comparisons above.</p> : <List lines={excluded} />}
+      <p class="soft">Tutorials and interrupted attempts are recorded but not evaluated.</p>
+      {assisted.length > 0 && (
+        <>
+          <h2>Played with aids</h2>
+          <List lines={assisted} />
+        </>
+      )}
+    </>
+  );
 }
-
-const exportParts = ({ study: { plan, records }, fileOf }: ShownResults): readonly Node[] => [
-  element('h2', {}, 'Tables of the export'),
-  bar(...studyTables(records, plan).map((table) => csvButton(table, fileOf(table.name), `${table.name}.csv`))),
-];
