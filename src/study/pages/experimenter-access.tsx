@@ -1,3 +1,4 @@
+import './experimenter-access.css';
 import { signal, useSignal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { reasonOf } from 'threepoint/core';

@@ -1,3 +1,4 @@
+import './experimenter.css';
 import { signal } from '@preact/signals';
 import { pageFolder, storePreviewPlan } from 'threepoint-ui';
 import { Button, FileField, Tick } from 'threepoint-ui/controls';

@@ -1,3 +1,4 @@
+import './input-dialog.css';
 import { useSignal } from '@preact/signals';
 import { type ComponentChildren, render } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';

@@ -1,3 +1,4 @@
+import './results.css';
 import { type ReadonlySignal, type Signal, useComputed, useSignal } from '@preact/signals';
 import { useMemo } from 'preact/hooks';
 import type { Choice } from 'threepoint-ui';
