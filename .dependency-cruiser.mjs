@@ -27,7 +27,7 @@ const packageRules = [...manifests].map(([folder, { name, dependencies = {} }]) 
 /** The modules of a package that its exports name: its entries. */
 const entriesOf = (folder, { exports = {} }) =>
   Object.values(exports)
-    .filter((file) => file.endsWith('.ts'))
+    .filter((file) => /\.tsx?$/.test(file))
     .map((file) => `${folder}/${file.slice(2)}`.replaceAll('.', '\\.'));
 
 const entryRules = [...manifests].map(([folder, manifest]) => ({

@@ -22,7 +22,7 @@ const allowed = {
 /**
  * Returns the comments of a TypeScript or JavaScript file: the line of the first character, and the text without marks.
  */
-function commentsOfScript(text) {
+function commentsOfScript(text, file) {
   const found = [];
   const add = (start, raw) => {
     const line = text.slice(0, start).split('\n').length;
@@ -34,7 +34,7 @@ function commentsOfScript(text) {
         .trim(),
     });
   };
-  const source = ts.createSourceFile('file.ts', text, ts.ScriptTarget.Latest, true);
+  const source = ts.createSourceFile(file, text, ts.ScriptTarget.Latest, true);
   const seen = new Set();
   // Tokens are children, too: a comment before a closing bracket belongs to none of the nodes.
   const visit = (node) => {
@@ -127,7 +127,9 @@ function problemsOfDocument(text, file) {
 
 function problemsOfFile(file, text) {
   if (file.endsWith('.md')) return problemsOfDocument(text, file);
-  const problems = [...problemsOfComments(file.endsWith('.py') ? commentsOfPython(text) : commentsOfScript(text))];
+  const problems = [
+    ...problemsOfComments(file.endsWith('.py') ? commentsOfPython(text) : commentsOfScript(text, file)),
+  ];
   text.split('\n').forEach((line, index) => {
     // Code is the formatters' to wrap, and an address has no place to break.
     if (line.length > longestLine && /^\s*(\*|\/\/|\/\*|#)/.test(line) && !/https?:\/\//.test(line)) {
@@ -138,7 +140,7 @@ function problemsOfFile(file, text) {
 }
 
 /** The files whose language is checked: neither generated files nor other authors' texts. */
-const checked = /\.(ts|mjs|cjs|py|md)$/;
+const checked = /\.(tsx?|mjs|cjs|py|md)$/;
 const unchecked = /^(tests\/golden\/|CHANGELOG\.md$|LICENSE|docs\/(reliability|accuracy)\.md$)/;
 
 /** Returns every problem below these paths: {file, line, what}. */

@@ -29,6 +29,31 @@ test('a participant whose page has just reported is there, though the experiment
   await expect(row).toContainText(/\d s ago/);
 });
 
+test('a button keeps the focus while the states of the participants are refreshed @full', async ({ page, origin }) => {
+  const study = plan('refreshed');
+  const experimenting = experimenter(origin);
+  await experimenting.begin(study, false);
+  await openStudy(page, `${origin}/experimenter`, 'refreshed');
+  const button = page.getByRole('button', { name: 'Simulate …' });
+  await button.focus();
+  await experimenting.consented(study, 'P01');
+  await experimenting.report(study, 'P01', 'demographics');
+  await expect(page.getByRole('row', { name: /^P01 / })).toContainText('waiting');
+  await expect(button).toBeFocused();
+});
+
+test('the list shows the open study when another one cannot be opened @full', async ({ page, origin, complaints }) => {
+  complaints.allow(/ERR_FAILED/);
+  for (const id of ['kept', 'lost']) await experimenter(origin).begin(plan(id), false);
+  await openStudy(page, `${origin}/experimenter`, 'kept');
+  await expect(page.getByText('kept · 18 participants')).toBeVisible();
+  await page.route('**/api/studies/lost/**', (route) => route.abort());
+  const list = page.getByRole('combobox', { name: 'Study' });
+  await list.selectOption('lost');
+  await expect(page.getByRole('alert')).toContainText('the server does not answer');
+  await expect(list).toHaveValue('kept');
+});
+
 test('the link of a participant under way is in sight on a narrow screen too @full', async ({ page, origin }) => {
   const study = plan('narrow');
   const experimenting = experimenter(origin);

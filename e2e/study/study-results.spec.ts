@@ -106,7 +106,7 @@ test('cohorts of a mixed study are chosen on the results page, each participant 
   page,
   origin,
 }) => {
-  // Each choice recomputes and redraws everything.
+  // Each choice recomputes and redraws its comparison.
   test.setTimeout(180_000);
   const effects = { 'late-100': -0.4, 'late-200': -0.9, child: 0.6 };
   const { plan, participants } = await simulateOn(origin, mixedStudy(), effects);

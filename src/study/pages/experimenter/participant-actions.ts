@@ -1,167 +1,118 @@
 import { offerDownload, pageFolder } from 'threepoint-ui';
 import type { ExperimenterClient } from '../../client/study-client';
-import { type OpenStudy, receiptText } from './experimenter-view';
-import { askForSentence, type SentenceDialog } from './input-dialog';
-import type { ParticipantActions } from './participant-row';
+import type { Receipt, StudyCommand } from '../../model/progress/study-api';
+import { attempt, study } from './experimenter-state';
+import { askInDialog, sentenceOf } from './input-dialog';
 import { askHowToVoid, isIn } from './void-block-dialog';
 
-/** Does something with the server; resolves with a notice for the experimenter, or null for none. */
-export type ServerAction = (client: ExperimenterClient) => Promise<string | null>;
+export const receiptText = ({ number, participant, reason, records, motionFiles, at }: Receipt) =>
+  `Receipt ${number}: ${participant}, ${reason}, ${records} records and ${motionFiles} recordings, ${new Date(at * 1000).toLocaleString()}`;
 
-/** Runs an action, and shows its notice or why it failed. */
-type Attempt = (action: ServerAction) => Promise<void>;
-
-export interface ParticipantActionOptions {
-  readonly attempt: Attempt;
-  /** Returns the newest state of the study. */
-  readonly newest: () => OpenStudy;
-}
-
-/** Downloads an export of a study; resolves with the notice. */
-export async function download(
-  client: ExperimenterClient,
-  study: string,
-  part: Parameters<ExperimenterClient['export']>[1],
-): Promise<string> {
-  const file = await client.export(study, part);
-  offerDownload(file.name, 'application/zip', file.zip);
-  return `${file.name} is in your downloads.`;
-}
+/** Downloads an export of the open study. */
+export const download = (part: Parameters<ExperimenterClient['export']>[1]) =>
+  attempt(async (server, id) => {
+    const file = await server.export(id, part);
+    offerDownload(file.name, 'application/zip', file.zip);
+    return `${file.name} is in your downloads.`;
+  });
 
 /** Asks for a sentence and acts with it; nothing happens if the experimenter cancels. */
 async function withSentence(
-  attempt: Attempt,
-  question: SentenceDialog,
-  act: (client: ExperimenterClient, sentence: string) => Promise<string>,
+  question: { readonly title: string; readonly sentence: string; readonly confirm: string },
+  act: (server: ExperimenterClient, id: string, sentence: string) => Promise<string>,
 ): Promise<void> {
-  const sentence = await askForSentence(question);
-  if (sentence !== null) await attempt((client) => act(client, sentence));
+  const fields = await askInDialog(question);
+  if (fields) await attempt((server, id) => act(server, id, sentenceOf(fields)));
 }
 
-async function copyLink(participant: string, link: string): Promise<string> {
-  const address = new URL(link, `${pageFolder()}/`).href;
-  try {
-    await navigator.clipboard.writeText(address);
-    return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
-  } catch {
-    // reason: a browser that lets no page write to the clipboard still shows the link
-    return `The link of ${participant}: ${address}`;
-  }
+export const sendCommand = (participant: string, command: StudyCommand) =>
+  attempt(async (server, id) => {
+    await server.command(id, participant, command);
+    return `${participant}: “${command.type}” sent.`;
+  });
+
+/** Voids a participant's present block, and that of those who play it together. */
+export async function voidBlock(participant: string): Promise<void> {
+  const voided = study.value && (await askHowToVoid(study.value, participant));
+  if (!voided?.of) return;
+  const { reason, repeat, participants, of } = voided;
+  await attempt(async (server, id) => {
+    // The participant may have gone on while the experimenter wrote.
+    const present = participants.filter((one) => study.value && isIn(study.value, one, of));
+    for (const one of present) await server.command(id, one, { type: 'void-block', reason, repeat, of });
+    const gone = participants.filter((one) => !present.includes(one));
+    if (gone.length === 0) return `${present.join(', ')}: the block is being voided.`;
+    throw new Error(`Not voided for ${gone.join(', ')}: block ${of.block} of ${of.task} is over there.`);
+  });
 }
 
-/** Returns the actions on a participant's running session. */
-function sessionActions(
-  study: OpenStudy,
-  { attempt, newest }: ParticipantActionOptions,
-): Pick<ParticipantActions, 'command' | 'voidBlock' | 'stop'> {
-  const { id } = study.plan;
-
-  async function voidBlock(participant: string): Promise<void> {
-    const voided = await askHowToVoid(study, participant);
-    if (!voided?.of) return;
-    const { reason, repeat, participants, of } = voided;
-    const present = participants.filter((one) => isIn(newest(), one, of));
-    await attempt(async (client) => {
-      for (const one of present) await client.command(id, one, { type: 'void-block', reason, repeat, of });
-      const gone = participants.filter((one) => !present.includes(one));
-      if (gone.length === 0) return `${present.join(', ')}: the block is being voided.`;
-      throw new Error(`Not voided for ${gone.join(', ')}: block ${of.block} of ${of.task} is over there.`);
-    });
-  }
-
-  return {
-    command: (participant, command) =>
-      void attempt(async (client) => {
-        await client.command(id, participant, command);
-        return `${participant}: “${command.type}” sent.`;
-      }),
-    voidBlock: (participant) => void voidBlock(participant),
-    stop: (participant) =>
-      void withSentence(
-        attempt,
-        {
-          title: `Stop the session of ${participant}`,
-          label:
-            'Why? It is recorded. The session is over at once and cannot be taken up again; what was recorded stays.',
-          confirm: 'Stop it',
-        },
-        async (client, reason) => {
-          await client.command(id, participant, { type: 'stop', by: 'experimenter', reason });
-          return `${participant}: the session is being stopped.`;
-        },
-      ),
-  };
-}
-
-/** Returns the actions on a participant's place: its device and its link. */
-function placeActions(
-  { plan: { id, entry } }: OpenStudy,
-  attempt: Attempt,
-): Pick<ParticipantActions, 'release' | 'copyLink' | 'reinvite'> {
-  return {
-    release(participant) {
-      const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
-      if (!confirm(question)) return;
-      void attempt(async (client) => {
-        await client.release(id, participant);
-        return `${participant} may be taken by another device.`;
-      });
+/** Ends a participant's session. */
+export const stop = (participant: string) =>
+  withSentence(
+    {
+      title: `Stop the session of ${participant}`,
+      sentence:
+        'Why? It is recorded. The session is over at once and cannot be taken up again; what was recorded stays.',
+      confirm: 'Stop it',
     },
-    copyLink: (participant, link) => void attempt(() => copyLink(participant, link)),
-    reinvite(participant) {
-      const holder = entry === 'open' ? 'all participants' : participant;
-      const question = `Make a new link for ${holder}? The old link stops working; a place that is taken stays taken.`;
-      if (!confirm(question)) return;
-      void attempt(async (client) => {
-        await client.reinvite(id, participant);
-        return `${participant} has a new link.`;
-      });
+    async (server, id, reason) => {
+      await server.command(id, participant, { type: 'stop', by: 'experimenter', reason });
+      return `${participant}: the session is being stopped.`;
     },
-  };
+  );
+
+/** Lets another device take a participant's place. */
+export async function release(participant: string): Promise<void> {
+  const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
+  if (!confirm(question)) return;
+  await attempt(async (server, id) => {
+    await server.release(id, participant);
+    return `${participant} may be taken by another device.`;
+  });
 }
 
-/** Returns the actions on what is stored of a participant. */
-function recordActions(
-  { plan: { id } }: OpenStudy,
-  attempt: Attempt,
-): Pick<ParticipantActions, 'remark' | 'exportZip' | 'remove'> {
-  return {
-    remark: (participant) =>
-      void withSentence(
-        attempt,
-        {
-          title: `Remark on ${participant}`,
-          label: 'It is stored with the participant’s records.',
-          confirm: 'Store',
-        },
-        async (client, text) => {
-          await client.remark(id, participant, text);
-          return `${participant}: remark stored.`;
-        },
-      ),
-    exportZip: (participant) => void attempt((client) => download(client, id, { participant })),
-    remove: (participant) =>
-      void withSentence(
-        attempt,
-        {
-          title: `Delete everything of ${participant}`,
-          label: `This cannot be undone. Type ${participant} to delete its records, movements and commands.`,
-          confirm: 'Delete',
-        },
-        async (client, typed) => {
-          if (typed !== participant) throw new Error(`Nothing was deleted: "${typed}" is not ${participant}.`);
-          return `${participant} is deleted. ${receiptText(await client.delete(id, participant))}`;
-        },
-      ),
-  };
+export const copyLink = (participant: string, link: string) =>
+  attempt(async () => {
+    const address = new URL(link, `${pageFolder()}/`).href;
+    try {
+      await navigator.clipboard.writeText(address);
+      return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
+    } catch {
+      // reason: a browser that lets no page write to the clipboard still shows the link
+      return `The link of ${participant}: ${address}`;
+    }
+  });
+
+/** Replaces a participant's link; in a study with an open entry, that of all participants. */
+export async function reinvite(participant: string): Promise<void> {
+  const holder = study.value?.plan.entry === 'open' ? 'all participants' : participant;
+  const question = `Make a new link for ${holder}? The old link stops working; a place that is taken stays taken.`;
+  if (!confirm(question)) return;
+  await attempt(async (server, id) => {
+    await server.reinvite(id, participant);
+    return `${participant} has a new link.`;
+  });
 }
 
-/** Returns what an experimenter can do about the participants of a study. */
-export function participantActions(study: OpenStudy, options: ParticipantActionOptions): ParticipantActions {
-  const { attempt } = options;
-  return {
-    ...sessionActions(study, options),
-    ...placeActions(study, attempt),
-    ...recordActions(study, attempt),
-  };
-}
+export const remark = (participant: string) =>
+  withSentence(
+    { title: `Remark on ${participant}`, sentence: 'It is stored with the participant’s records.', confirm: 'Store' },
+    async (server, id, text) => {
+      await server.remark(id, participant, text);
+      return `${participant}: remark stored.`;
+    },
+  );
+
+/** Deletes what is stored of a participant. */
+export const remove = (participant: string) =>
+  withSentence(
+    {
+      title: `Delete everything of ${participant}`,
+      sentence: `This cannot be undone. Type ${participant} to delete its records, movements and commands.`,
+      confirm: 'Delete',
+    },
+    async (server, id, typed) => {
+      if (typed !== participant) throw new Error(`Nothing was deleted: "${typed}" is not ${participant}.`);
+      return `${participant} is deleted. ${receiptText(await server.delete(id, participant))}`;
+    },
+  );

@@ -1,5 +1,7 @@
 import * as Plot from '@observablehq/plot';
-import { button, element, offerDownload } from 'threepoint-ui';
+import { type ComponentChild, render } from 'preact';
+import { offerDownload } from 'threepoint-ui';
+import { Button } from 'threepoint-ui/controls';
 import type { Comparison } from '../../model/results/compare-conditions';
 import { swarmOffsets } from './swarm-layout';
 
@@ -28,16 +30,8 @@ export interface ChartLegend {
 
 const colours = { first: '#c8681e', second: '#2b6cb0' } as const;
 const ink = '#1d2733';
+const fontFamily = 'Inter, "Segoe UI", system-ui, sans-serif';
 const sides = ['first', 'second'] as const;
-const svgNamespace = 'http://www.w3.org/2000/svg';
-
-function svgNode(tag: string, attributes: Readonly<Record<string, string | number>>, text = ''): SVGElement {
-  const node = document.createElementNS(svgNamespace, tag);
-  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
-  node.textContent = text;
-  return node;
-}
-
 /**
  * Wraps a note that would not fit the picture after the first part of its sentence; `letter` is the mean width of a
  * letter [pixels].
@@ -45,48 +39,55 @@ function svgNode(tag: string, attributes: Readonly<Record<string, string | numbe
 const noteLines = (note: string, width: number, letter = 6.3): readonly string[] =>
   note.length * letter <= width ? [note] : note.split(/(?<=;) /);
 
-/** Adds the title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
-function headed(
-  plot: SVGSVGElement | HTMLElement,
-  title: string,
-  { labels, simulated }: ChartLegend,
-  note: string,
-): SVGSVGElement {
-  if (!(plot instanceof SVGSVGElement)) throw new Error('results/charts: expected a plain SVG from the plot');
-  const width = Number(plot.getAttribute('width'));
+interface HeadingProps extends ChartLegend {
+  readonly title: string;
+  readonly note: string;
+  readonly width: number;
+}
+
+/** The title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
+const Heading = ({ title, note, width, labels, simulated }: HeadingProps) => (
   // Plots centre their labels by default.
-  const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink, 'text-anchor': 'start' };
-  plot.prepend(svgNode('rect', { width: '100%', height: '100%', fill: 'white' }));
-  plot.append(svgNode('text', { ...text, x: 12, y: 24, 'font-size': 16, 'font-weight': 650 }, title));
-  let x = 12;
-  for (const side of sides) {
-    plot.append(svgNode('rect', { x, y: 38, width: 12, height: 12, rx: 2, fill: colours[side] }));
-    plot.append(svgNode('text', { ...text, x: x + 18, y: 48.5, 'font-size': 13 }, labels[side]));
-    x += 38 + labels[side].length * 7.4;
-  }
-  for (const [index, line] of noteLines(note, width - 24).entries()) {
-    plot.append(svgNode('text', { ...text, x: 12, y: 66 + 15 * index, 'font-size': 12, fill: '#5b6776' }, line));
-  }
-  if (simulated) {
-    const mark = {
-      ...text,
-      x: width - 12,
-      y: 24,
-      'text-anchor': 'end',
-      'font-size': 15,
-      'font-weight': 700,
-      fill: '#b3261e',
-    };
-    plot.append(svgNode('text', mark, 'SIMULATED'));
-  }
-  return plot;
+  <g font-family={fontFamily} fill={ink} text-anchor="start">
+    <text x={12} y={24} font-size={16} font-weight={650}>
+      {title}
+    </text>
+    {sides.map((side) => {
+      const x = side === 'first' ? 12 : 50 + labels.first.length * 7.4;
+      return (
+        <>
+          <rect x={x} y={38} width={12} height={12} rx={2} fill={colours[side]} />
+          <text x={x + 18} y={48.5} font-size={13}>
+            {labels[side]}
+          </text>
+        </>
+      );
+    })}
+    {noteLines(note, width - 24).map((line, index) => (
+      <text x={12} y={66 + 15 * index} font-size={12} fill="#5b6776">
+        {line}
+      </text>
+    ))}
+    {simulated && (
+      <text x={width - 12} y={24} text-anchor="end" font-size={15} font-weight={700} fill="#b3261e">
+        SIMULATED
+      </text>
+    )}
+  </g>
+);
+
+/** Returns a group with this content, to be put into a picture. */
+function svgGroup(content: ComponentChild): SVGGElement {
+  const group = document.createElementNS('http://www.w3.org/2000/svg', 'g');
+  render(content, group);
+  return group;
 }
 
 const shared = {
   marginTop: 92,
   marginLeft: 52,
   marginBottom: 40,
-  style: { fontSize: '13px', color: ink, background: 'white', fontFamily: 'Inter, "Segoe UI", system-ui, sans-serif' },
+  style: { fontSize: '13px', color: ink, background: 'white', fontFamily },
 } as const;
 
 /** Answers are whole numbers; other scales choose their own ticks. */
@@ -106,16 +107,21 @@ function drawn(
   note: string,
   { padding, ...plot }: Plot.PlotOptions & { readonly padding: number },
 ): SVGSVGElement {
+  const { comparisons, title, axis } = chart;
+  const { width = widthFor(comparisons.length) } = plot;
   const picture = Plot.plot({
     ...shared,
-    width: widthFor(chart.comparisons.length),
     height,
-    fx: { label: null, domain: chart.comparisons.map(chart.nameOf), padding },
+    fx: { label: null, domain: comparisons.map(chart.nameOf), padding },
     y: { label: null, domain: [...chart.domain], grid: true, ticks: ticksOf(chart), tickFormat: tickText },
     color: { domain: [...sides], range: [colours.first, colours.second] },
     ...plot,
+    width,
   });
-  return headed(picture, chart.title, legend, `${chart.axis}; ${note}`);
+  if (!(picture instanceof SVGSVGElement)) throw new Error('results/charts: expected a plain SVG from the plot');
+  picture.prepend(svgGroup(<rect width="100%" height="100%" fill="white" />));
+  picture.append(svgGroup(<Heading {...legend} title={title} note={`${axis}; ${note}`} width={width} />));
+  return picture;
 }
 
 /** Returns the mean of each side with its 95 % confidence interval, clipped to the scale. */
@@ -246,45 +252,42 @@ const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToS
 
 /** Resolves with the picture at twice its size as PNG, for slides and papers that do not accept SVG. */
 async function pngOf(svg: SVGSVGElement): Promise<Blob> {
-  const width = Number(svg.getAttribute('width'));
-  const height = Number(svg.getAttribute('height'));
   const address = URL.createObjectURL(new Blob([svgText(svg)], { type: 'image/svg+xml' }));
   try {
     const image = new Image();
     image.src = address;
     await image.decode();
-    const canvas = document.createElement('canvas');
-    canvas.width = 2 * width;
-    canvas.height = 2 * height;
+    const canvas = new OffscreenCanvas(2 * image.width, 2 * image.height);
     const context = canvas.getContext('2d');
     if (!context) throw new Error('results/charts: this browser offers no 2D canvas');
     context.drawImage(image, 0, 0, canvas.width, canvas.height);
-    return await new Promise((resolve, reject) =>
-      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be made'))), 'image/png'),
-    );
+    return await canvas.convertToBlob();
   } finally {
     URL.revokeObjectURL(address);
   }
 }
 
-/**
- * Returns a picture with its caption and buttons that save it as SVG and PNG; `file` is a name without its extension.
- */
-export function figure(svg: SVGSVGElement, caption: string, file: string): HTMLElement {
+interface FigureProps {
+  readonly svg: SVGSVGElement;
+  readonly caption: string;
+  /** The name of its files, without extension. */
+  readonly file: string;
+}
+
+/** A picture with its caption and buttons that save it as SVG and PNG. */
+export function Figure({ svg, caption, file }: FigureProps) {
   svg.setAttribute('role', 'img');
   svg.setAttribute('aria-label', caption);
-  return element(
-    'figure',
-    {},
-    svg,
-    element(
-      'div',
-      { class: 'bar' },
-      element('figcaption', { class: 'soft' }, caption),
-      button('SVG', () => offerDownload(`${file}.svg`, 'image/svg+xml', svgText(svg)), { class: 'small' }),
-      button('PNG', () => void pngOf(svg).then((blob) => offerDownload(`${file}.png`, 'image/png', blob)), {
-        class: 'small',
-      }),
-    ),
+  const saveSvg = () => offerDownload(`${file}.svg`, 'image/svg+xml', svgText(svg));
+  const savePng = async () => offerDownload(`${file}.png`, 'image/png', await pngOf(svg));
+  return (
+    <figure>
+      <div ref={(picture) => picture?.replaceChildren(svg)} class="picture" />
+      <div class="bar">
+        <figcaption class="soft">{caption}</figcaption>
+        <Button label="SVG" class="small" onClick={saveSvg} />
+        <Button label="PNG" class="small" onClick={savePng} />
+      </div>
+    </figure>
   );
 }

@@ -1,24 +1,23 @@
-import { element } from 'threepoint-ui';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
 import { askedOf } from '../../model/results/measures';
-import { barChart, type Chart, figure, pairedChart, stripChart } from './charts';
+import { barChart, type Chart, Figure, pairedChart, stripChart } from './charts';
 import type { ShownComparison } from './shown-results';
 
 /** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
-export function chartFigures({ results, labels, between }: ShownComparison, chart: Chart): HTMLElement {
+export function chartFigures({ results, labels, between }: ShownComparison, chart: Chart) {
   const { title, note, each } = chart;
   const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
   const legend = { labels, simulated: results.study.simulated };
   const every = between ? stripChart(chart, legend) : pairedChart({ ...chart, title: `${title}, pairs` }, legend);
-  return element(
-    'div',
-    { class: 'figures' },
-    figure(barChart(chart, legend), `${title}, means${between ? '' : note}`, file),
-    figure(every, `${title}, every ${each}`, `${file}-${between ? 'strip' : 'pairs'}`),
+  return (
+    <div class="figures">
+      <Figure svg={barChart(chart, legend)} caption={`${title}, means${between ? '' : note}`} file={file} />
+      <Figure svg={every} caption={`${title}, every ${each}`} file={`${file}-${between ? 'strip' : 'pairs'}`} />
+    </div>
   );
 }
 
