@@ -126,7 +126,8 @@ const activities = 'archery|ball|mocap|studio';
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
 
-const pure = '^src/(threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/';
+const pure =
+  '^src/((threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/|(rooms/room|study/index)\\.ts$)';
 const runsInNode = '^src/(http|rooms/server|study/(server|cli))/';
 
 export default {
