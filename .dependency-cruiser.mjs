@@ -107,8 +107,7 @@ const modelRooms = {
 };
 const studyServerRooms = {
   storage: [],
-  plugins: [],
-  export: ['storage', 'plugins'],
+  export: ['storage'],
   routes: ['storage', 'export'],
 };
 const shellRooms = {

@@ -1,9 +1,8 @@
 import { readFileSync, writeFileSync } from 'node:fs';
-import { basename, join } from 'node:path';
+import { join } from 'node:path';
 import { defineConfig, type Plugin } from 'vite';
 import { packageCollector, packagesFile } from './scripts/licences.mjs';
 import { contentSecurityPolicy } from './src/http/security-headers.ts';
-import { studyPluginPaths } from './src/study/server/plugins/plugin-paths.ts';
 
 /**
  * The sources from which the page may load files by address: those of `npm run build -- --files-from`, otherwise any
@@ -43,37 +42,6 @@ const decodersWithoutNode: Plugin = {
   load: { filter: { id: /^\0decoders-without-node$/ }, handler: () => 'export {};' },
 };
 
-const studyPlugins = studyPluginPaths(process.env);
-const studyPluginModule = 'virtual:study-plugins';
-
-/** Builds the modules of THREEPOINT_STUDY_PLUGINS into the pages, which run them before their own scripts. */
-const studyPluginsInPages: Plugin = {
-  name: 'study-plugins-in-pages',
-  resolveId: (id) => (id === studyPluginModule ? `\0${id}` : undefined),
-  load(id) {
-    if (id !== `\0${studyPluginModule}`) return undefined;
-    return [
-      "import { installPagePlugin } from '/src/study/participant/questions/page-plugin.ts';",
-      ...studyPlugins.map((path, index) => `import * as plugin${index} from ${JSON.stringify(path)};`),
-      ...studyPlugins.map((path, index) => `installPagePlugin(plugin${index}, ${JSON.stringify(basename(path))});`),
-    ].join('\n');
-  },
-  transformIndexHtml: {
-    order: 'pre',
-    handler: () =>
-      studyPlugins.length === 0
-        ? []
-        : [
-            {
-              tag: 'script',
-              attrs: { type: 'module' },
-              children: `import '${studyPluginModule}';`,
-              injectTo: 'head-prepend',
-            },
-          ],
-  },
-};
-
 /**
  * The pages of a build. The headset check is a build of its own (scripts/build.mjs): a page that shares its chunks
  * would split those of the others.
@@ -102,7 +70,7 @@ const server = `http://127.0.0.1:${process.env.PORT ?? 3333}`;
 export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
-  plugins: [policyInPages, studyPluginsInPages, packageCollector(packages), packageList],
+  plugins: [policyInPages, packageCollector(packages), packageList],
   server: {
     host: '127.0.0.1',
     port: 5173,

@@ -73,14 +73,7 @@ function emptied(out) {
   return directory;
 }
 
-/** Returns the paths of the plug-ins that are built into the pages, like src/study/server/plugins/plugin-paths.ts. */
-const studyPlugins = () =>
-  (process.env.THREEPOINT_STUDY_PLUGINS ?? '')
-    .split(',')
-    .filter((path) => path.trim())
-    .map((path) => resolve(process.env.INIT_CWD ?? process.cwd(), path.trim()));
-
-const hashOf = ({ base, filesFrom }) => sourceHash([...sources, ...studyPlugins()], `${base}\0${filesFrom}\0`);
+const hashOf = ({ base, filesFrom }) => sourceHash(sources, `${base}\0${filesFrom}\0`);
 
 /** Writes .br and .gz next to the files that get smaller by it, so that the server never compresses on request. */
 async function precompress(directory) {

@@ -19,8 +19,7 @@ export const usage = `Usage: npm start -- [options]
   --studies DIR  folder of the studies (or the environment variable STUDIES); default study-data
   --help         this text
 The environment variable EXPERIMENTER_TOKEN (32 characters or more, as from "openssl rand -base64 32") replaces the token that the server
-generates. THREEPOINT_STUDY_PLUGINS names modules with kinds of questions, separated by commas. THREEPOINT_BALL_SECONDS is the length
-of a round of the ball game in seconds, 1 to 3600; default 90.`;
+generates. THREEPOINT_BALL_SECONDS is the length of a round of the ball game in seconds, 1 to 3600; default 90.`;
 
 function portFrom(text: string, source: string): number {
   const port = Number(text);

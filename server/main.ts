@@ -2,7 +2,6 @@ import { resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { ConfigurationError } from 'threepoint-http';
 import { loadOrCreateSecret, relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server';
-import { loadStudyPlugins } from 'threepoint-study/server';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
@@ -19,8 +18,6 @@ async function main(): Promise<void> {
     return;
   }
   const relay = relayConfigurationFrom(process.env);
-  // The thread of the studies loads them again; here a fault stops the start with a sentence.
-  await loadStudyPlugins(process.env);
   const addresses = configuration.lan ? lanAddresses() : null;
   const { studyDirectory, experimenterToken } = configuration;
   const server = await startServer({

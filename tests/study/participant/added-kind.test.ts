@@ -9,7 +9,6 @@ import { begin } from '../../../src/study/model/progress/progress';
 import type { Answer, QuestionKind } from '../../../src/study/model/questionnaires/question-kind';
 import { questionKindNames, registerQuestionKind } from '../../../src/study/model/questionnaires/question-kinds';
 import type { Question } from '../../../src/study/model/questionnaires/questionnaire-schema';
-import type { StudyPlugin } from '../../../src/study/model/questionnaires/study-plugin';
 import { checkedRecord } from '../../../src/study/model/records/study-record';
 import { measuresIn } from '../../../src/study/model/results/exported-results';
 import { answersIn, studyTables } from '../../../src/study/model/tables/study-tables';
@@ -22,7 +21,7 @@ import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
 import { statedPerformanceModel } from '../../../src/study/simulation/performance-model';
 import { simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { paperPlan, session } from '../model/studies';
-import agreement from '../plugins/agreement.mjs';
+import agreement from '../question-kinds/agreement.mjs';
 
 // A laboratory adds a kind of question from outside the package: agreement, which is 1 or 0.
 
@@ -92,10 +91,10 @@ function shown(answer: Answer | undefined, choose: (value: Answer) => void) {
 }
 
 describe('a kind of question that is registered from outside', () => {
-  // reason: the module is JavaScript, as a plug-in is
-  const plugin = agreement({ v, words, inLanguage, button }) as unknown as StudyPlugin<QuestionView>;
-  const [kind] = plugin.questionKinds as [QuestionKind];
-  const [view] = plugin.questionViews as [QuestionView];
+  // reason: the module is JavaScript, as a laboratory may write it
+  const added = agreement({ v, words, inLanguage, button });
+  const [kind] = added.questionKinds as unknown as [QuestionKind];
+  const [view] = added.questionViews as unknown as [QuestionView];
   let remove: (() => void)[] = [];
   beforeEach(() => {
     remove = [registerQuestionKind(kind), registerQuestionView(view)];

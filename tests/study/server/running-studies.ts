@@ -147,8 +147,8 @@ async function servedByBuiltServer({ file }: OnFile) {
 }
 
 /**
- * Serves the studies on a port of loopback as if behind a proxy; returns the store and the failed attempts too. At night
- * the built server does so, unless something is injected.
+ * Serves the studies on a port of loopback as if behind a proxy; returns the store and the failed attempts too. At
+ * night the built server does so, unless something is injected.
  */
 export async function servedStudies({ file = join(directoryWith(), 'studies.db'), ...injected }: ServedOptions = {}) {
   const serveFile = isNightly && Object.keys(injected).length === 0 ? servedByBuiltServer : servedInThisThread;

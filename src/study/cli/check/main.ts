@@ -5,7 +5,6 @@ import { embodimentInWords } from '../../model/plan/embodiment';
 import { languagesOf, participantsOf, readPlan, type StudyPlan, studyTitle, taskTitle } from '../../model/plan/plan';
 import { durationOf, outlineOf } from '../../model/plan/plan-outline';
 import { cohortCounts, orderCounts, remarksOn } from '../../model/plan/plan-remarks';
-import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 
 const [file = '', participant] = process.argv.slice(2);
 
@@ -66,7 +65,6 @@ function check(): void {
 }
 
 try {
-  await loadStudyPlugins(process.env);
   check();
 } catch (error) {
   if (!(error instanceof ValidationError || error instanceof ConfigurationError)) throw error;

@@ -9,7 +9,6 @@ import { compareCohorts } from '../../model/results/compare-cohorts';
 import { compareConditions } from '../../model/results/compare-conditions';
 import { measuresIn, overallComparisons, type StudyMeasures } from '../../model/results/exported-results';
 import { exportFiles, exportName, exportZip } from '../../server/export/export-zip';
-import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { openStudyStore } from '../../server/storage/study-store';
 import { effectsInWords, modelsWith, simulatedPlan, simulateStudy } from '../../simulation/simulate-study';
 
@@ -156,7 +155,6 @@ function run(values: Options): void {
 }
 
 try {
-  await loadStudyPlugins(process.env);
   run(JSON.parse(process.argv[2] ?? '{}'));
 } catch (error) {
   if (!(error instanceof ValidationError || error instanceof ConfigurationError)) throw error;

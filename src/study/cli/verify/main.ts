@@ -3,7 +3,6 @@ import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { reasonOf } from 'threepoint/core';
 import { readSoftwareVersion } from 'threepoint-http';
-import { loadStudyPlugins } from '../../server/plugins/load-plugins';
 import { verifyExport } from './verify-export';
 
 const [path = ''] = process.argv.slice(2);
@@ -12,7 +11,6 @@ const file = basename(path);
 const maxShown = 50;
 
 try {
-  await loadStudyPlugins(process.env);
   if (!existsSync(path)) throw new Error('there is no such file');
   const here = readSoftwareVersion(
     fileURLToPath(new URL('../../../../public', import.meta.url)),

@@ -24,12 +24,11 @@ export const answerFormSchema = v.variant(
 ) as unknown as v.GenericSchema<unknown, AnswerForm>;
 
 /**
- * Adds a kind of question. A kind is a plug-in of two parts: a `QuestionKind` checks plans and answers, and says what
- * the tables contain; a `QuestionView` draws the question on the desk card and on the VR sheet, and turns what is
- * pressed into an answer. Every process that reads plans registers the first before it reads one: the server's
- * thread, the process of an export, the command line tools and the page. The page also registers the second with
- * `registerQuestionView`. The setting THREEPOINT_STUDY_PLUGINS does all of this (docs/study.md). Returns a function
- * that removes the kind; throws an Error if the name is taken.
+ * Adds a kind of question. A kind has two parts: a `QuestionKind` checks plans and answers, and says what the tables
+ * contain; a `QuestionView` draws the question on the desk card and on the VR sheet, and turns what is pressed into an
+ * answer. Every process that reads plans registers the first before it reads one: the server's thread, the process of
+ * an export, the command line tools and the page. The page also registers the second with `registerQuestionView`.
+ * Returns a function that removes the kind; throws an Error if the name is taken.
  *
  * @example
  * declare module './question-kind' {

@@ -1,5 +1,4 @@
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import { loadStudyPlugins } from '../plugins/load-plugins';
 import { unpacked } from '../storage/study-motion';
 import { openStudyStore, type StudyStore } from '../storage/study-store';
 import { type ExportContent, exportZip } from './export-zip';
@@ -35,7 +34,6 @@ function contentOf(store: StudyStore, { at, study, version, participant, softwar
   };
 }
 
-await loadStudyPlugins(process.env);
 const [file, order] = process.argv.slice(-2) as [string, string];
 const store = openStudyStore(file, { readOnly: true });
 const asked = JSON.parse(order) as ExportOrder;

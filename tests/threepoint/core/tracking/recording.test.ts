@@ -163,8 +163,16 @@ describe('a recording', () => {
       withBody.replace('null,null,[0,', 'null,null,['),
       /Frame 1 .*the body is not 105 finite/,
     ],
-    ['a body too far away', withBody.replace('null,null,[0,', 'null,null,[1e300,'), /Frame 1 .*body is more than 1000 m/],
-    ['a head too far away', writeRecording(some).replace('[5.2,[2,', '[5.2,[1e300,'), /Frame 3.*head is more than 1000 m/],
+    [
+      'a body too far away',
+      withBody.replace('null,null,[0,', 'null,null,[1e300,'),
+      /Frame 1 .*body is more than 1000 m/,
+    ],
+    [
+      'a head too far away',
+      writeRecording(some).replace('[5.2,[2,', '[5.2,[1e300,'),
+      /Frame 3.*head is more than 1000 m/,
+    ],
     ['a body with other joints', withBody.replace('"hips"', '"tail"'), /other joints/],
     ['a body in a file of version 2', withBody.replace('"version":3', '"version":2'), /Frame 1 .*is not a time/],
     ['fingers in a file of version 1', withFingers.replace('"version":3', '"version":1'), /Frame 1 .*is not a time/],
