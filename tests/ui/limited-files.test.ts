@@ -40,7 +40,7 @@ function dropped(size: number) {
 }
 
 describe('a file of this device', () => {
-  test('of 300 MB is refused before a byte of it is read', async () => {
+  test('is refused at 300 MB before a byte of it is read', async () => {
     const { file, reads } = dropped(300 * 2 ** 20);
     await expect(readLimited(file, { what: 'a recording', megabytes: 100 })).rejects.toThrow(
       'walk.json: larger than 100 MB, the limit for a recording',
@@ -49,7 +49,7 @@ describe('a file of this device', () => {
     reportFigures('bad-input', { 'bytes read of 300 MB': 0 });
   });
 
-  test('as large as it may be is read', async () => {
+  test('is read at its greatest allowed size', async () => {
     const { file, reads } = dropped(2 ** 20);
     expect((await readLimited(file, recording)).byteLength).toBe(2);
     expect(reads()).toBe(1);

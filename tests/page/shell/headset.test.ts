@@ -84,7 +84,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
 const soon = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
 describe('entering VR', () => {
-  test('and leaving it again: each is told once', async () => {
+  test('is reported once, as is leaving again', async () => {
     const { headset, session, happened, told } = await page();
     const entering = headset.enter();
     await soon();
@@ -124,7 +124,7 @@ describe('entering VR', () => {
     expect(told).toEqual([expect.stringContaining('ended before it had begun')]);
   });
 
-  test('where the picture cannot be drawn there ends the session that has begun', async () => {
+  test('a picture that cannot be drawn there ends the session that has begun', async () => {
     const failing = () => Promise.reject(new DOMException('no such graphics device', 'InvalidStateError'));
     const { headset, session, happened, told } = await page(failing);
     await headset.enter();

@@ -61,7 +61,7 @@ function player(recorder = new Recorder()) {
   };
 }
 
-test('a player whose session goes behind a menu of the device is away until it comes back', () => {
+test('a player whose session goes behind a device menu is away until it comes back', () => {
   const { enter, setSession, isAway } = player();
   enter();
   setSession('hidden');
@@ -102,7 +102,7 @@ test('a recording made in a session ends with it: what moves the body afterwards
   expect([recorder.mode, recorder.frameCount]).toEqual(['idle', 2]);
 });
 
-test('the body of a session ends with it: no pose and no lost hand of the headset stays', () => {
+test('the body of a session ends with it: the headset’s pose and lost hands are gone', () => {
   const { body, enter, leave } = player();
   enter();
   body.tick(1000);

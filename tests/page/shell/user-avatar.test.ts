@@ -23,7 +23,7 @@ const clothes = (palette: string) => palettes.find(({ name }) => name === palett
 
 const noBones = () => new BoneMapStore(createPreferenceStore(null));
 
-test('a body of ours keeps the colours of its seat when another takes its place, and its tone of skin', async () => {
+test('our body keeps its seat’s colours when another replaces it, and its tone of skin', async () => {
   const scene = new Scene();
   const avatar = new UserAvatar({
     scene,
@@ -126,7 +126,7 @@ describe('of files that are asked for one after the other', () => {
   });
 });
 
-test('a body from a file that comes to the graphics device only in part leaves nothing there', async () => {
+test('a body from a file that reaches the graphics device only in part leaves nothing there', async () => {
   checkFilesHere();
   let held = 0;
   const { avatar, told } = wardrobe(async (object) => {
@@ -167,7 +167,7 @@ describe('a file that is worn with a wrong bone', () => {
     ['GLB', 'rig.glb', rig, 'the '],
     ['VRM 1.0', 'rig.vrm', smallVrm, ''],
     ['VRM 0.x', 'old.vrm', smallOldVrm, ''],
-  ])('as %s is corrected, keeps the correction, and goes back', async (_, name, content, prefix) => {
+  ])('is corrected as %s, keeps the correction, and goes back', async (_, name, content, prefix) => {
     checkFilesHere();
     const store = createPreferenceStore(null);
     const { avatar, told } = wardrobe(undefined, new BoneMapStore(store));
