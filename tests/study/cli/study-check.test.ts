@@ -100,7 +100,7 @@ describe('npm run tool -- study:check', () => {
     expect(status).toBe(0);
   });
 
-  test('says who has no one beside them and who is asked whether to stop, and where they meet that', () => {
+  test('names those without a neighbour and those who may stop, and where they meet this', () => {
     const file = join(directoryWith(), 'mine.json');
     const remote = { contact: 'Call 555 0100.', freeSpace: 2.5 };
     const askToStop = [

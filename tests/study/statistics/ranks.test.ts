@@ -81,7 +81,7 @@ describe('ranks', () => {
     expect(ranksOf([100, 0.0002, 0.0001, 0.0003])).toEqual({ ranks: [4, 2, 1, 3], ties: [] });
   });
 
-  test('of pairs leave out those that differ by rounding alone, however little the others do', () => {
+  test('pairs that differ by rounding alone are left out, however little the others differ', () => {
     const { zeros, n, statistic } = signedRankTest([50.1 + 0.2, 50.1, 50.2], [50.3, 50, 50]);
     expect([zeros, n, statistic]).toEqual([1, 2, 3]);
   });
