@@ -67,7 +67,7 @@ describe('which estimator draws', () => {
     expect(faults).toEqual([]);
   });
 
-  test('what draws already goes on where it is chosen again', async () => {
+  test('the drawing estimator goes on where it is chosen again', async () => {
     const { choice } = choiceThat(async () => networkOn('wasm'));
     const { current } = choice;
     await choice.setEstimator('ik');
@@ -167,7 +167,7 @@ describe('which estimator draws', () => {
     expect(faults).toHaveLength(1);
   });
 
-  test('what a listener throws is no fault of the network', async () => {
+  test('an exception of a listener is no fault of the network', async () => {
     const { choice, faults } = choiceThat(
       async () => networkOn('wasm'),
       () => {

@@ -11,7 +11,7 @@ const left = at(-0.25, 1.1, -0.35);
 const right = at(0.25, 1.1, -0.35);
 
 describe('poses', () => {
-  test('of a head that is not seen, or not a number: no frame, and the next one is whole', () => {
+  test('need a head: unseen or invalid, it leaves no frame, and the next is whole', () => {
     const { read, setHead, setInputs } = trackedHeadset();
     setInputs(controller('left', left), controller('right', right));
     const before = read();
@@ -23,7 +23,7 @@ describe('poses', () => {
     expect({ ...read(), time: 0 }).toEqual({ ...before, time: 0 });
   });
 
-  test('of hands: null is not seen, emulated says so, what is no number is not seen', () => {
+  test('show hands as reported: null is unseen, emulated is marked, an invalid number is unseen', () => {
     const { read, setInputs } = trackedHeadset();
     setInputs(controller('left', left), controller('right', right));
     read();
@@ -33,7 +33,7 @@ describe('poses', () => {
     expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'tracked' } });
   });
 
-  test('of a device that never reports a point as tracked count as tracked, each point by itself, until it has reported it', () => {
+  test('count as tracked, each point separately, until the device first reports one as tracked', () => {
     const { read, setInputs } = trackedHeadset();
     const guessed = { left: { ...left, emulated: true }, right: { ...right, emulated: true } };
     setInputs(controller('left', guessed.left), controller('right', guessed.right));
@@ -147,7 +147,7 @@ describe('which hand it is', () => {
     expect(inputs.buttons.left.device).not.toBe(device);
   });
 
-  test('is a bare hand where the device reports no joints, and it pinches where the device selects', () => {
+  test('is a bare hand where the device reports no joints, and pinches when the device selects', () => {
     const { read, setInputs, inputs, session } = trackedHeadset();
     const hand = { ...controller('right', right), profiles: ['generic-hand-select'] };
     const source = { ...hand, gamepad: { buttons: [], axes: [] } };
@@ -183,7 +183,7 @@ describe('which hand it is', () => {
     expect(inputs.buttons.right.trigger).toBe(1);
   });
 
-  test('and of which kind, through ten changes between controllers and hands, nothing kept of the other', () => {
+  test('has the right kind through ten changes of controllers and hands, keeping nothing of the other', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     let correct = 0;
     for (let i = 0; i < 10; i++) {
@@ -228,7 +228,7 @@ describe('events', () => {
     expect(events).toEqual(['start', 'discontinuity', 'discontinuity', 'discontinuity']);
   });
 
-  test('report the end once; a floor that the device moves later is not the session’s any more', () => {
+  test('report the end once; a floor moved later is no more the session’s', () => {
     const { tracked, session, frame, events, reset } = observed();
     tracked.read(frame, 1);
     session.dispatchEvent(new Event('end'));
@@ -278,7 +278,7 @@ describe('where the floor is', () => {
     expect(angleBetween(head.orientation, fromAxisAngle(up, yaw))).toBeLessThan(1e-6);
   });
 
-  test('is as far below the user as they ask, head and hands alike, through recentring, turns and the device’s own', () => {
+  test('is as far below the user as requested, with head and hands, through recentring and turns', () => {
     const { read, setHead, setInputs, tracker, reset } = trackedHeadset();
     setHead(at(0.2, 1.15, 0));
     setInputs(controller('right', at(0.3, 0.8, -0.3)));
@@ -345,7 +345,7 @@ describe('where the floor is', () => {
     expect(angleBetween(head.orientation, identity)).toBeLessThan(1e-9);
   });
 
-  test('is no matter of a tracker that is done with: a device that recentres later moves nothing', () => {
+  test('is independent of a finished tracker: a device that recentres later moves nothing', () => {
     const { read, tracker, reset, spaces } = trackedHeadset();
     read();
     tracker.turn(1);

@@ -28,7 +28,7 @@ describe('measures of people', () => {
     expect(1.8 - armSpanFromFingertipSpan(1.8)).toBeLessThan(0.45);
   });
 
-  test('what was converted converts back', () => {
+  test('a converted measure converts back', () => {
     fc.assert(
       fc.property(number(0.5, 2.5), (value) => {
         expect(statureFromEyeHeight(eyeHeightFromStature(value))).toBeCloseTo(value, 12);
@@ -148,12 +148,12 @@ test('a forearm that was typed stays with other measures, unless no such arm has
 });
 
 describe('before the first calibration', () => {
-  test('who stands is as tall as they stand', () => {
+  test('a standing person is as tall as they stand', () => {
     expect(calibrationFromHeadHeight(1.72).eyeHeight).toBe(1.72);
     expect(calibrationFromHeadHeight(1.45).eyeHeight).toBe(1.45);
   });
 
-  test('who sits, or whose floor is wrong, is an ordinary adult', () => {
+  test('a person who sits, or whose floor is wrong, is an ordinary adult', () => {
     expect(calibrationFromHeadHeight(1.15)).toEqual(defaultCalibration);
     expect(calibrationFromHeadHeight(0)).toEqual(defaultCalibration);
     expect(calibrationFromHeadHeight(eyeHeightRange.max + 0.5)).toEqual(defaultCalibration);

@@ -15,7 +15,7 @@ function validatorOf(assumesTracked: boolean) {
   return { validator: new TrackingValidator({ assumesTracked, onChange }), events };
 }
 
-test('a hand that a device only guesses counts as tracked until the device has reported it as tracked', () => {
+test('a hand that a device only guesses counts as tracked until the device reports it tracked', () => {
   const { validator } = validatorOf(true);
   expect(validator.validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
   expect(validator.validate(frame)).toBe(frame);
