@@ -74,8 +74,8 @@ describe('cohorts', () => {
   });
 });
 
-describe('what should be known before the first participant', () => {
-  test('is which orders are not balanced, and how many participants would balance them', () => {
+describe('the remarks before the first participant', () => {
+  test('name orders that are not balanced, and how many participants would balance them', () => {
     expect(remarksOn(paperPlan())).toEqual([
       'Archery: the 2 orders are not balanced: some occur 8 times, others 7 times; a multiple of 6 participants would balance them.',
       'Ball game: the 2 orders are not balanced: some occur 3 times, others 2 times; a multiple of 6 participants would balance them.',
@@ -83,7 +83,7 @@ describe('what should be known before the first participant', () => {
     expect(remarksOn(paperPlan({ participants: 18 }))).toEqual([]);
   });
 
-  test('includes unbalanced cohorts, conditions with the same body, and tasks without a mirror', () => {
+  test('name unbalanced cohorts, conditions with the same body, and tasks without a mirror', () => {
     const conditions = ['a', 'b'].map((id) => ({ id, label: id, estimator: 'ik' as const, mirror: true }));
     const remarks = remarksOn(checkedPlan(paperPlan({ participants: 9, cohorts: bodies(2), conditions })));
     expect(remarks).toContainEqual(expect.stringMatching(/^The cohorts are not balanced: body-0 \d, body-1 \d/));

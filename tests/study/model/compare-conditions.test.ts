@@ -75,7 +75,7 @@ describe('an analysis of simulated studies', () => {
   });
 });
 
-describe('what is compared', () => {
+describe('a comparison', () => {
   const answer = (participant: string, condition: string, value: number, excluded = ''): AnswerRow => ({
     participant,
     simulated: false,
@@ -87,7 +87,7 @@ describe('what is compared', () => {
     excluded,
   });
 
-  test('are those who answered under both conditions; the others are named with the reason', () => {
+  test('is of people who answered under both conditions, and names others with the reason', () => {
     const { comparisons, excluded } = compareAnswers([
       answer('P01', 'learned', 5),
       answer('P01', 'ik', 3),
@@ -105,13 +105,13 @@ describe('what is compared', () => {
     ]);
   });
 
-  test('is never people with simulated people', () => {
+  test('is never of people with simulated people', () => {
     expect(() => compareAnswers([answer('P01', 'ik', 3), { ...answer('P02', 'ik', 3), simulated: true }])).toThrow(
       'must not be mixed',
     );
   });
 
-  test("is a group's score once, though each member reports it", () => {
+  test("has a group's score once, though each member reports it", () => {
     const trial = (participant: string, group: number, condition: string, score: number): TrialRow => ({
       participant,
       simulated: false,

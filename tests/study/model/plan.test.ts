@@ -226,15 +226,15 @@ describe('a study file with a mistake', () => {
   });
 });
 
-describe('who plays together', () => {
+describe('the size of a group', () => {
   const groupsOfSize = (game: StudyTask['game'], groupSize: number) => () =>
     checkedPlan(paperPlan({ tasks: [{ ...(paperPlan().tasks[0] as StudyTask), game, groupSize }] }));
 
-  test('is one in archery: of a group one score would count for all', () => {
+  test('is one in archery: one score of more would count for all', () => {
     expect(groupsOfSize('archery', 3)).toThrow('tasks[0].groupSize: archery is played alone: expected 1');
   });
 
-  test.each([1, 5])('is three in the ball game: of %i no round would begin', (size) => {
+  test.each([1, 5])('is three in the ball game: %i begin no round', (size) => {
     expect(groupsOfSize('ball', size)).toThrow('tasks[0].groupSize: the ball game is played by three: expected 3');
   });
 });

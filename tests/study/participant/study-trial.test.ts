@@ -6,7 +6,7 @@ import { PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { epoch, frameSeconds, playedRound } from './played-round';
 import { OneShotGame } from './study-browser';
 
-describe('what scores in a round', () => {
+describe('a scoring event of a round', () => {
   test.each([
     ['without a pause', () => false],
     ['that was paused for twenty seconds', (time: number) => time > 9 && time < 29],
@@ -24,7 +24,7 @@ describe('what scores in a round', () => {
     }
   });
 
-  test('after the head was lost for three seconds too, though the game stood meanwhile', () => {
+  test('is found after a three-second loss of the head, too, which stops the game', () => {
     const { outcome, landed } = playedRound({ paused: () => false, headless: (time) => time > 5 && time < 8 });
     const { clock, events } = outcome;
     if (!clock) throw new Error('the outcome has no clock');

@@ -59,7 +59,7 @@ describe('consent to motion that was taken back', () => {
     expect(await sendMotion()).toBe(403);
   });
 
-  test('on another device, which reports it, holds at the server too', async () => {
+  test('stays taken back at the server when another device reported that', async () => {
     const { send, report, sendMotion } = await participant();
     await send([consentOf(true)]);
     const progress = { ...begin(schedule), step: 'demographics', motion: true, changes: 1 };

@@ -11,7 +11,7 @@ import { experimenter, servedFolder, testSoftware } from './running-studies';
 
 const day = 86_400;
 
-test('the first start draws a token for its owner’s eyes; the next start keeps it', async () => {
+test('the first start draws a token readable by its owner alone; the next keeps it', async () => {
   const directory = join(directoryWith(), 'new');
   const first = await servedFolder(directory, null);
   const token = first.savedToken as string;

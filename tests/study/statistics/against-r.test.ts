@@ -184,7 +184,7 @@ test("noncentral distributions are R's pt and pf", () => {
   expectAsInR(noncentralF(0.4, 2, 42)(9), 0.00794975601529174);
 });
 
-describe('more than two', () => {
+describe('tests of more than two', () => {
   test('repeated measures, sphericity and Greenhouse and Geisser\'s correction: anova(lm(cbind(…) ~ 1), X = ~1, test = "Spherical")', () => {
     const { within, between, interaction, n } = varianceAnalysis([roundingTimes]);
     expect([n, between, interaction]).toEqual([22, null, null]);

@@ -29,7 +29,7 @@ const halves = <T>(people: readonly T[]) => {
 };
 
 /** Ranks know no unit: a test of means must be that of the sums, which are whole numbers, in every figure. */
-describe.each([2, 3, 4, 5, 6, 7])('of means of %i values the ranks are those of their sums', (k) => {
+describe.each([2, 3, 4, 5, 6, 7])('the ranks of means of %i values are those of their sums', (k) => {
   const always = (alike: (people: readonly (readonly Rounds[])[]) => void) =>
     fc.assert(fc.property(played(k), alike), { seed, numRuns: 200 });
 
