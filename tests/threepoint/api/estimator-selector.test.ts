@@ -55,7 +55,7 @@ function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>,
   return { choice, faults, changes };
 }
 
-describe('which estimator draws', () => {
+describe('the estimator that draws', () => {
   test('inverse kinematics draws while the network loads, then the network does', async () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice, faults } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
@@ -90,7 +90,7 @@ describe('which estimator draws', () => {
     expect(faults).toEqual(['learned: learned.onnx: 404']);
   });
 
-  test('also where another network drew until then, which is not what was wanted', async () => {
+  test('a network that cannot be loaded leaves inverse kinematics after another network, too', async () => {
     const { choice, changes } = choiceThat(async (name) => {
       if (name === 'paper') throw new Error('paper.onnx: 404');
       return networkOn('wasm');

@@ -68,7 +68,7 @@ describe('behind a menu of the device', () => {
   });
 });
 
-describe('which hand it is', () => {
+describe('the hand on a side', () => {
   test('is decided by handedness, in any order, and a swap is another device on each side', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     setInputs(controller('right', right), controller('left', left));
@@ -82,7 +82,7 @@ describe('which hand it is', () => {
     expect(inputs.buttons.right.device).not.toBe(before.right);
   });
 
-  test('is what is seen of two devices on one side, in whichever order they are listed', () => {
+  test('is the visible one of two devices there, in whichever order they are listed', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     const onTheTable = controller('left', null, 1);
     const hand = bareHand('left', left, 0.005);
@@ -123,7 +123,7 @@ describe('which hand it is', () => {
     },
   );
 
-  test.each(['listed first', 'listed last'])('is of two controllers the one that moves, %s', (order) => {
+  test.each(['listed first', 'listed last'])('is the one that moves of two controllers, %s', (order) => {
     const { read, setInputs, inputs } = trackedHeadset();
     const held = controller('left', left);
     const onTheTable = controller('left', at(-2, 0.7, -0.5));
@@ -176,7 +176,7 @@ describe('which hand it is', () => {
     expect(inputs.buttons.right).toMatchObject({ kind: 'hand', pinch: 0.8, trigger: 0 });
   });
 
-  test('is where it pinches, of a device that reports nothing else', () => {
+  test('is where it pinches if a device reports nothing else', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });
     expect(read()?.rightHand).not.toBeNull();
@@ -247,7 +247,7 @@ describe('events', () => {
   });
 });
 
-describe('where the floor is', () => {
+describe('the floor', () => {
   test('after recentring lies under the head, and the hands keep their distances', () => {
     const { read, setHead, setInputs, tracker, spaces } = trackedHeadset();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
@@ -331,7 +331,7 @@ describe('where the floor is', () => {
     reportFigures('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
   });
 
-  test('when the device recentres, is where the device says: what was turned here before is forgotten', () => {
+  test('is where the device puts it when recentring: earlier turns are forgotten', () => {
     const { read, setHead, setInputs, tracker, reset, spaces, floor } = trackedHeadset();
     setInputs(controller('right', right));
     read();

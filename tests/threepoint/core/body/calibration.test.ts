@@ -39,8 +39,8 @@ describe('measures of people', () => {
   });
 });
 
-describe('what is a person’s body', () => {
-  test('ordinary people, small children and giants are', () => {
+describe('the range of a person’s body', () => {
+  test('includes ordinary people, small children and giants', () => {
     expect(calibrationProblem(defaultCalibration)).toBeNull();
     for (const stature of [1.02, 1.2, 1.5, 1.7, 1.9, 2.1, 2.28]) {
       const calibration = { eyeHeight: eyeHeightFromStature(stature), armSpan: armSpanFromFingertipSpan(stature) };
@@ -102,7 +102,7 @@ describe('what is a person’s body', () => {
       { ...defaultCalibration, handTilts: { right: { pitch: 0, yaw: Number.NaN } } },
       /right hand’s tilt/,
     ],
-  ])('%s is not, and the sentence says why', (_, calibration, sentence) => {
+  ])('excludes %s, and the sentence says why', (_, calibration, sentence) => {
     expect(calibrationProblem(calibration)).toMatch(sentence);
   });
 });
