@@ -15,7 +15,7 @@ import {
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { person, recordedMotion } from './recorded-motion';
 
-describe('what a loss costs', () => {
+describe('the cost of a loss', () => {
   const frames = recordedMotion(11, 240);
   const losses = [{ side: 'right', start: 60, end: 180 }] as const;
   const measured = async (): Promise<readonly [readonly MeasuredFrame[], readonly MeasuredFrame[]]> => [

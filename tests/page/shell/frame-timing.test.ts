@@ -12,7 +12,7 @@ function handClock() {
   };
 }
 
-describe('where the time of a frame goes', () => {
+describe('the time of a frame', () => {
   test('each stage gets the time since the mark before it, the frame gets the sum', () => {
     const clock = handClock();
     const timing = new FrameTiming(clock.now);

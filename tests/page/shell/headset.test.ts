@@ -99,7 +99,7 @@ describe('entering VR', () => {
     expect(told).toEqual([]);
   });
 
-  test('by a double click, or once more from within, is entering once', async () => {
+  test('happens once by a double click, or again from within', async () => {
     const { headset, session, happened, told } = await page();
     const entering = [headset.enter(), headset.enter()];
     await soon();
@@ -111,7 +111,7 @@ describe('entering VR', () => {
     expect(told).toEqual([]);
   });
 
-  test('in a session that ends before it has begun leaves the page without one', async () => {
+  test('leaves no session where it ends before it has begun', async () => {
     const { headset, session, happened, told } = await page();
     const entering = headset.enter();
     await soon();

@@ -10,7 +10,7 @@ function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
 }
 
-describe('what the page remembers', () => {
+describe('the memory of the page', () => {
   test('a calibration survives a reload', () => {
     const storage = memory();
     createPreferenceStore(storage).remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });

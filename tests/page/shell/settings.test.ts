@@ -7,7 +7,7 @@ import { readSwitches } from '../../../src/page/shell/switches';
 const visit = (query: string, remembered: Preferences = {}) =>
   createSettings(readSwitches(query).switches, { preferences: { overlay: false, ...remembered } });
 
-describe('what a visit begins with', () => {
+describe('the settings of a new visit', () => {
   test('a first visit has a mirror, sound, the bow in the left hand, and nothing calibrated', () => {
     expect(visit('')).toMatchObject({
       ...{
@@ -23,7 +23,7 @@ describe('what a visit begins with', () => {
     });
   });
 
-  test('remembered settings come back', () => {
+  test('include those that were remembered', () => {
     const calibration = { eyeHeight: 1.5, armSpan: 1.4 };
     const remembered = { mirror: false, sound: false, bowSide: 'right', name: 'Robin' } as const;
     const settings = visit('', { ...remembered, calibration });

@@ -99,7 +99,7 @@ function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.r
   return { avatar, told };
 }
 
-describe('of files that are asked for one after the other', () => {
+describe('several files requested in turn', () => {
   test('one that another has taken the place of asks for no bones', async () => {
     const letGo = checkFilesHere('first.glb');
     const { avatar } = wardrobe();

@@ -38,7 +38,7 @@ const lan = () => {
 };
 
 describe('clock sync', () => {
-  test.each([0, 600, -600])('on a LAN, clocks %d s apart: within 10 ms in 3 s', (skew) => {
+  test.each([0, 600, -600])('brings clocks %d s apart within 10 ms in 3 s on a LAN', (skew) => {
     const { error, settled } = follow(new ClockSync(), 5, 10, skew, lan(), lan());
     printFigures(`clock skew ${skew} s`, { 'error [ms]': error * 1000, 'within 10 ms after [s]': settled });
     expect(settled).toBeLessThan(3);

@@ -15,7 +15,7 @@ function seen(way: Way, seed: number) {
   return { ...figures, beyondWayMs: p95Ms - 500 * way.roundTrip };
 }
 
-describe('what is seen of others in a headset that is steady to 0.03 mm', () => {
+describe('the sight of others in a headset that is steady to 0.03 mm', () => {
   for (const roundTrip of [0, 0.05, 0.15]) {
     for (const jitter of [0, 0.005]) {
       test(`is at most 50 ms later than round trips of ${1000 * roundTrip} ± ${1000 * jitter} ms, and as smooth`, () => {

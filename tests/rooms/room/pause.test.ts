@@ -173,7 +173,7 @@ describe('a pause', () => {
   });
 });
 
-describe('where a player was', () => {
+describe('the last place of a player', () => {
   test('is forgotten within 2 s of silence, in room and match; the seat is not', () => {
     const { testRoom, match } = playing();
     testRoom.pass(1, testRoom.stand);
@@ -192,7 +192,7 @@ describe('where a player was', () => {
     expect(match().players[0]?.head).not.toBeNull();
   });
 
-  test('is forgotten of a lost connection as well', () => {
+  test('is forgotten after a lost connection as well', () => {
     const { testRoom, match } = playing();
     testRoom.room.disconnect('ann', testRoom.time);
     testRoom.pass(2);

@@ -175,8 +175,8 @@ describe('a server without voices', () => {
   });
 });
 
-describe('how pages find each other', () => {
-  test('by the servers of the environment; a pass to TURN lasts four hours without a name', async () => {
+describe('the way from page to page', () => {
+  test('leads over the environment’s servers; a pass to TURN lasts four hours without a name', async () => {
     const relayed = await forkServer({
       THREEPOINT_STUN: 'stun:stun.example.org:3478',
       THREEPOINT_TURN: 'turn:turn.example.org:3478?transport=udp, turns:turn.example.org:5349',
