@@ -1,5 +1,5 @@
-// node scripts/check-language.mjs [PATH …]: lists comments and documents that are not in plain technical English, by
-// file and line. The rules are few and mechanical: they find habits, not style. tests/language.test.ts asserts that
+// node scripts/check-language.mjs [PATH …]: lists comments, titles of tests and documents that are not in plain
+// technical English, by file and line. The rules are few and mechanical: they find habits, not style. tests/language.test.ts asserts that
 // none is left.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -12,6 +12,9 @@ const fragment = /^(Of|As|So|Those|Whose|Whom|Where|The same)\b/;
 /** Words that replace a technical term, or that are archaic. `allowed` lists the files in which they are right. */
 const unwanted = /\b(told|tells?|hears?|heard|anew|whither|in vain|to be had|believed?|of ours|whom|let go of)\b/i;
 const longestSentence = 25;
+/** The first words of titles that continue another title. A condition (“when …”) may complete that of its group. */
+const continuation = /^(of|that|who|whom|whose|as|where|what|which|so|those|the same|and|or|but|nor)\b/i;
+const longestTitle = 16;
 const longestLine = 120;
 
 /** The words that are right in a file, by file. */
@@ -99,6 +102,28 @@ function* problemsOfComments(comments) {
   }
 }
 
+/** Yields the problems of the titles of tests and of their groups; only a test's title must begin with its subject. */
+function* problemsOfTitles(text) {
+  const source = ts.createSourceFile('file.ts', text, ts.ScriptTarget.Latest, true);
+  const visit = function* (node) {
+    const [title] = node.arguments ?? [];
+    const caller = ts.isCallExpression(node) && /^(test|it|describe)\b(.*)/.exec(node.expression.getText(source));
+    if (caller && title && (ts.isStringLiteralLike(title) || ts.isTemplateExpression(title))) {
+      const line = source.getLineAndCharacterOfPosition(title.getStart(source)).line + 1;
+      const said = title.getText(source).slice(1, -1);
+      const isGroup = caller[1] === 'describe' || caller[2].startsWith('.describe');
+      if (!isGroup && continuation.test(said)) yield { line, what: `has a title without a subject: “${said}”` };
+      const words = said
+        .replace(/\$\{[^}]*\}/g, 'value')
+        .split(/\s+/)
+        .filter((part) => /^[^@]*\w/.test(part)).length;
+      if (words > longestTitle) yield { line, what: `has a title of ${words} words: “${said}”` };
+    }
+    for (const child of node.getChildren(source)) yield* visit(child);
+  };
+  yield* visit(source);
+}
+
 /** Returns the problems of a Markdown file's prose; tables, code, headings and addresses of links are left out. */
 function problemsOfDocument(text, file) {
   const blank = (part) => part.replace(/[^\n]/g, '');
@@ -130,6 +155,7 @@ function problemsOfFile(file, text) {
   const problems = [
     ...problemsOfComments(file.endsWith('.py') ? commentsOfPython(text) : commentsOfScript(text, file)),
   ];
+  if (/^(tests|e2e)\/.*\.ts$/.test(file)) problems.push(...problemsOfTitles(text));
   text.split('\n').forEach((line, index) => {
     // Code is the formatters' to wrap, and an address has no place to break.
     if (line.length > longestLine && /^\s*(\*|\/\/|\/\*|#)/.test(line) && !/https?:\/\//.test(line)) {

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { languageProblems } from '../scripts/check-language.mjs';
 
-test('comments and documents are in plain technical English', () => {
+test('comments, titles of tests and documents are in plain technical English', () => {
   const problems = languageProblems([
     'src',
     'server',

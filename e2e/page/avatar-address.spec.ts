@@ -43,7 +43,7 @@ const answers = {
   'plain.glb': [() => glb(plain()), /Its bones could not be matched to a humanoid\. Map them by hand/],
 } as const;
 
-test('an avatar of the address that does not arrive leaves our own body standing, and says why @full', async ({
+test('an avatar of the address that never arrives leaves our own body standing, with a reason @full', async ({
   page,
   complaints,
 }) => {
@@ -99,9 +99,7 @@ test('an avatar on its way can be given up, and ours stays @full', async ({ page
   expect((await probe(page)).notices.filter(({ level }) => level === 'error')).toEqual([]);
 });
 
-test('our own body stands there until the avatar of the address has arrived; the one asked for last is shown @full', async ({
-  page,
-}) => {
+test('our own body stands until the address’s avatar arrives; the last one asked for wins @full', async ({ page }) => {
   const letThrough = new EventEmitter();
   const held = once(letThrough, 'now');
   await page.route(

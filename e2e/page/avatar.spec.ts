@@ -3,7 +3,7 @@ import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint,
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
 
-test('a VRM from a local file takes the place of ours, with the hands still on the controllers', async ({ page }) => {
+test('a VRM from a local file replaces our body, with the hands still on the controllers', async ({ page }) => {
   if (!avatarFile) throw new Error('public/avatars holds no .vrm: npx tsx tools/avatars/build/main.ts');
   await openWithHeadset(page, 'estimator=ik');
   const hand = await settledJoint(page, 'leftHand');

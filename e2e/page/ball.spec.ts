@@ -220,7 +220,7 @@ test('three browsers play a whole match over the relay and agree, one watches, o
   }
 });
 
-test('the relay is killed and started again in the middle of a match: a banner, all are back, the round is void @realtime', async ({
+test('a relay restarted in the middle of a match brings all back and voids the round @realtime', async ({
   browser,
 }) => {
   test.setTimeout(300_000);

@@ -37,7 +37,7 @@ async function tapBone(page: Page, name: string): Promise<void> {
   await expect(bone).toHaveAttribute('aria-selected', 'true');
 }
 
-test('a file whose bones’ names tell nothing is worn once they are told, and again without asking @full', async ({
+test('a file whose bones’ names mean nothing is worn once mapped, and again without asking @full', async ({
   page,
   complaints,
 }) => {

@@ -10,7 +10,7 @@ const armsAhead = {
   right: { position: [0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
 } as const;
 
-test('by hand: height and arm span are taken over, remembered after a reload, and forgotten on request @full', async ({
+test('a typed height and arm span are used, remembered after a reload, and forgotten on request @full', async ({
   page,
 }) => {
   await openWithHeadset(page);
@@ -43,7 +43,7 @@ test('by hand: what no person measures is refused where it is typed', async ({ p
   expect((await probe(page)).calibration).toEqual(before);
 });
 
-test('by hand: a forearm divides the arm, outlasts a guided calibration and a reload, and is forgotten where it is emptied @full', async ({
+test('a typed forearm divides the arm, outlasts calibration and reload, and is forgotten when emptied @full', async ({
   page,
 }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');

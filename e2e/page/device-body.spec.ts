@@ -35,7 +35,7 @@ const askSwitch = (page: Page) => page.getByRole('switch', { name: 'Use the head
 const press = (page: Page, role: 'button' | 'radio', name: string) =>
   page.getByRole(role, { name, exact: true, includeHidden: true }).dispatchEvent('click');
 
-test('a headset’s own body is asked for on wish alone, drawn, compared, recorded, and the truth of an evaluation @full', async ({
+test('a headset’s own body is requested by wish alone, drawn, compared, recorded, and evaluated as truth @full', async ({
   page,
 }, testInfo) => {
   await openOnTrackingHeadset(page);
@@ -74,9 +74,7 @@ test('a headset’s own body is asked for on wish alone, drawn, compared, record
   await keepPicture(page, 'device-body-difference');
 });
 
-test('a headset that was not asked, or has no body, is said to have none, and the learned body is drawn @full', async ({
-  page,
-}) => {
+test('a headset without a body, or not asked, is reported, and the learned body is drawn @full', async ({ page }) => {
   await open(page, 'emulate&quality=low&estimator=device');
   await emulatedHeadset(page);
   await enterVr(page, { stepMs: null });

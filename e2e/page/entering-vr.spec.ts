@@ -23,9 +23,7 @@ test('recentring moves the floor under the head, and the body goes on', async ({
   await expect.poll(async () => (await joint(page, 'head'))[0]).toBeCloseTo(0.1, 1);
 });
 
-test('the emulator is entered and left ten times: the picture, the button and the memory are as before @full', async ({
-  page,
-}) => {
+test('ten visits to the emulator leave the picture, the button and the memory as before @full', async ({ page }) => {
   test.setTimeout(180_000);
   const headset = await openWithHeadset(page, 'estimator=ik');
   /** What a visit leaves: the picture's size and place, and what the graphics device holds. */

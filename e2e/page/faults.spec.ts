@@ -97,7 +97,7 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
 for (const place of ['studio', 'archery', 'ball'] as const) {
   // All three places read the headset with the same code, so the games are tested at night only.
   const when = place === 'studio' ? '@realtime ' : '@nightly ';
-  test(`${when}in VR (${place}): a head that is lost for 3 s, a menu, a headset taken off`, async ({ page }) => {
+  test(`${when}in VR (${place}) the page survives a lost head, a menu and a headset taken off`, async ({ page }) => {
     await open(page, `emulate&play=${place}&seed=7&panel=off&quality=low&estimator=learned`);
     const headset = await emulatedHeadset(page);
     await enterVr(page, { stepMs: null });

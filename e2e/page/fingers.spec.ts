@@ -30,9 +30,7 @@ async function worn(page: Page): Promise<EmulatedHeadset> {
 const gap = async (page: Page, side: 'left' | 'right') =>
   100 * distance(await tip(page, side, 'thumb'), await tip(page, side, 'index'));
 
-test('a tracked hand pinches: the tips of the avatar’s thumb and index finger meet, those of the other hand stay apart @full', async ({
-  page,
-}) => {
+test('a pinch of a tracked hand closes the avatar’s thumb and index finger on that side @full', async ({ page }) => {
   const headset = await worn(page);
   await headset.useInput('hand');
   for (const side of ['left', 'right'] as const) {

@@ -78,7 +78,7 @@ async function walk(page: Page): Promise<readonly string[]> {
   return titles;
 }
 
-test('a headset check measures the known noise and losses of the emulator, and writes a valid file @full', async ({
+test('a headset check measures the emulator’s known noise and losses and writes a valid file @full', async ({
   page,
 }, testInfo) => {
   await page.goto('/check?emulate&quality=low&pace=0.2');

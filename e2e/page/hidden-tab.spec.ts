@@ -39,7 +39,7 @@ for (const [seconds, suite] of [
   [90, '@nightly'],
   [330, '@nightly'],
 ] as const) {
-  test(`a tab in a match is hidden for ${seconds} s: its seat, clock and bots are kept ${suite}`, async ({
+  test(`a match keeps seat, clock and bots of a tab hidden for ${seconds} s ${suite}`, async ({
     browser,
     origin,
     launchOptions,

@@ -53,9 +53,7 @@ test('motion capture leaves a recording that is being made, and says so @full', 
   await page.getByRole('button', { name: 'Stop', exact: true }).click();
 });
 
-test('a method that is chosen beside motion capture is remembered, as one that is chosen in the panel @full', async ({
-  page,
-}) => {
+test('a method chosen beside motion capture is remembered as one chosen in the panel is @full', async ({ page }) => {
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');
   await choose(page, filesOf(acclaim!));
   await card(page).getByLabel('Method').selectOption('hands-only');
@@ -87,7 +85,7 @@ test('a link leads to the same second, method and body beside it', async ({ page
   expect(Number(link.get('at'))).toBe(0.5);
 });
 
-test('of another file with as many pieces its own can be chosen @full', async ({ page }) => {
+test('the pieces of another file with as many of them can be chosen @full', async ({ page }) => {
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');
   const [motion] = filesOf(leaping!);
   const pieces = card(page).getByLabel('Clip', { exact: true }).getByRole('option');
@@ -120,7 +118,7 @@ test('a damaged file is refused with line and column, and what is shown stays', 
   await expect(heading).toBeVisible();
 });
 
-test('bones that names contradict are mapped by hand or by a JSON map, remembered, corrected and forgotten @full', async ({
+test('bones that names contradict are mapped by hand or JSON, remembered, corrected and forgotten @full', async ({
   page,
 }) => {
   await page.setViewportSize({ width: 960, height: 760 });

@@ -101,7 +101,7 @@ function publishNewer(folder: string): { readonly oldArchery: string } {
   return { oldArchery };
 }
 
-test('after one visit to a folder of a host of files, archery is played in VR with neither network nor host @full', async ({
+test('archery is played in VR without network or host after one visit to a folder host @full', async ({
   browser,
   folder,
 }) => {
@@ -164,7 +164,7 @@ test('nothing is kept of a server, and a study is served by it as ever @full', a
   await served.close();
 });
 
-test('a page in use goes on with the files it began with; the next visit has the newer version, and then its copy too @full', async ({
+test('a page in use keeps its files; the next visit has the newer version and copy @full', async ({
   browser,
   folder,
 }) => {
@@ -210,7 +210,7 @@ test('a page in use goes on with the files it began with; the next visit has the
   await later.context().close();
 });
 
-test('a browser that can store too little shows the page as ever, and keeps no half of it @full', async ({
+test('a browser that can store too little shows the page as ever and keeps no half @full', async ({
   browser,
   folder,
 }) => {

@@ -20,9 +20,7 @@ async function enterRoom(page: Page, room: EmulatedRoom, query = '') {
 
 const passthrough = async (page: Page) => (await probe(page)).passthrough;
 
-test('the mirror stands on the real floor, is moved by a grab and anchored, and the studio is gone', async ({
-  page,
-}) => {
+test('the mirror stands on the real floor, is moved and anchored, and the studio is gone', async ({ page }) => {
   const headset = await enterRoom(page, livingRoom);
   await expect(page.getByRole('button', { name: 'Exit AR' })).toBeVisible();
   await expect.poll(async () => (await passthrough(page))?.anchored).toBe(true);
@@ -82,9 +80,7 @@ test('a picture of the shadow on the real floor, in high quality @nightly', asyn
   await keepPicture(page, 'passthrough-shadow');
 });
 
-test('archery stands in a hall at its true distances; a living room gets a sentence and the usual world @full', async ({
-  page,
-}) => {
+test('archery stands in a hall at its true distances; a living room gets the usual world @full', async ({ page }) => {
   test.setTimeout(120_000);
   const headset = await enterRoom(page, hall, '&play=archery&seed=7');
   await expect.poll(async () => (await passthrough(page))?.showsRoom).toBe(true);

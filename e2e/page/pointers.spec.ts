@@ -84,7 +84,7 @@ test('pinches that aim by the eyes, as on a Vision Pro, use the menu and shoot @
   await expect.poll(async () => (await probe(page)).game).toBeNull();
 });
 
-test('a user without hands is offered the gaze, and uses menu, archery and ball game by it @full', async ({ page }) => {
+test('a user without hands is offered the gaze, and uses menu and both games by it @full', async ({ page }) => {
   const headset = await enter(page);
   for (const side of ['left', 'right'] as const) await headset.setConnected(side, false);
   await frames(page, 150);

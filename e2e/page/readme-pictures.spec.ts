@@ -61,7 +61,7 @@ freshTest('the ball game: a ball in flight between three players @nightly', asyn
   await keepPicture(page, 'readme-ball');
 });
 
-test('motion in: our own actor as a file, a moment of it by two methods with the truth in each @nightly', async ({
+test('the picture of motion capture shows our actor’s file by two methods, each with the truth @nightly', async ({
   page,
 }) => {
   await recordTheActor(page, 4);

@@ -103,7 +103,7 @@ test('a recording in the address is replayed on the range too, whichever of them
   await expect.poll(async () => (await probe(page)).recorder.mode).toBe('replaying');
 });
 
-test('a recording that replays on the range leaves the bow to the mouse, and to the built-in archer, on request @full', async ({
+test('a recording replaying on the range leaves the bow to mouse and built-in archer on request @full', async ({
   page,
 }) => {
   await serveTheActor(page);

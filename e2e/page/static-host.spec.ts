@@ -42,7 +42,7 @@ test.beforeAll(async () => {
 });
 test.afterAll(() => rmSync(out, { recursive: true, force: true }));
 
-test('the licences of the packages in pages, workers and the service worker are next to the page @full', async ({
+test('the licences of the packages in pages, workers and the service worker lie beside the page @full', async ({
   page,
 }) => {
   const text = await (await page.request.get('licences.txt')).text();
@@ -50,7 +50,7 @@ test('the licences of the packages in pages, workers and the service worker are 
     expect(text).toMatch(new RegExp(`^${name} \\d`, 'm'));
 });
 
-test('the page draws the learned body, and the study pages say in a sentence that there is no server @full', async ({
+test('the page draws the learned body, and the study pages say that there is no server @full', async ({
   page,
   address,
 }) => {

@@ -39,7 +39,7 @@ async function inClosedBrowser(origin: string, launch: object, body: (page: Page
   }
 }
 
-test('a browser that stores nothing shows the page, plays with others and takes part in a study @full', async ({
+test('a browser that stores nothing shows the page, plays with others and joins a study @full', async ({
   origin,
   launchOptions,
 }) => {

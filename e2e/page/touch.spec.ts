@@ -134,7 +134,7 @@ const collisions = (page: Page): Promise<string[]> =>
   }, parts);
 
 for (const play of ['studio', 'archery', 'ball'] as const)
-  test(`in no window does a part of the page lie over another or over the body: ${play} @full`, async ({ page }) => {
+  test(`no part of the page lies over another or over the body in any window: ${play} @full`, async ({ page }) => {
     await page.setViewportSize({ width: 1280, height: 720 });
     // An address without an avatar leaves a notice.
     await openOnPhone(page, `&play=${play}&panel=off&actor=off&emulate&seed=5&avatar=`);
@@ -162,9 +162,7 @@ for (const play of ['studio', 'archery', 'ball'] as const)
     }
   });
 
-test('axe finds nothing at the mirror, its controls, in the games and the preview of a study @full', async ({
-  page,
-}) => {
+test('axe finds nothing at the mirror, its controls, the games or the preview of a study @full', async ({ page }) => {
   test.setTimeout(90_000);
   await drawSeldom(page, 3_600_000);
   const found: string[] = [];

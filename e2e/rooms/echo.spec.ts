@@ -20,7 +20,7 @@ test.describe(`echo${loudspeakerInstalled ? '' : ' (PulseAudio is not installed)
   // biome-ignore lint/suspicious/noSkippedTests: reason: a program that the suite's name mentions is missing
   test.skip(!loudspeakerInstalled, 'PulseAudio is not installed: apt-get install pulseaudio');
 
-  test('a voice from a place, played by a loudspeaker into a microphone, comes back 20 dB softer than without cancelling @nightly', async ({
+  test('a placed voice from a loudspeaker returns 20 dB softer in the microphone than without cancelling @nightly', async ({
     serve,
     talker,
   }) => {

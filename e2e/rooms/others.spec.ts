@@ -9,7 +9,7 @@ freshTest.use({ viewport: { width: 900, height: 560 } });
 
 const bar = (page: Page) => page.getByRole('region', { name: 'Play' });
 
-test('a newcomer alone reads rules, what is waited for and a clock that stands after the match @full', async ({
+test('a newcomer alone reads the rules, what is awaited and a clock standing after the match @full', async ({
   page,
 }) => {
   test.setTimeout(180_000);
@@ -128,9 +128,7 @@ test('between a room and the open controls the button that enters VR is read who
   expect(await overlap(page, 'button.enter', '#play .round:not([hidden])')).toBe(false);
 });
 
-test('at 900 × 560 nothing lies over the name, the line below it, the choice of places or Recentre', async ({
-  page,
-}) => {
+test('nothing lies over the name, the line below it, the places or Recentre at 900 × 560', async ({ page }) => {
   await open(page, 'quality=low&estimator=ik&avatar=');
   expect(await overlap(page, '#play', '#masthead p')).toBe(false);
   const { joints } = (await probe(page)).avatar;

@@ -221,7 +221,7 @@ declare global {
   }
 }
 
-test('two people talk and play with a bot, match after match: what pages and server keep does not grow @nightly', async ({
+test('the memory of pages and server stays level through matches of two people and a bot @nightly', async ({
   serve,
   talker,
 }) => {

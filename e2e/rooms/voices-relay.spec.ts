@@ -59,7 +59,7 @@ test.describe(`voices by the relay only${turnProgram === null ? ' (coturn is not
   // biome-ignore lint/suspicious/noSkippedTests: reason: a program that the suite's name mentions is missing
   test.skip(turnProgram === null, 'coturn is not installed: apt-get install coturn');
 
-  test('two people hear each other, and no page learns an address but the relay’s; a pass is renewed in time @nightly', async ({
+  test('two people hear each other through renewed passes, and pages learn no address but the relay’s @nightly', async ({
     serve,
     talker,
   }) => {

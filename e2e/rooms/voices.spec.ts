@@ -16,7 +16,7 @@ import {
   voicesOf,
 } from '../talkers';
 
-test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @realtime', async ({
+test('people hear each other 6 dB softer at twice the distance, nobody muted, hidden or gone @realtime', async ({
   serve,
   talker,
 }) => {
@@ -108,7 +108,7 @@ test('two people hear each other: 6 dB less with twice the distance, nothing of 
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('none');
 });
 
-test('in the headset one of two is muted, then hidden, by the menu; the list at the desk knows @nightly', async ({
+test('one of two people is muted, then hidden, by the headset’s menu; the desk’s list agrees @nightly', async ({
   serve,
   talker,
 }) => {
@@ -217,7 +217,7 @@ function keepMicrophones(): void {
   };
 }
 
-test('a microphone that its device ends is taken again; refused then, a sentence says so and the others see it @realtime', async ({
+test('a microphone that its device ends is taken again; the others see a refusal @realtime', async ({
   serve,
   talker,
 }) => {
@@ -254,7 +254,7 @@ test('a microphone that its device ends is taken again; refused then, a sentence
   expect(await microphones()).toEqual(['ended', 'ended', 'live']);
 });
 
-test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @nightly', async ({
+test('a sentence says what keeps a person from talking: refused, no microphone, no seat, no voices @nightly', async ({
   serve,
   talker,
 }) => {

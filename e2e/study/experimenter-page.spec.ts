@@ -97,7 +97,7 @@ test('a study stays marked as simulated when its first file was wrong @full', as
   await expect(page.getByText('second-try-simulated · ')).toBeVisible();
 });
 
-test('a block of those who play together is voided for all of them, if the experimenter does not want otherwise @full', async ({
+test('a block of people who play together is voided for all unless the experimenter objects @full', async ({
   page,
   origin,
 }) => {
@@ -132,10 +132,7 @@ test('a block of those who play together is voided for all of them, if the exper
   expect([await voided('P01'), await voided(second)]).toEqual([2, 1]);
 });
 
-test('a block that is over by the time the reason is written is not taken for the next one @full', async ({
-  page,
-  origin,
-}) => {
+test('a block that ends while the reason is written is not taken for the next one @full', async ({ page, origin }) => {
   const study = plan('moving-on');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);

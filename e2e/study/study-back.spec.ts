@@ -31,10 +31,7 @@ async function pastTheCode(page: Page): Promise<void> {
   await expect(page.getByLabel(/Age/)).toBeVisible();
 }
 
-test('the back button leads out of a study and the forward button back to where it was, at every kind of step @full', async ({
-  page,
-  origin,
-}) => {
+test('the back and forward buttons leave and restore a study at every kind of step @full', async ({ page, origin }) => {
   test.setTimeout(300_000);
   const plan = shortStudy('back');
   const tasks = plan.tasks.map((task) => ({ ...task, tutorial: { ...task.tutorial, when: 'never' as const } }));

@@ -96,7 +96,7 @@ async function expectBadTracking(page: Page): Promise<void> {
   expect(away.at(-1)).toBeGreaterThan(0.1);
 }
 
-test('every condition is done to the body: method, avatar, mirror, whole or upper body, latency, noise and lost hands @full', async ({
+test('every condition changes the body: method, avatar, mirror, upper body, latency, noise and lost hands @full', async ({
   page,
   origin,
 }) => {

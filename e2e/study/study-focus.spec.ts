@@ -1,7 +1,7 @@
 import { expect } from '../page-fixture';
 import { test } from '../study-participant';
 
-test('the keyboard goes on within the card where another question takes the place of one that was answered @full', async ({
+test('the keyboard stays within the card when another question replaces one that was answered @full', async ({
   page,
   origin,
 }) => {

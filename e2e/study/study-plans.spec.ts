@@ -54,7 +54,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   expect(names).not.toContain('latency-simulated');
 });
 
-test('a plan with participants changes as a new version: the experimenter sees it, and results keep it apart @full', async ({
+test('a plan with participants changes as a new version: the experimenter sees it, results separate it @full', async ({
   page,
   origin,
   complaints,

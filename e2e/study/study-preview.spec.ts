@@ -17,7 +17,7 @@ const kinds = [
   ['tlx', /^mental: /],
 ] as const;
 
-test('a plan is previewed in the headset and at the desk, in both languages, and nothing is recorded @full', async ({
+test('a plan is previewed in headset and at the desk, in both languages, with nothing recorded @full', async ({
   page,
   origin,
 }) => {
@@ -177,10 +177,7 @@ test('mistakes of a plan are named as study:check names them @full', async ({ pa
   await expect(page.getByRole('alert')).toContainText('none.json');
 });
 
-test('the line of a slider without an answer is the same on either side of its middle @full', async ({
-  page,
-  origin,
-}) => {
+test('the line of an unanswered slider is the same on either side of its middle @full', async ({ page, origin }) => {
   await page.goto(`${origin}/preview?plan=/studies/example.json`);
   await page
     .getByRole('button', { name: /^delay: / })

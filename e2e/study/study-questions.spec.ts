@@ -58,7 +58,7 @@ async function rateAtDesk(page: Page, ratings: readonly string[]): Promise<void>
   }
 }
 
-test('questions of every kind are answered alike in the headset and at the desk, read in German @full', async ({
+test('questions of every kind are answered alike in headset and at the desk, in German @full', async ({
   page,
   origin,
 }) => {

@@ -19,7 +19,7 @@ const sessionsInBrowser = (page: Page): Promise<number> =>
       }),
   );
 
-test('a participant withdraws alone, by the code on the page that stands beside it, and keeps a receipt @full', async ({
+test('a participant withdraws alone by the code on the page beside it and keeps a receipt @full', async ({
   page,
   origin,
   complaints,

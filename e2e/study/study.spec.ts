@@ -18,7 +18,7 @@ import {
 } from '../study-participant';
 import { experimenter, shortStudy } from '../study-server';
 
-test('a participant from consent to the second block, with a reload in a questionnaire while the server is away @full', async ({
+test('a participant gets from consent to the second block despite a reload without the server @full', async ({
   page,
   origin,
   complaints,

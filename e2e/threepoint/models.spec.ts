@@ -63,7 +63,7 @@ test('a worker that dies while the network runs: IK takes over and the page says
   await expect(page.getByRole('alert').filter({ hasText: /does not answer/ })).toBeVisible();
 });
 
-test('WebGPU asked for and not there: WASM takes over, the network stays, and the page says so @full', async ({
+test('WASM replaces a WebGPU that is missing; the network stays, and the page says so @full', async ({
   page,
   complaints,
 }) => {

@@ -13,7 +13,7 @@ async function bundled(): Promise<string> {
 
 const length = (v: number[]): number => Math.hypot(...v);
 
-test('a page that expects the device’s body gets one from head and hands, and says that it is emulated @full', async ({
+test('a page that expects the device’s body gets one from head and hands, marked as emulated @full', async ({
   page,
 }) => {
   const code = await bundled();

@@ -7,7 +7,7 @@ test('a cost that is always twice another is twice it, without doubt', () => {
   expect(pairs).toBe(3);
 });
 
-test('a machine that is ten times slower in one pair changes nothing: it is so for both', () => {
+test('a machine that is ten times slower in one pair changes nothing, as both are slower', () => {
   const calm = pairedRatio([1.1, 1.0, 1.2, 1.1], [1, 1, 1, 1]);
   const busy = pairedRatio([1.1, 10, 1.2, 1.1], [1, 10, 1, 1]);
   expect(busy.ratio).toBeCloseTo(calm.ratio, 12);

@@ -72,7 +72,7 @@ describe('the tracking of a checked device', () => {
   });
 });
 
-test('a file is read as it was written; a missing or damaged one is refused by name', () => {
+test('a file is read as written; a missing or damaged one is refused by name', () => {
   const folder = directoryWith({});
   const file = join(folder, 'quest.json');
   writeFileSync(file, writeHeadsetReport(report));

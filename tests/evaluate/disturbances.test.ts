@@ -34,7 +34,7 @@ describe('losses', () => {
     );
   });
 
-  test('come at the same times for the same clip, at others for another, and take both hands', () => {
+  test('repeat their times for the same clip, differ for another, and take both hands', () => {
     const of = (clip: string) => scheduleLosses(3000, 60, lasting(0.5), seedOf(clip));
     expect(of('05_01')).toEqual(of('05_01'));
     expect(of('05_01')).not.toEqual(of('05_02'));
@@ -93,7 +93,7 @@ describe('noise', () => {
 describe('offsets', () => {
   const offset = { x: 0.01, y: -0.02, z: 0.03 };
 
-  test('of the headset move the headset alone, along its own axes', () => {
+  test('headset offsets move the headset alone, along its own axes', () => {
     const frames = recordedMotion(2, 30);
     offsetTrackers(frames, 'headset', offset).forEach(({ frame }, row) => {
       const before = frames[row]!.frame;
@@ -104,7 +104,7 @@ describe('offsets', () => {
     });
   });
 
-  test('of the grips move both hands, mirrored, and no hand that is not there', () => {
+  test('grip offsets move both hands, mirrored, and no hand that is not there', () => {
     const frames = loseHands(recordedMotion(2, 30), [{ side: 'right', start: 3, end: 5 }]);
     expect(frames.filter(({ frame }) => !frame.rightHand)).toHaveLength(2);
     offsetTrackers(frames, 'grips', offset).forEach(({ frame }, row) => {

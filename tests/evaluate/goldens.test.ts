@@ -81,7 +81,7 @@ describe('a situation of the goldens', () => {
   });
 });
 
-test('a joint that is moved by 40 cm in one frame is the largest step, with its clip and second', async () => {
+test('a joint moved by 40 cm is the largest step, with its clip and second', async () => {
   const of = still();
   const driven = (await driveIk(of)).map((frame, row) => {
     const { chest } = frame.joints;
@@ -114,7 +114,7 @@ describe('comparing with what was frozen', () => {
     expect(lacking.map(({ row, figure }) => `${row} ${figure}`)).toEqual(['ik stepCm', 'learned jerkRatio']);
   });
 
-  test('a joint that lies 5 mm elsewhere in one frame is named with its piece and second', async () => {
+  test('a joint displaced by 5 mm in one frame is named with its piece and second', async () => {
     const driven = await driveIk(still());
     const times = still().frames.map(({ frame }) => frame.time);
     const moved = driven.map((frame, row) => {

@@ -46,7 +46,7 @@ const movedBy = (body: readonly GaitPoints[], x: number, y: number): GaitPoints[
 test.each([
   ['stands', stood],
   ['walks', walked],
-])('legs that are the truth of a person who %s have no errors and skate as little as it does', (_, body) => {
+])('legs that are the truth of a person who %s have no errors and its skating', (_, body) => {
   const report = reportOf(body, body);
   expect([report.pelvisCm, report.kneeCm, report.footCm]).toEqual([0, 0, 0]);
   expect(report.skateCmS).toBe(report.trueSkateCmS);

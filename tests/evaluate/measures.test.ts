@@ -25,14 +25,14 @@ describe('measures', () => {
   const none = { x: 0, y: 0, z: 0 };
   const driven = () => drive('ik', person, null, recordedMotion(21, 120));
 
-  test('of the truth itself are nothing, with its own jerk', async () => {
+  test('the truth itself has no errors and its own jerk', async () => {
     const { mpjpeCm, mseCm2, maeCm, swivelDeg, jerkRatio } = reportOf(estimate(await driven(), () => none));
     expect([mpjpeCm.mean, mpjpeCm.p95, mseCm2, maeCm]).toEqual([0, 0, 0, 0]);
     expect(swivelDeg).toBeCloseTo(0, 3);
     expect(jerkRatio).toBe(1);
   });
 
-  test('of one joint moved by 3, 4 and 12 cm are its own, and a sixth of that over all', async () => {
+  test('one joint moved by 3, 4 and 12 cm has those errors, and a sixth overall', async () => {
     const moved = { x: 0.03, y: 0.04, z: 0.12 };
     const result = reportOf(estimate(await driven(), (joint) => (joint === 'hips' ? moved : none)));
     expect(result.joints.pelvis.mean).toBeCloseTo(13, 6);
@@ -45,7 +45,7 @@ describe('measures', () => {
     expect(result.jointMseCm2.leftElbow).toBe(0);
   });
 
-  test('of two clips merged are those of both, weighted by their frames', async () => {
+  test('two merged clips give the measures of both, weighted by their frames', async () => {
     const frames = await driven();
     const [short, long] = [frames.slice(0, 20), frames.slice(20)];
     const [a, b] = [emptyMeasures(), emptyMeasures()];

@@ -31,7 +31,7 @@ test('wrists beyond a short arm are counted, with how far they are at most', () 
   expect(reachReport(reach).furthestCm).toBeCloseTo(100 * Math.max(...far), 1);
 });
 
-test('who is often out of reach is named', () => {
+test('a person who is often out of reach is named', () => {
   const people = new Map([
     ['anna', reachOf({ ...person, armSpan: 1.9 })],
     ['bert', reachOf({ ...person, armSpan: 1.1 })],

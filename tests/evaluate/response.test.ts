@@ -10,7 +10,7 @@ const drawing = (filter: (hand: Vec3, frame: TrackingFrame) => Vec3): Driver => 
   reset: () => undefined,
 });
 
-test('a joint that is drawn three frames late is 50 ms late at any frequency, and goes as far', async () => {
+test('a joint that is drawn three frames late is 50 ms late at any frequency', async () => {
   const late = () => {
     const past: Vec3[] = [];
     return drawing((hand) => {
@@ -46,7 +46,7 @@ test('a joint that does not follow the point has no lag', async () => {
   expect(response?.hand).toBeNull();
 });
 
-test('a joint on the tracker of a hand trembles with its noise: 0.15 mm by axis, from frame to frame', async () => {
+test('a joint on a hand’s tracker trembles with its noise: 0.15 mm by axis between frames', async () => {
   const { hand } = await measureTremble(
     drawing((position) => position),
     ['hand'],

@@ -15,7 +15,7 @@ import {
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { person, recordedMotion } from './recorded-motion';
 
-describe('what a loss costs', () => {
+describe('the cost of a loss', () => {
   const frames = recordedMotion(11, 240);
   const losses = [{ side: 'right', start: 60, end: 180 }] as const;
   const measured = async (): Promise<readonly [readonly MeasuredFrame[], readonly MeasuredFrame[]]> => [
@@ -34,7 +34,7 @@ describe('what a loss costs', () => {
     expect(atLoss.stepCm).toBeGreaterThan(0);
   });
 
-  test('is most in the elbow of that arm, and over half a second later it is less', async () => {
+  test('is most in the elbow of that arm, and less over half a second later', async () => {
     const [lossy, seen] = await measured();
     const tally = emptyLossTally();
     addLosses(tally, { lossy, seen }, losses, 60);
@@ -45,7 +45,7 @@ describe('what a loss costs', () => {
     expect(after.elbowCm - after.elbowSeenCm).toBeLessThan(during.elbowCm - during.elbowSeenCm);
   });
 
-  test('is a jump where a joint is moved by hand in one frame, by name and length', async () => {
+  test('is a named and measured jump where a joint is moved in one frame', async () => {
     const [, seen] = await measured();
     const jumping = seen.map((frame, row) =>
       row < 100 ? frame : { ...frame, joints: { ...frame.joints, neck: { ...frame.joints.neck!, y: 5 } } },

@@ -39,7 +39,7 @@ function throttled(secret = 'the right one') {
 }
 
 describe('guesses from one address', () => {
-  test('that could not be looked at count for nothing: a right code waits for no one once the fault is over', async () => {
+  test('unchecked guesses count for nothing: a right code waits for no one after the fault', async () => {
     const limits = createAuthThrottle(() => undefined);
     const address = addressFrom('203.0.113.7');
     const guess = { what: 'withdrawal code', address, of: 'paper', secret: 'the right one' } as const;
@@ -62,7 +62,7 @@ describe('guesses from one address', () => {
     expect(delays).toEqual([1, 2, 4, 8, 16, 32, 64]);
   });
 
-  test('do not wait longer because of guesses made too early: what was not looked at does not count', async () => {
+  test('do not wait longer because of early guesses, which nobody checked', async () => {
     const { guess } = throttled();
     for (let i = 0; i < 6; i++) await guess(`wrong ${i}`);
     for (let i = 0; i < 500; i++) expect(await guess(`more ${i}`)).toBe(1);
@@ -77,14 +77,14 @@ describe('guesses from one address', () => {
     expect(answers.filter((answer) => answer === false)).toHaveLength(6);
   });
 
-  test('that are right are forgotten as guesses', async () => {
+  test('right ones are forgotten as guesses', async () => {
     const { guess } = throttled();
     for (let i = 0; i < 5; i++) await guess(`wrong ${i}`);
     expect(await guess('the right one')).toBe(true);
     for (let i = 5; i < 10; i++) expect(await guess(`wrong ${i}`)).toBe(false);
   });
 
-  test('that repeat themselves are one guess: a page whose place was released goes on asking', async () => {
+  test('repeated ones are one guess: a page whose place was released goes on asking', async () => {
     const { guess, lookedAt } = throttled();
     for (let i = 0; i < 100; i++) expect(await guess('the old token')).toBe(false);
     expect(lookedAt()).toBe(1);

@@ -154,7 +154,7 @@ describe('a forwarded value that is no address', () => {
     }
   });
 
-  test('is refused by the throttle of secrets, and does not keep a participant from their own place', async () => {
+  test('is refused by the throttle of secrets and keeps no participant from their own place', async () => {
     const { ask, claim } = await servedPaperStudy();
     const token = await claim('P01');
     const wrong = await ask('GET', '/api/studies', { token: 'wrong', from: 'unknown' });

@@ -86,7 +86,7 @@ describe('a body that is not wanted', () => {
 });
 
 describe('connections', () => {
-  test('a flood of silent ones from one address is counted, bounded and over after the handshake’s deadline; others do not notice', {
+  test('a flood of silent ones from one address is counted, bounded and over after the deadline', {
     tags: ['full'],
   }, async () => {
     const flood = isNightly ? 1500 : 200;
@@ -137,7 +137,7 @@ describe('connections', () => {
     });
   });
 
-  test('behind a proxy that is believed, WebSockets are counted by the address it tells; otherwise what it says is nothing', async () => {
+  test('WebSockets behind a trusted proxy are counted by the address it gives, and no other proxy’s', async () => {
     const limit = 8;
     const proxied = await relayOfTest({
       THREEPOINT_CONNECTIONS_PER_ADDRESS: String(limit),
@@ -170,7 +170,7 @@ describe('connections', () => {
   });
 });
 
-test('a connection that does not say what it wants is ended at the deadline: told so before its request, and as a WebSocket that joins nothing', {
+test('a connection that does not state its purpose is ended at the deadline, over any protocol', {
   tags: ['full'],
 }, async () => {
   const relay = await relayOfTest();

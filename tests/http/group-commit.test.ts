@@ -31,7 +31,7 @@ function heldDisk() {
 const order = (log: string[], name: string, flushed: Promise<void>) => flushed.then(() => void log.push(name));
 
 describe('flushes for many at once', () => {
-  test('who asks while one is under way waits for the next, which all of them share', async () => {
+  test('a caller during a flush waits for the next one, which all such callers share', async () => {
     const disk = heldDisk();
     const shared = new GroupCommit(disk.flush);
     const log: string[] = [];
@@ -48,7 +48,7 @@ describe('flushes for many at once', () => {
     expect(disk.started).toBe(2);
   });
 
-  test('who asks when none is under way waits for one of their own', async () => {
+  test('a caller while no flush is under way waits for its own', async () => {
     const disk = heldDisk();
     const shared = new GroupCommit(disk.flush);
     for (let count = 1; count <= 3; count++) {

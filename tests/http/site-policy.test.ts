@@ -63,11 +63,11 @@ describe('the page behind a request', () => {
     }
   });
 
-  test('under development is asked for through the server of the sources, on a port of its own', () => {
+  test('is requested under development through the server of the sources, on its own port', () => {
     expect(policy().checkOrigin(from('http://localhost:5173', 'localhost:5173'))).toBeNull();
   });
 
-  test('behind a proxy that ends TLS has the origin that the proxy tells, or that the server was told', () => {
+  test('has the origin that a TLS proxy or the server’s configuration gives', () => {
     const told = { 'x-forwarded-proto': 'https' };
     expect(policy({ trustProxy: true }).checkOrigin(from('https://a.example', 'a.example', told))).toBeNull();
     expect(policy().checkOrigin(from('https://a.example', 'a.example', told))).toMatchObject({ status: 403 });

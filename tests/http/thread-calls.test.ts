@@ -34,7 +34,7 @@ test('an error of a call comes to its caller, and the thread goes on', async () 
   expect(await calls.call('count', [])).toBe(1);
 });
 
-test('a thread that hangs answers no one in time; what nobody waits for any more keeps its place and is left undone', async () => {
+test('a hanging thread answers no one in time; abandoned calls keep their place and stay undone', async () => {
   const { calls, memory, release } = started({ maxCalls: 3, deadlineMs: 300 });
   expect(await calls.call('count', [], { patient: true })).toBe(1);
   const hung = calls.call('hang', [memory], { patient: true });

@@ -33,7 +33,7 @@ describe('the port', () => {
     expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');
   });
 
-  test('where none is free, the server says so and its process ends', async () => {
+  test('a server that finds none free says so, and its process ends', async () => {
     const other = createServer().listen(65_535, '127.0.0.1');
     // A port that another program has is taken as well.
     await Promise.race([once(other, 'listening'), once(other, 'error')]);
@@ -61,7 +61,7 @@ describe('an exception', () => {
   };
   const offer = { connection: 'Upgrade', upgrade: 'h2c' };
 
-  test('in the listener of requests gets 500, its error goes to the log, and the server goes on', async () => {
+  test('in the listener of requests gets 500 and a log entry, and the server goes on', async () => {
     const faults: unknown[] = [];
     const server = await serve(fail, { host: '127.0.0.1', port: 0, onFault: (error) => faults.push(error) });
     onTestFinished(() => server.close());
@@ -73,7 +73,7 @@ describe('an exception', () => {
     expect(faults).toEqual([new Error('a fault of this test'), new Error('a fault of this test')]);
   });
 
-  test('in the listener of upgrades closes the connection, its error goes to the log, and the server goes on', async () => {
+  test('in the listener of upgrades closes the connection, is logged, and leaves the server running', async () => {
     const faults: unknown[] = [];
     const onFault = (error: unknown) => faults.push(error);
     const server = await serve(hello, { host: '127.0.0.1', port: 0, upgrade: fail, onFault });

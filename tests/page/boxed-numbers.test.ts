@@ -5,7 +5,7 @@ import { expect, test } from 'vitest';
 
 const script = fileURLToPath(new URL('./count-boxed-numbers.ts', import.meta.url));
 
-test('vectors, quaternions and impaired frames that are written over and over leave next to nothing to the collector', {
+test('vectors, quaternions and impaired frames that are overwritten repeatedly leave the collector next to nothing', {
   tags: ['full'],
 }, async () => {
   // The compiler works in the program's own thread: how soon it is done does not depend on how busy the machine is.

@@ -35,7 +35,7 @@ function archerBehindMenu(pressure: number) {
   return { bow, meanwhile, cues, shots: actions.filter((type) => type === 'release').length };
 }
 
-test('behind a menu the arrow waits on the string; the hand that still holds it goes on', () => {
+test('the arrow waits on the string behind a menu; the hand that still holds it continues', () => {
   const { bow, meanwhile, shots } = archerBehindMenu(1);
   expect(meanwhile).toMatchObject({ stage: 'held', draw: 0.5 });
   expect(bow?.stage).not.toBe('empty');

@@ -161,7 +161,7 @@ function goesOn(step: number): void {
     expect(faults).toEqual([]);
   });
 
-  test('the body moves on in its own time: no hand leaps further than a frame moves it', () => {
+  test('the body moves on in its own time: no hand leaps further than a frame’s motion', () => {
     let last: { readonly pose: AvatarPose; readonly time: number } | null = null;
     let furthest = 0;
     const { run, leap, faults } = page({

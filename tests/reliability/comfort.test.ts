@@ -4,7 +4,7 @@ import { Mirror } from 'threepoint/three';
 import { expect, test } from 'vitest';
 import { createVignette } from '../../src/page/scene/vignette';
 
-test('the edges are dark at a turn and clear again in under half a second, round the eyes wherever they are', () => {
+test('the edges darken at a turn and clear within half a second, centred on the eyes', () => {
   const vignette = createVignette();
   const eyes = { position: vec3(1, 1.6, 2), orientation: identity };
   vignette.show(0, eyes);
@@ -22,7 +22,7 @@ test('the edges are dark at a turn and clear again in under half a second, round
   expect(vignette.darkness).toBe(0);
 });
 
-test('the dark edges are before the eyes alone: a mirror shows no black ball for a head', () => {
+test('the dark edges lie before the eyes alone, and no mirror shows them as a ball', () => {
   const { object } = createVignette();
   const glass = new Mirror().object.children.find((child) => 'getReflectionCamera' in child) as unknown as {
     getReflectionCamera(eye: PerspectiveCamera): PerspectiveCamera;

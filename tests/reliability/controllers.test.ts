@@ -3,7 +3,7 @@ import { bowman } from '../games/archery/bowman';
 import { ballThrower } from './ball-thrower';
 import { reportFigures } from './report-figures';
 
-test('a controller that holds a ball goes off: back to the rack; on again: the hand is empty', () => {
+test('a controller that goes off drops its ball to the rack and returns with nothing', () => {
   const thrower = ballThrower().carry(1);
   thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, null, 1);
   expect(thrower.held.right).toBeNull();
@@ -13,7 +13,7 @@ test('a controller that holds a ball goes off: back to the rack; on again: the h
   expect(thrower.actions).toEqual(['grab', 'drop']);
 });
 
-test('off for a moment and on again as another device of the same hand: what it held is held', () => {
+test('a held thing stays held when its hand’s device changes after a moment off', () => {
   const thrower = ballThrower().carry(1);
   thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, null, 0.2);
   thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, { fist: thrower.chest, trigger: 1, device: 3 }, 0.5);
@@ -26,7 +26,7 @@ test('both off: nothing stays in a hand that is gone', () => {
   expect(thrower.state.balls[0]).toEqual({ on: 'rack' });
 });
 
-test('the two change sides while one holds a ball: it is let go of, never thrown, wherever the hands are', () => {
+test('a held ball is released, never thrown, when the two controllers change sides', () => {
   let thrown = 0;
   let stuck = 0;
   for (const distance of [0.05, 0.2, 0.5, 1]) {
@@ -44,7 +44,7 @@ test('the two change sides while one holds a ball: it is let go of, never thrown
   reportFigures('controllers', { 'balls stuck': `${stuck} of 8`, 'balls thrown': `${thrown} of 8` });
 });
 
-test('a drawn bow: the string hand becomes another device, the arrow goes back, the bow stays by handedness', () => {
+test('a drawn bow whose string hand becomes another device loses its arrow and keeps its side', () => {
   for (const bowSide of ['left', 'right'] as const) {
     const archer = bowman({ bowSide });
     const string = bowSide === 'left' ? 'right' : 'left';

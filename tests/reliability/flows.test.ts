@@ -84,7 +84,7 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
   return { state, thrown };
 }
 
-test('the ball game: each person throws and catches, seated too; with one hand it is finished as well', () => {
+test('the ball game is finished with one hand too; each person throws and catches, seated too', () => {
   let finished = 0;
   let played = 0;
   const figures: Record<string, string> = {};

@@ -29,7 +29,7 @@ function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, s
   };
 }
 
-test('a headset taken off for 20 s: others see “away” at once when told, within 3 s when not; back, play resumes', {
+test('a headset taken off for 20 s is “away” to others within 3 s; play resumes', {
   tags: ['full'],
 }, () => {
   const rows: Record<string, string> = {};

@@ -12,7 +12,7 @@ const heap = (): number => {
   return process.memoryUsage().heapUsed / 2 ** 20;
 };
 
-test('what plays and estimates keeps nothing of the rounds that are over', { tags: ['full'] }, () => {
+test('a program that plays and estimates keeps nothing of the rounds that are over', { tags: ['full'] }, () => {
   const minutes = isNightly ? 20 : 4;
   let seed = 1;
   const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;

@@ -35,7 +35,7 @@ function spoiled(
   };
 }
 
-test('a wrist goes to rest and comes back without a jump, whichever hand, however lost, by each method that draws a body', {
+test('a lost wrist rests and returns without a jump, either hand, by each method that draws', {
   tags: ['full'],
 }, async () => {
   let worst = 0;

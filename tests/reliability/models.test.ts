@@ -24,7 +24,7 @@ const faults: Readonly<Record<string, (output: Float32Array) => Promise<Float32A
   rejects: () => Promise.reject(new Error('out of memory')),
 };
 
-test('a network that breaks while it runs: no bone is ever NaN, the fault is known in the frame that asks it', {
+test('a network that breaks while it runs makes no bone NaN and is known that frame', {
   tags: ['full'],
 }, async () => {
   let bones = 0;

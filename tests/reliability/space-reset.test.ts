@@ -50,7 +50,7 @@ function holdAlike(from: PoseEstimator, to: PoseEstimator): void {
   }
 }
 
-test('a space that is reset leaves no body on the way: the first frame is drawn as of a person who has just come', async () => {
+test('a reset space leaves no body on the way: the first frame is a newcomer’s', async () => {
   const skeleton = skeletonFromCalibration(defaultCalibration);
   let worst = 0;
   let between = 0;

@@ -36,7 +36,7 @@ const manifest = {
   'withdraw.html': { file: 'assets/withdraw-9.js', imports: ['_shared'] },
 };
 
-test('what the page may ever load is kept, and nothing of a server, of other pages or of WebGPU', () => {
+test('the kept files are what the page may load, without server, other pages and WebGPU', () => {
   expect(keptFiles(directoryWith(built), manifest).map(({ url }) => url)).toEqual([
     'assets/archery-2.js',
     'assets/main-1.js',
@@ -58,7 +58,7 @@ test('each is known by its content, not by its name', () => {
   expect(after.find(({ url }) => url === 'assets/main-1.js')?.revision).toBeNull();
 });
 
-test('the manifest of the installed page speaks of its own folder, and its icons have the sizes that it says', () => {
+test('the manifest of the installed page names its own folder, and icons have their stated sizes', () => {
   const text = (path: string) => readFileSync(new URL(`../../public/${path}`, import.meta.url));
   const app = JSON.parse(text('manifest.webmanifest').toString()) as {
     start_url: string;

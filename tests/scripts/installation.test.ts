@@ -48,7 +48,7 @@ test('a linked node_modules is left alone: npm ci would empty the folder it lead
   expect(readFileSync(join(owner, 'node_modules/.package-lock.json'), 'utf8')).toBe(before);
 });
 
-test('the lock file names every platform’s packages, or npm ci would refuse it on that platform and on this one', () => {
+test('the lock file names every platform’s packages, so that npm ci accepts it everywhere', () => {
   const { packages } = JSON.parse(readFileSync('package-lock.json', 'utf8')) as { packages: Packages };
   const unnamed = Object.entries(packages).flatMap(([path, { optionalDependencies }]) =>
     Object.keys(optionalDependencies ?? {}).filter(
@@ -58,7 +58,7 @@ test('the lock file names every platform’s packages, or npm ci would refuse it
   expect(unnamed).toEqual([]);
 });
 
-test('what npm test loads before it installs asks for no package', () => {
+test('the start of npm test asks for no package before it installs', () => {
   const directory = directoryWith({});
   cpSync('scripts', join(directory, 'scripts'), { recursive: true });
   symlinkSync(directoryWith({}), join(directory, 'node_modules'), 'junction');

@@ -96,7 +96,7 @@ describe('npm run tool -- motion', () => {
     expect(readdirSync(folder)).toEqual(['mine.json']);
   });
 
-  test('that is given up leaves what was there', async () => {
+  test('leaves the earlier file when it is given up', async () => {
     const { folder, file } = folderWith(20);
     const out = join(folder, 'mine.bvh');
     writeFileSync(out, 'of yesterday');
@@ -108,7 +108,7 @@ describe('npm run tool -- motion', () => {
     expect(readFileSync(out, 'utf8')).toBe('of yesterday');
   });
 
-  test('that fails half-way through a file leaves what was there', () => {
+  test('leaves the earlier file when it fails half-way', () => {
     const { folder } = folderWith(1);
     const out = join(folder, 'mine.csv');
     writeFileSync(out, 'of yesterday');
@@ -122,7 +122,7 @@ describe('npm run tool -- motion', () => {
   });
 });
 
-test('a file that needs more memory than its process has is refused, and the next one is read', async () => {
+test('a file that needs more memory than its process is refused; the next is read', async () => {
   using reader = new FileReaderProcess(100);
   const bytes = (text: string) => new TextEncoder().encode(text).buffer as ArrayBuffer;
   const large = { name: 'large.gltf', bytes: bytes(`[${'{"a":[]},'.repeat(3e6)}0]`) };

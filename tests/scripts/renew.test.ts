@@ -33,7 +33,7 @@ describe('the steps', () => {
     expect(renew('--list', '--from', 'goldens').stdout).toMatch(/^goldens: .+\n {2}npm run tool -- goldens .+\n$/);
   });
 
-  test.each([['--from'], ['--only']])('that do not exist are refused (%s)', (option) => {
+  test.each([['--from'], ['--only']])('an unknown one is refused (%s)', (option) => {
     const { stdout, stderr, status } = renew('--mocap', 'motion', option, 'gate');
     expect(stderr.trim()).toBe(`renew: there is no step “gate”; there are ${names.join(', ')}`);
     expect({ stdout, status }).toEqual({ stdout: '', status: 1 });
@@ -68,7 +68,7 @@ describe('the command line of each step', () => {
 });
 
 describe('a run', () => {
-  test('ends with the step that fails, in the folder that was meant, and says how to go on', () => {
+  test('ends with the failing step, in the intended folder, and says how to go on', () => {
     const folder = directoryWith();
     const { stdout, stderr, status } = node(
       [join(root, 'scripts/renew.mjs'), '--mocap', 'none', '--from', 'goldens'],

@@ -44,7 +44,7 @@ describe('a program that is run', () => {
     await expect.poll(() => answers(port)).toBe(false);
   });
 
-  test('that is not installed: null when asked quietly, an error otherwise', async () => {
+  test('a missing program is null when run quietly, an error otherwise', async () => {
     expect(await runQuietly('no-such-program-here', [])).toBeNull();
     await expect(run('no-such-program-here', [])).rejects.toThrow(/ENOENT/);
   });

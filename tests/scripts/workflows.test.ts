@@ -12,7 +12,7 @@ test.each(files)('actionlint finds no fault with %s', async (file) => {
 });
 
 describe.each([...files, '.github/actions/setup/action.yml'])('%s', (file) => {
-  test('uses actions by the hash of a commit, and may only read the repository unless a job says more', () => {
+  test('uses actions by commit hash and may only read the repository unless a job says more', () => {
     const uses = text(file).match(/^.*\buses: (?!\.\/).*$/gm);
     expect(uses?.length).toBeGreaterThan(0);
     for (const line of uses ?? []) expect(line).toMatch(/uses: [\w-]+\/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+$/);

@@ -399,7 +399,7 @@ describe('the terms of a room', () => {
     }
   });
 
-  test('signed by a release that allowed more open no room, and are left out when the pass is renewed', async () => {
+  test('signed by a more generous release open no room, and are dropped from renewed passes', async () => {
     const room = 'before-the-update';
     const old = await tokens.sign({
       ...{ identity: randomUUID(), room, kind: ballKind, assigned: null },
@@ -416,7 +416,7 @@ describe('the terms of a room', () => {
     await rawGuest(relay.url, room, token);
   });
 
-  test('of a stranger lead nobody there by matchmaking, and stop no clock', async () => {
+  test('a stranger’s terms lead nobody there by matchmaking, and stop no clock', async () => {
     const findRoom = async () => (await (await post('match', {})).json()) as { room: string; found: boolean };
     const enter = async (room: string, terms?: object) => {
       const { token } = (await (await post('token', { room, terms })).json()) as { token: string };

@@ -38,7 +38,7 @@ async function answerTo(port: number, bytes: Buffer): Promise<string> {
 /** Empty lines alone are no request: nothing need be answered. */
 const asks = (bytes: Buffer): boolean => /[^\r\n]/.test(bytes.toString('latin1'));
 
-test('every request line, method, header and body gets an answer from the server, and it lives on', {
+test('every request line, method, header and body gets an answer, and the server lives on', {
   tags: ['full'],
   timeout: 1_800_000,
 }, async () => {

@@ -9,7 +9,7 @@ import { ask } from './running-server';
 import { forkServer } from './server-child';
 import { experimenterToken } from './started-server';
 
-test('the built server serves the page and rooms, stores studies in their thread, and exports from a process', async () => {
+test('the built server serves page, rooms and studies in their thread, and exports from a process', async () => {
   const { url } = await forkServer();
   expect(await (await fetch(url)).text()).toContain('<title>');
   await guestOfTest(url, 'meadow');

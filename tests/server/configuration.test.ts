@@ -6,7 +6,7 @@ import { startupMessage } from '../../server/startup-message';
 const noStudies = { studyDirectory: null, experimenterToken: null };
 
 describe('the configuration', () => {
-  test('studies lie where the command line says, else where the environment does; the token is never an argument', () => {
+  test('studies lie at the command line’s path, else the environment’s; no argument is the token', () => {
     const environment = { STUDIES: '/var/studies', EXPERIMENTER_TOKEN: 'kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA+' };
     expect(configurationFrom([], environment)).toMatchObject({
       studyDirectory: '/var/studies',

@@ -92,7 +92,7 @@ function expectAnswers(text: string, pipeline: Pipeline): number {
   return answers.length;
 }
 
-test('every request of a pipeline gets its own answer in its turn, and the built server lives on', {
+test('every request of a pipeline gets its answer in turn, and the built server lives on', {
   tags: ['full'],
   timeout: 7_200_000,
 }, async () => {

@@ -20,7 +20,7 @@ const filesIn = (directory: string): Buffer[] =>
 /** Fields that only a tracked pose or a body has. */
 const motionFields = /"(leftHand|rightHand|localRotations|hipsPosition|orientation|frames)"\s*:\s*[[{]/;
 
-test('a match over sockets and a study without consent to motion leave no motion on the disk', {
+test('a match over sockets and a study without motion consent leave no motion on disk', {
   tags: ['full'],
 }, async () => {
   const server = await forkServer();
@@ -81,7 +81,7 @@ test('a match over sockets and a study without consent to motion leave no motion
   });
 });
 
-test('nothing that carries poses can write to a disk: relay, sockets, rooms and lobby know no file and no database', () => {
+test('no code that carries poses knows a file or a database, so none writes to disk', () => {
   const rooms = new URL('../../src/rooms/', import.meta.url);
   const carriers = ['room', 'protocol', 'server'].flatMap((folder) =>
     readdirSync(new URL(`${folder}/`, rooms), { encoding: 'utf8', recursive: true })

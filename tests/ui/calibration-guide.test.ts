@@ -45,7 +45,7 @@ describe('the guided calibration', () => {
     ]);
   });
 
-  test('what the person does during the countdown does not count', () => {
+  test('motion of the person during the countdown does not count', () => {
     const { guide, measured, run } = guided();
     guide.start();
     run(0, 2.9, 0.2);

@@ -40,7 +40,7 @@ function dropped(size: number) {
 }
 
 describe('a file of this device', () => {
-  test('of 300 MB is refused before a byte of it is read', async () => {
+  test('is refused at 300 MB before a byte of it is read', async () => {
     const { file, reads } = dropped(300 * 2 ** 20);
     await expect(readLimited(file, { what: 'a recording', megabytes: 100 })).rejects.toThrow(
       'walk.json: larger than 100 MB, the limit for a recording',
@@ -49,14 +49,14 @@ describe('a file of this device', () => {
     reportFigures('bad-input', { 'bytes read of 300 MB': 0 });
   });
 
-  test('as large as it may be is read', async () => {
+  test('is read at its greatest allowed size', async () => {
     const { file, reads } = dropped(2 ** 20);
     expect((await readLimited(file, recording)).byteLength).toBe(2);
     expect(reads()).toBe(1);
   });
 });
 
-describe('what an address answers', () => {
+describe('the answer of an address', () => {
   test('comes whole, with the share that has come', async () => {
     const url = await servedAt((_, response) =>
       response.setHeader('content-length', 300_000).end(Buffer.alloc(300_000, 7)),
@@ -89,13 +89,13 @@ describe('what an address answers', () => {
       },
     ],
   ] satisfies [string, string | RegExp, RequestListener][])(
-    '%s: refused in a sentence',
+    'is refused in a sentence: %s',
     async (_, sentence, answer) => {
       await expect(readLimited(await servedAt(answer), recording)).rejects.toThrow(sentence);
     },
   );
 
-  test('without end is given up as soon as it is more than it may be', async () => {
+  test('is abandoned as soon as it is larger than it may be', async () => {
     let sent = 0;
     let ended = false;
     const url = await servedAt((_, response) => {
@@ -113,7 +113,7 @@ describe('what an address answers', () => {
     expect(sent).toBeLessThan(64 * 2 ** 20);
   });
 
-  test('from a server that is not there: a sentence', async () => {
+  test('is a sentence where the server is missing', async () => {
     await expect(readLimited('http://127.0.0.1:9/walk.json', recording)).rejects.toThrow(
       /^walk\.json: could not be downloaded \(/,
     );

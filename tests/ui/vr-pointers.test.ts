@@ -19,7 +19,7 @@ function drawn(...shown: readonly MutablePointer[]) {
   return pointers.objects.children.map((each) => each.visible && each.children.map(({ visible }) => visible));
 }
 
-test('hands draw a line to what they point at; eyes and pinches that aim by them draw its end alone', () => {
+test('hands draw a line to their target; eyes and their pinches draw its end alone', () => {
   const shown = drawn(pointing('controller'), pointing('hand'), pointing('transient'), pointing('gaze'));
   expect(shown).toEqual([[true, true, false], [true, true, false], [false, true, false], [false, true, false], false]);
 });

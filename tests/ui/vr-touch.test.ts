@@ -29,7 +29,7 @@ function aiming(x: number, y: number, pressed = false): MutablePointer {
   return pointer;
 }
 
-test('a ray presses the target that it meets, at its distance; beside the sheet and from behind it meets none', () => {
+test('a ray presses the target that it meets, and none beside the sheet or from behind', () => {
   const touch = sheet();
   const pointer = aiming(0.15, 0.05, true);
   const { pointedAt, pressed } = touch.follow([pointer, aiming(0.15, 0, true)], targets);

@@ -8,7 +8,7 @@ import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { highShot, shotAt, start, tickSeconds, told } from './shots';
 
-describe('what no archer can do', () => {
+describe('the limits of an archer', () => {
   const shot = (state: ArcheryState) => shotAt(state, 1) as Extract<ArcheryAction, { type: 'release' }>;
   const far = addScaled(vec3(0, 1.6, 0), vec3(0, 0, -1), 3);
 
@@ -49,7 +49,7 @@ describe('what no archer can do', () => {
     expect(match.state.arrowsLeft).toBe(3);
   });
 
-  test('a sixth arrow', () => {
+  test('a sixth arrow is refused', () => {
     const match = told(start());
     for (let i = 0; i < 4; i++) match.shoot(0);
     // The fifth is shot so high that it still flies.
@@ -60,7 +60,7 @@ describe('what no archer can do', () => {
     expect(match.state.phase).toBe('running');
   });
 
-  test('moves with the head: the same hand is in reach when the head is there', () => {
+  test('a hand is in reach when the head is there', () => {
     const match = told(start());
     const there: ArcheryAction = { ...shot(match.state), position: addScaled(far, vec3(0, 0, -1), arrowLength) };
     match.step({ type: 'stand', head: far }, { ...there, direction: vec3(0, 0, -1) });

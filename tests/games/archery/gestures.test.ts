@@ -102,7 +102,7 @@ describe('a shot', () => {
 });
 
 describe('pressing', () => {
-  test('begins at 0.6 and ends below 0.4, so that a trembling finger neither nocks twice nor shoots', () => {
+  test('begins at 0.6 and ends below 0.4, so that trembling fingers press once', () => {
     const archer = bowman();
     archer.hold({}, 0.1, 0).hold({}, 0.05, 0.55);
     expect(archer.said).toEqual(['near-string']);
@@ -113,7 +113,7 @@ describe('pressing', () => {
     expect(archer.releases).toHaveLength(1);
   });
 
-  test('what is down already when a hand comes into sight was not pressed then', () => {
+  test('a button that is down when a hand comes into sight was not pressed then', () => {
     const presses = createButtonPresses();
     const down = { ...allReleased, trigger: 1 };
     expect(presses.follow('left', down, true)).toEqual([]);
@@ -212,7 +212,7 @@ describe('a hand that is lost', () => {
     expect(archer.bow).toMatchObject({ stage: 'empty', arrow: null });
   });
 
-  test('and comes back in time goes on drawing', () => {
+  test('goes on drawing when it comes back in time', () => {
     const archer = bowman();
     archer.drawTo(0.5).hold({ draw: 0.5, lost: ['right'] }, 0.3, 0);
     archer.hold({ draw: 0.5 }, 0.4, 1);
@@ -222,7 +222,7 @@ describe('a hand that is lost', () => {
     expect(archer.releases).toHaveLength(1);
   });
 
-  test('and let go meanwhile cancels when it comes back', () => {
+  test('cancels when it comes back with the string released', () => {
     const archer = bowman();
     archer
       .drawTo(0.5)
@@ -305,7 +305,7 @@ describe('the aim', () => {
     expect(Math.max(...yaws)).toBeGreaterThan(raw / 20);
   });
 
-  test('the arrow always lies on its rest, the bow points along it, the upper limb stays up', () => {
+  test('the arrow lies on its rest, the bow points along it, the upper limb stays up', () => {
     const archer = bowman();
     archer.drawTo(0.5, { direction: normalise(vec3(0.3, 0.3, -1)), knuckles: vec3(0, 0, -1) });
     expect(archer.frames.filter(({ bow }) => bow?.arrow).length).toBeGreaterThan(10);
@@ -319,7 +319,7 @@ describe('the aim', () => {
     }
   });
 
-  test('leaves the bow as it pointed: it turns back to the hand within a moment, without a jump', () => {
+  test('leaves the bow as it pointed, and turns it back to the hand without a jump', () => {
     const knuckles = normalise(vec3(-0.4, 0.3, -1));
     const archer = bowman();
     archer.drawTo(0.5, { knuckles }).forget();

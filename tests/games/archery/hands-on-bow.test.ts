@@ -65,14 +65,14 @@ describe('hands', () => {
     expect(archer.bow).toMatchObject({ bowSide: 'right' });
   });
 
-  test('that grip between string and bow nock when they are nearer to the string', () => {
+  test('a grip between string and bow nocks when it is nearer to the string', () => {
     const archer = bowman();
     const between = { draw: -0.07 };
     archer.hold(between, 0.1).hold(between, 0.1, 1, 'grip');
     expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'nocked' });
   });
 
-  test('that only help in one-handed play do not take the bow', () => {
+  test('a grip that only helps in one-handed play does not take the bow', () => {
     const archer = bowman({ oneHanded: true });
     archer.hold({ draw: -braceHeight }, 0.1);
     archer.frame({ draw: -braceHeight }, { right: { grip: 1 } });
@@ -82,7 +82,7 @@ describe('hands', () => {
 
 describe('one hand', () => {
   test.each(sides.flatMap((side) => (['trigger', 'pinch'] as const).map((button) => [side, button] as const)))(
-    '%s, %s: draws while the button is held, aims where the knuckles point, shoots when it is let go',
+    '%s, %s: draws while the button is held, aims where the knuckles point, shoots on release',
     (bowSide, button) => {
       const archer = bowman({ bowSide, oneHanded: true });
       const other = otherSide(bowSide);
@@ -112,7 +112,7 @@ describe('one hand', () => {
     expect(archer.releases).toEqual([]);
   });
 
-  test('that is quicker than the rules let it be puts the arrow back, and shoots the next one', () => {
+  test('a draw quicker than the rules allow puts the arrow back; the next one is shot', () => {
     const archer = bowman({ oneHanded: true });
     archer.hold({}, 0.1).hold({}, 1, 1).hold({}, 0.05);
     archer.hold({}, 0.4, 1).hold({}, 0.05);

@@ -64,7 +64,7 @@ describe('a recorded match', () => {
     expect(state.score).toBe(50);
   });
 
-  test('lands its arrows in the same places at 72, 80, 90 and 120 Hz, dropped frames or not', () => {
+  test('has the same landings at 72, 80, 90 and 120 Hz, dropped frames or not', () => {
     const play = (rate: number, dropped: (frame: number) => boolean) => {
       const match = createMatch(archeryRules, start({}, 11), { delayed });
       const wanted = [0.4, 1.4, 2.5, 3.7].map((time, target) => ({ time, target }));

@@ -117,7 +117,7 @@ describe('the score', () => {
     expect(match.state).toMatchObject({ score: 70, phase: 'over', end: 'arrows' });
   });
 
-  test('of two arrows that land in one tick, the first to land comes first, whichever was shot first', () => {
+  test('the first of two arrows to land in one tick comes first, whichever was shot first', () => {
     const match = told(start());
     match.step(highShot(match.state));
     const [high] = match.state.arrows;
@@ -224,7 +224,7 @@ describe('the clock', () => {
     expect(match.happened('started')).toHaveLength(1);
   });
 
-  test('and where the signal alone starts it, no arrow flies before', () => {
+  test('needs the signal where that alone starts it: no arrow flies before', () => {
     const match = told(start({ startedBy: 'signal' }));
     match.step(shotAt(match.state, 1));
     match.pass(100);
@@ -233,7 +233,7 @@ describe('the clock', () => {
     expect(match.state).toMatchObject({ phase: 'running', arrowsLeft: 4 });
   });
 
-  test('or until the first release', () => {
+  test('starts with the first release, too', () => {
     const match = told(start());
     match.pass(3);
     match.step(shotAt(match.state, 1));

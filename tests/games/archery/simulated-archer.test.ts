@@ -144,7 +144,7 @@ describe('the built-in archer', () => {
     expect(state).toMatchObject({ score: 50, end: 'targets' });
   });
 
-  test('goes on with what is worth most where every hit counts, and rests when the round is over', () => {
+  test('chooses the highest value where every hit counts, and rests after the round', () => {
     const { state } = playRound({
       archer: { bowSide: 'left', eyeHeight: 1.6 },
       options: { everyHitCounts: true },
@@ -183,7 +183,7 @@ describe('the built-in archer', () => {
     [1.2, 0.29],
     [1.6, 0.41],
     [1.9, 0.5],
-  ])('with eyes at %d m draws %d m: as far as a nearly straight bow arm lets it', (eyeHeight, draw) => {
+  ])('with eyes at %d m draws %d m, the reach of a nearly straight bow arm', (eyeHeight, draw) => {
     const { state } = playRound({ archer: { bowSide: 'left', eyeHeight }, times: steady(72, 6) });
     expect(Math.abs(length(state.arrows[0]!.release.velocity) - arrowSpeed(draw))).toBeLessThan(1);
   });

@@ -95,7 +95,7 @@ describe('bots', () => {
     );
   });
 
-  it('stand upright however they reach: the solved pelvis stays well below the head, and ahead is ahead', () => {
+  it('stand upright however they reach: the solved pelvis is well below the head and faces ahead', () => {
     const { frames } = play({});
     const estimators = [0, 1, 2].map(() => createIk({ eyeHeight: 1.6, armSpan: 1.5 }));
     frames.forEach((now, index) => {
@@ -108,7 +108,7 @@ describe('bots', () => {
     });
   });
 
-  it('move as a body can: hands within reach of the head, never faster than a throw, feet near the mark', () => {
+  it('move as a body can: hands within reach, slower than throws, feet near the mark', () => {
     const { frames } = play({});
     let fastest = 0;
     for (const [index, now] of frames.entries()) {

@@ -73,7 +73,7 @@ test('1,000 throws end the same at round trips of 0 to 200 ms as at none', { tag
   expect(same).toBeGreaterThanOrEqual(0.99 * throws);
 });
 
-test('what is decided stays decided, at all times that poses may tell', () => {
+test('a decided time stays decided, whatever times the poses give', () => {
   fc.assert(
     fc.property(fc.array(evenly(-5, 5), { minLength: 1, maxLength: 20 }), (times) => {
       const match = told();

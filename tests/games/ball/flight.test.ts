@@ -71,7 +71,7 @@ describe('a basket that stands still', () => {
     expect(firstBasketContact(falling(vec3(0, 2, 0)), ...still(vec3(0, 1, 0), vec3(0, -1, 0)))?.kind).toBe('bounced');
   });
 
-  test('that looks at the thrower catches a flat throw', () => {
+  test('catches a flat throw when it looks at the thrower', () => {
     const launch = falling(vec3(0, 1.1, 5), vec3(0, 1.2, -18));
     expect(firstBasketContact(launch, ...still(vec3(0, 1, 0), vec3(0, 0, 1)))?.kind).toBe('caught');
   });
@@ -182,14 +182,14 @@ describe('a basket that moves', () => {
     return null;
   }
 
-  test('that comes up under a ball catches it', () => {
+  test('catches a ball when it comes up under it', () => {
     const launch = falling(vec3(0, 1.3, 0));
     const from: Basket = { at: 0, position: vec3(0, 1.2, 0), normal: vec3(0, 1, 0) };
     const to: Basket = { at: 1 / 30, position: vec3(0, 1.4, 0), normal: vec3(0, 1, 0) };
     expect(firstBasketContact(launch, from, to)?.kind).toBe('caught');
   });
 
-  test('that hits a ball with its wall passes its speed on', () => {
+  test('passes its speed on to a ball that its wall hits', () => {
     const launch = falling(vec3(0.4, 1.4, 0));
     const from: Basket = { at: 0, position: vec3(0, 1.5, 0), normal: vec3(0, 1, 0) };
     const to: Basket = { at: 1 / 30, position: vec3(0.2, 1.5, 0), normal: vec3(0, 1, 0) };

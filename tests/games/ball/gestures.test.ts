@@ -116,14 +116,14 @@ describe('a hand', () => {
     expect(actions(frame(ball, 1))).toEqual([]);
   });
 
-  test('that lets go at rest puts the ball back', () => {
+  test('puts the ball back when it lets go at rest', () => {
     const { frame, actions, settings } = carrying();
     for (let i = 0; i < 10; i++) frame(ahead, 1);
     expect(actions(frame(ahead, 0))).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
     expect(settings.state.balls[0]).toEqual({ on: 'rack' });
   });
 
-  test('that is lost for a moment keeps its ball, for longer puts it back, and never throws', () => {
+  test('keeps its ball when lost for a moment, puts it back later, and never throws', () => {
     const { frame, actions } = carrying();
     for (let i = 0; i < 20; i++) expect(actions(frame(null, 0))).toEqual([]);
     expect(actions(frame(ahead, 1))).toEqual([]);
@@ -131,13 +131,13 @@ describe('a hand', () => {
     expect(dropped).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
   });
 
-  test('that returns with its button released has not thrown', () => {
+  test('has not thrown when it returns with its button released', () => {
     const { frame, actions } = carrying();
     frame(null, 1);
     expect(actions(frame(addScaled(ahead, vec3(0, 1, -1), 0.3), 0)).map(({ type }) => type)).toEqual(['drop']);
   });
 
-  test('whose device changes lets go', () => {
+  test('lets go when its device changes', () => {
     const player = throwing();
     player.frame(player.ball, 0, 'controller');
     player.frame(player.ball, 1, 'controller');
@@ -152,7 +152,7 @@ describe('a hand', () => {
     ]);
   });
 
-  test('whose grab was refused is empty, and says so', () => {
+  test('is empty after its grab was refused, and says so', () => {
     const { frame, gestures } = carrying();
     gestures.onEvents([{ type: 'refused', player: leftThrower, sequence: 1, reason: 'taken' }]);
     const done = frame(ahead, 1);
@@ -160,7 +160,7 @@ describe('a hand', () => {
     expect(done.cues.map(({ type }) => type)).toEqual(['slipped']);
   });
 
-  test('whose throw was refused lets go of the ball all the same, and can take another', () => {
+  test('lets go of the ball after its throw was refused, and can take another', () => {
     const { frame, aside, actions, settings, ball } = carrying();
     // Behind the line no ball is thrown.
     aside.back = 1.4;
@@ -177,7 +177,7 @@ describe('a hand', () => {
     expect(settings.state.balls[0]).toEqual({ on: 'hand', player: leftThrower, side: 'right' });
   });
 
-  test('of the basket holder takes no balls but tells where it is', () => {
+  test('takes no balls if it is the basket holder’s, but reports its place', () => {
     const { frame, ball, actions, settings } = throwing({ player: holder });
     frame(ball, 0);
     const done = frame(ball, 1);
@@ -198,7 +198,7 @@ describe('the speed of a hand', () => {
   };
   const times = (hz: number, seconds = 0.3) => Array.from({ length: Math.round(seconds * hz) + 1 }, (_, i) => i / hz);
 
-  test('of an even pull is the same at every frame rate, with frames dropped and times that jitter', () => {
+  test('an even pull has one speed at every frame rate, with dropped frames and jittering times', () => {
     fc.assert(
       fc.property(
         vector(10),
@@ -224,7 +224,7 @@ describe('the speed of a hand', () => {
     );
   });
 
-  test('of an overhand throw lands within 10 cm of the same place at every frame rate, 30 % of the frames dropped', () => {
+  test('an overhand throw lands within 10 cm at every frame rate with 30 % of frames dropped', () => {
     // An arm of 65 cm about the shoulder, 9 rad/s and faster.
     const path = (time: number): Vec3 => {
       const angle = 9 * time + 4 * time * time - 2.2;

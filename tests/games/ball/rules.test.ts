@@ -80,7 +80,7 @@ describe('a match', () => {
     expect(ballsLeft(match.state)).toBe(19);
   });
 
-  test('gives no point for a ball beside the basket, which bounces, is missed once, and rolls away', () => {
+  test('gives no point for a ball that bounces beside the basket, misses once and rolls away', () => {
     const match = told();
     match.take(rightThrower, 12);
     match.toss(rightThrower, 12, add(inFront, vec3(0.6, 0, 0)));
@@ -119,7 +119,7 @@ describe('a match', () => {
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'balls', score: 20 }]);
   });
 
-  test('ends with the bell; a ball in the air still counts, one in the hand goes back half a second later', () => {
+  test('ends with the bell, counts a ball in the air, and returns held balls soon after', () => {
     const match = told({ seconds: 5 });
     match.pass(4.4);
     match.take(leftThrower, 1);
@@ -149,7 +149,7 @@ describe('a match', () => {
     expect(match.happened('ended')).toEqual([{ type: 'ended', end: 'time', score: 1 }]);
   });
 
-  test('goes on without the hands of a holder who is not seen: the basket stays where it was', () => {
+  test('goes on without the hands of an unseen holder: the basket stays in place', () => {
     const match = told();
     match.take(leftThrower, 5);
     match.toss(leftThrower, 5, inFront);
@@ -157,7 +157,7 @@ describe('a match', () => {
     expect(match.state.score).toBe(1);
   });
 
-  test('takes the balls out of the hands of a player who leaves, and knows them when they return', () => {
+  test('takes the balls from a player who leaves, and knows their hands when they return', () => {
     const match = told();
     match.take(leftThrower, 2);
     match.step({ type: 'leave', player: leftThrower });
@@ -173,7 +173,7 @@ describe('a match', () => {
 });
 
 describe('a ball', () => {
-  test('that two grab in one tick has one owner, and the loser hears of it', () => {
+  test('has one owner when two grab it in one tick, and the loser is notified', () => {
     fc.assert(
       fc.property(fc.boolean(), fc.integer({ min: 0, max: 19 }), (leftFirst, ball) => {
         const match = told();
@@ -196,7 +196,7 @@ describe('a ball', () => {
     );
   });
 
-  test('in the hand is followed by no second one in the same hand, but by one in the other', () => {
+  test('in the hand is followed by none in that hand, but by one in the other', () => {
     const match = told();
     match.take(leftThrower, 0, 'right');
     match.take(leftThrower, 1, 'right');
@@ -264,7 +264,7 @@ describe('what no body can do is refused', () => {
     expect(thrown(holding(), { ball: 7 })).toEqual(['not-held']);
   });
 
-  test('a grab from out of reach, of a ball that is not there, or by the holder', () => {
+  test('a grab from out of reach, of a missing ball, or by the holder', () => {
     const match = told();
     match.step(stand(leftThrower, match.now(), headOf(leftThrower)));
     match.step(match.action(leftThrower, { type: 'grab', side: 'left', ball: 19 }));
@@ -291,7 +291,7 @@ describe('what no body can do is refused', () => {
     expect(match.refusals()).toEqual(['zone']);
   });
 
-  test('a basket that comes to the ball faster than hands go, or from out of the holder’s zone', () => {
+  test('a basket faster than hands go, or from out of the holder’s zone', () => {
     const match = told();
     match.take(leftThrower, 0);
     match.toss(leftThrower, 0, add(inFront, vec3(0.7, 0, 0)));

@@ -11,7 +11,7 @@ describe('another round', () => {
     expect(rotationForRound([0, 1, holderStation], true)).toBe(1);
   });
 
-  test('gives two players, wherever they are, the first move after which one of them holds the basket', () => {
+  test('gives two players the first move that makes one of them hold the basket', () => {
     expect(rotationForRound([0, 1], true)).toBe(1);
     expect(rotationForRound([0, holderStation], true)).toBe(2);
     expect(rotationForRound([1, holderStation], true)).toBe(1);

@@ -9,7 +9,7 @@ import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();
 
-test('the button of a result takes a press as soon as the sheet has been there for a moment', () => {
+test('the button of a result takes a press a moment after the sheet appears', () => {
   const { services, writer } = activityServices();
   writer.change({ startSignal: true, seconds: 1 });
   const archery = createArcheryActivity({

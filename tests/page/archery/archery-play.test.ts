@@ -35,21 +35,18 @@ function range(settings: { readonly seconds?: number } = {}) {
   };
 }
 
-test.each([0.6, 3, 600])(
-  'a headset that is taken off at full draw for %d s, frames and all, shoots no arrow',
-  (away) => {
-    const { play, said, frame, hold } = range();
-    hold({}, 0, 0.1);
-    hold({}, 1, 0.1);
-    for (let i = 1; i <= 36; i++) frame({ draw: i / 72 }, 1);
-    hold({ draw: 0.5 }, 1, 0.5);
-    expect(play.newest?.bow?.stage).toBe('anchored');
-    frame({ draw: 0.5 }, 0, 1000 * away);
-    hold({ draw: 0.5 }, 0, 0.2);
-    expect(said.at(-1)).toBe('cancelled');
-    expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
-  },
-);
+test.each([0.6, 3, 600])('a headset taken off at full draw for %d s, frames and all, shoots no arrow', (away) => {
+  const { play, said, frame, hold } = range();
+  hold({}, 0, 0.1);
+  hold({}, 1, 0.1);
+  for (let i = 1; i <= 36; i++) frame({ draw: i / 72 }, 1);
+  hold({ draw: 0.5 }, 1, 0.5);
+  expect(play.newest?.bow?.stage).toBe('anchored');
+  frame({ draw: 0.5 }, 0, 1000 * away);
+  hold({ draw: 0.5 }, 0, 0.2);
+  expect(said.at(-1)).toBe('cancelled');
+  expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
+});
 
 test('no arrow is nocked after the bell, even while the last one flies', () => {
   const { play, said, frame, hold } = range({ seconds: 2 });
@@ -69,7 +66,7 @@ test('no arrow is nocked after the bell, even while the last one flies', () => {
   expect(said.filter((type) => type === 'nocked')).toHaveLength(2);
 });
 
-test('what the last arrow of a round left to be seen goes on after it', () => {
+test('the time of a round that a last arrow needs to land goes on after it', () => {
   const { play, hold } = range({ seconds: 1 });
   hold({}, 0, 0.1);
   hold({}, 1, 0.1);

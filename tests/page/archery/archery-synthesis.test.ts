@@ -59,19 +59,19 @@ describe('every sound', () => {
   });
 });
 
-describe('what can be told apart by ear', () => {
-  it('is the draw: it creaks louder the further the bow is drawn', () => {
+describe('sounds that differ by ear', () => {
+  it('a draw creaks louder the further the bow is drawn', () => {
     const loudness = [0, 0.25, 0.5, 0.75, 1].map((draw) => peak(creak(rate, draw)));
     expect(loudness).toEqual([...loudness].sort((a, b) => a - b));
   });
 
-  it('is the score: more points ring higher', () => {
+  it('more points ring higher', () => {
     const heights = [5, 10, 15, 20].map((points) => pitch(chime(rate, points), 0.5));
     expect(heights).toEqual([...heights].sort((a, b) => a - b));
     expect((heights[3] as number) / (heights[0] as number)).toBeCloseTo(2, 1);
   });
 
-  it('is what the arrow hit: a net is brighter than straw', () => {
+  it('a hit net is brighter than hit straw', () => {
     expect(brightness(sounds.rattle)).toBeGreaterThan(10 * brightness(sounds.thud));
   });
 });

@@ -28,7 +28,7 @@ describe('an arrow', () => {
     }
   });
 
-  it('sticks where it landed: its shaft goes through that point, its tip a hand deep at most, for good', () => {
+  it('sticks where it landed, its tip a hand deep at most, for good', () => {
     for (const on of ['target', 'ground', 'wall'] as const) {
       const landing = landingOn(on);
       for (const since of [0, 0.01, 0.05, 0.4, 60]) {
@@ -66,7 +66,7 @@ describe('an arrow', () => {
 });
 
 describe('all arrows together', () => {
-  it('draw the shot ones where they are and the nocked one last, and forget it when it is gone', () => {
+  it('draw the shot ones in place and the nocked one last until it is gone', () => {
     const arrows = createArrows(arrowLength);
     const landing = landingOn('target');
     const nocked = { tip: vec3(0.1, 1.4, -0.9), direction: normalise(vec3(0.2, 0.1, -1)) };

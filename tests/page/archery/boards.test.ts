@@ -102,7 +102,7 @@ describe('the rings of a target', () => {
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
 
-  it('differ in brightness from their neighbours at least three to one, for every kind of colour vision', () => {
+  it('differ in brightness from neighbours at least three to one, for all kinds of colour vision', () => {
     for (let i = 1; i < rings.length; i++) {
       const [a, b] = [luminance(rings[i - 1]?.color ?? ''), luminance(rings[i]?.color ?? '')];
       expect((Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05)).toBeGreaterThan(3);

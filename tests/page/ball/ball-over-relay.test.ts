@@ -81,7 +81,7 @@ async function until(
   }
 }
 
-test('three people over the real relay play, see each other’s elbows move and agree; one watches, one comes late', async () => {
+test('three people over the relay play and agree; one person watches, one comes late', async () => {
   const server = await serverOfRounds(14);
   const players = ['ann', 'ben', 'cal'].map((name) => comeIn(server.port, name));
   const watcher = comeIn(server.port, 'dora', { spectate: true });
@@ -117,7 +117,7 @@ test('three people over the real relay play, see each other’s elbows move and 
   for (const [, travelled] of throwers) expect(travelled).toBeGreaterThan(0.3);
 }, 120_000);
 
-test('the relay dies in the middle of a match and comes back: the same page is in the room again, the round is void', async () => {
+test('a page is back in its room after the relay dies; the round is void', async () => {
   const first = await serverOfRounds(40);
   const { port } = first;
   const ann = comeIn(port, 'ann', { bots: true });

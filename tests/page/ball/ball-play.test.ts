@@ -132,7 +132,7 @@ describe('one person with two bots', () => {
     expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
   });
 
-  it('stands still in a pause, and the match goes on after it as if nothing had been', () => {
+  it('stands still in a pause, and the match goes on afterwards unchanged', () => {
     const { player, until, events, frame } = page({ seat: 0 });
     until(() => (player.probe()?.ballsLeft ?? 20) < 18, 30);
     player.pause(true);
@@ -154,32 +154,29 @@ describe('one person with two bots', () => {
     expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
   });
 
-  it.each([72, 5])(
-    'at %i pictures a second a mouse takes over from the built-in player, throws, and hands back',
-    (rateHz) => {
-      const mouse = { on: false, pressed: false };
-      const ray = { origin: { x: -0.8, y: 2, z: 3.5 }, direction: { x: 0.11, y: -0.11, z: -0.988 } };
-      const steering = () => (mouse.on ? { ray, pressed: mouse.pressed, cancelled: false } : null);
-      const { player, until, events } = page({ seat: 0, rateHz, steering, ball: { seconds: 600 } });
-      until(() => player.probe()?.phase === 'running', 30);
-      until(() => player.probe()?.held.left !== null || player.probe()?.held.right !== null, 10);
-      mouse.on = true;
-      const mine = () => events.filter((event) => event.type === 'thrown' && event.player === 0).length;
-      const before = mine();
-      // Pressed before there is a ball to throw: it counts from then on.
-      mouse.pressed = true;
-      until(() => (player.probe()?.aim ?? 0) > 5.5, 5);
-      expect(mine()).toBe(before);
-      mouse.pressed = false;
-      until(() => mine() === before + 1, 3);
-      expect(player.probe()?.aim).toBeNull();
-      mouse.on = false;
-      until(() => mine() === before + 2, 10);
-      expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
-    },
-  );
+  it.each([72, 5])('at %i pictures a second a mouse replaces the built-in player, throws, and hands back', (rateHz) => {
+    const mouse = { on: false, pressed: false };
+    const ray = { origin: { x: -0.8, y: 2, z: 3.5 }, direction: { x: 0.11, y: -0.11, z: -0.988 } };
+    const steering = () => (mouse.on ? { ray, pressed: mouse.pressed, cancelled: false } : null);
+    const { player, until, events } = page({ seat: 0, rateHz, steering, ball: { seconds: 600 } });
+    until(() => player.probe()?.phase === 'running', 30);
+    until(() => player.probe()?.held.left !== null || player.probe()?.held.right !== null, 10);
+    mouse.on = true;
+    const mine = () => events.filter((event) => event.type === 'thrown' && event.player === 0).length;
+    const before = mine();
+    // Pressed before there is a ball to throw: it counts from then on.
+    mouse.pressed = true;
+    until(() => (player.probe()?.aim ?? 0) > 5.5, 5);
+    expect(mine()).toBe(before);
+    mouse.pressed = false;
+    until(() => mine() === before + 1, 3);
+    expect(player.probe()?.aim).toBeNull();
+    mouse.on = false;
+    until(() => mine() === before + 2, 10);
+    expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
+  });
 
-  it('the bots of a page that is hidden leave their seats to those of another person’s page', () => {
+  it('the bots of a hidden page give their seats to those of another person’s page', () => {
     const ann = page({ seat: 0 });
     const names = () => ben.player.probe()?.people.map((person) => person && `${person.name} ${person.presence}`);
     ann.until(() => ann.player.probe()?.people.every(Boolean) ?? false, 10);

@@ -156,7 +156,7 @@ async function group({ stopped = false } = {}) {
   };
 }
 
-test('who pauses in a shared match stops it for the whole group, and the pause counts for nothing', {
+test('a participant who pauses a shared match stops it for the group, and no time counts', {
   tags: ['full'],
 }, async () => {
   const { pages, pass, trials } = await group();
@@ -185,14 +185,14 @@ test('who pauses in a shared match stops it for the whole group, and the pause c
   expect(new Set(outcomes.map((outcome) => outcome?.score)).size).toBe(1);
 });
 
-test('a participant who paused, loaded the page again and starts lets the clock of the group go on', async () => {
+test('a participant who paused, reloaded and starts lets the clock of the group go on', async () => {
   const { pages, pass, trials } = await group({ stopped: true });
   pass(3);
   expect(trials.map(({ standing }) => standing)).toEqual([false, false, false]);
   expect(pages.map((page) => page.left() < seconds)).toEqual([true, true, true]);
 });
 
-test('a match that takes a slow page by surprise lasted as long for its participant as for the others', {
+test('a match that surprises a slow page lasts as long for its participant as for others', {
   tags: ['full'],
 }, async () => {
   const { pages, pass } = await group();
@@ -203,7 +203,7 @@ test('a match that takes a slow page by surprise lasted as long for its particip
   for (const other of others) expect(other?.seconds).toBeCloseTo(slow?.seconds ?? Number.NaN, 1);
 });
 
-test('a match that its server has forgotten is interrupted for the whole group, and leaves no result', async () => {
+test('a match that its server has forgotten is interrupted for the group and leaves no result', async () => {
   const { pages, pass, cut, restart } = await group();
   pass(4);
   cut('reconnecting');
@@ -227,7 +227,7 @@ test.each(['before it begins', 'while it runs'])(
   },
 );
 
-test('a participant without a connection at the bell waits for what the room says of the match', async () => {
+test('a participant without a connection at the bell waits for the room’s word on the match', async () => {
   const { pages, pass, cut, mend } = await group();
   pass(4);
   cut('reconnecting');

@@ -7,7 +7,7 @@ import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();
 
-test('a catch is told for a moment, and not once more at the same second of the next match', () => {
+test('a catch shows for a moment, and not again at that second of the next match', () => {
   const view = new BallView({ quality: 'low', balls: 20, onCaption: () => undefined });
   const court = view.placed({ position: zero, orientation: identity }).object;
   const state = { ...ballRules.start(['a', 'b', 'c'], 1), phase: 'running' as const, startedAt: 0 };

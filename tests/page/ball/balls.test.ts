@@ -24,7 +24,7 @@ function drawn(count: number): { readonly look: number; readonly side: number }[
 }
 
 test.each([1, 4, 7, 10, 20])(
-  'of %d balls those of the left rack look like the first, those of the right like the second',
+  'the left rack’s share of %d balls looks like the first, the right’s like the second',
   (count) => {
     const balls = drawn(count);
     expect(balls).toHaveLength(count);

@@ -63,7 +63,7 @@ describe('a person who is muted or hidden', () => {
   });
 });
 
-it('a bot that was hidden leaves nothing to who has its name later, on its seat or another', () => {
+it('a hidden bot leaves nothing to later bearers of its name, on its seat or another', () => {
   const blocked = new BlockList();
   blocked.update([person('Ann'), bot('Max'), null]);
   blocked.set('hidden', 1, true);

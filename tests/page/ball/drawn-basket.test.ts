@@ -48,7 +48,7 @@ function holder() {
 
 const aside = add(opening, vec3(0.5, 0.3, 0));
 
-test('the basket is drawn where the rules have it, also while no hand of its holder is seen', () => {
+test('the basket is drawn where the rules have it, even while no holder’s hand is seen', () => {
   const { show, apart } = holder();
   show(holding(aside));
   expect(apart()).toBeLessThan(0.01);
@@ -56,7 +56,7 @@ test('the basket is drawn where the rules have it, also while no hand of its hol
   expect(apart()).toBeLessThan(0.01);
 });
 
-test('nor does it follow hands of which the device only guesses where they are', () => {
+test('the basket follows no hands whose places the device only guesses', () => {
   const { show, apart } = holder();
   show(holding(aside));
   show(holding(opening), 'emulated');
@@ -65,7 +65,7 @@ test('nor does it follow hands of which the device only guesses where they are',
   expect(apart()).toBeLessThan(0.01);
 });
 
-test('nor a holder who has left their mark', () => {
+test('the basket follows no holder who has left their mark', () => {
   const { show, apart } = holder();
   show(holding(aside));
   show(holding(opening), 'tracked', 1.3);

@@ -179,7 +179,7 @@ describe('a connection that is lost for a moment', () => {
   });
 });
 
-test('a connection that is lost for longer than the ball is kept leaves an empty hand, which takes another', () => {
+test('a connection lost for longer than a ball is kept leaves a hand empty and free', () => {
   const ann = court();
   ann.grab(0);
   ann.lose();
@@ -191,7 +191,7 @@ test('a connection that is lost for longer than the ball is kept leaves an empty
   expect([ann.held, ann.ball(2)]).toEqual([2, 'hand']);
 });
 
-test('a page that is loaded again at once puts back what its player held; they go on with other balls', () => {
+test('a page that is reloaded at once puts back what its player held; play goes on', () => {
   const ann = court();
   for (const ball of [0, 1]) {
     ann.grab(ball);
@@ -208,7 +208,7 @@ test('a page that is loaded again at once puts back what its player held; they g
   expect(ann.ball(3)).toBe('air');
 });
 
-test('a player who takes the seat of a bot that holds a ball has nothing to put back, and is warned of nothing', () => {
+test('a player who takes the seat of a bot with a ball puts nothing back', () => {
   const ann = court();
   ann.told.join('bot', { name: 'Max', seat: 1, bot: true });
   ann.told.pass(0.1, () => ann.told.pose('bot', 1, atRack(10)));

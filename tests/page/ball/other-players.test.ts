@@ -22,7 +22,7 @@ describe('the other players', () => {
     expect(names(null)).toEqual(['Player 0', 'free']);
   });
 
-  it('are status to be heard, muted by themselves, muted or hidden by the user, or not connected', () => {
+  it('have a status: audible, muted by themselves, muted or hidden by the user, not connected', () => {
     expect(listed({})?.status).toBe('can be heard');
     expect(listed({ voice: 'muted' })?.status).toBe('muted');
     expect(listed({ silenced: true })?.status).toBe('muted by you');

@@ -15,7 +15,7 @@ const ahead = { position: vec3(0, 0, -2), orientation: { x: 0, y: 1, z: 0, w: 0 
 const shown = (eyes: Vec3, pose = standing()) => proximityFade(eyes, pose, ahead);
 
 describe('personal space', () => {
-  test('others are whole from half a metre on and gone at 0.2 m, wherever their floor lies', () => {
+  test('others are whole beyond half a metre and gone at 0.2 m, wherever their floor lies', () => {
     expect(shown(vec3(0, 1.6, 0))).toBe(1);
     expect(shown(vec3(0, 1.6, -1.49))).toBe(1);
     expect(shown(vec3(0, 1.6, -1.81))).toBe(0);
@@ -32,7 +32,7 @@ describe('personal space', () => {
     expect(before).toBe(0);
   });
 
-  test('a trunk fades as a head does, for eyes that are lower; a hand before the eyes too', () => {
+  test('a trunk fades as a head does for lower eyes; a hand before the eyes too', () => {
     expect(shown(vec3(0, 1.2, -1.85))).toBe(0);
     expect(shown(vec3(0, 1.6, -0.1), standing(vec3(0, 1.6, -1.8)))).toBeLessThan(0.1);
     expect(shown(vec3(0, 0.3, -2))).toBe(1);

@@ -73,7 +73,7 @@ describe('a microphone', () => {
   );
 
   test.each(['leave', 'dispose'] as const)(
-    'that opens after the player chose to %s is closed at once, and no one has joined',
+    'closes at once if it opens after the player chose to %s, and no one joins',
     async (end) => {
       const { voices, answers } = seated();
       const joined = voices.join();
@@ -96,7 +96,7 @@ describe('a microphone', () => {
     expect(voices.probe().phase).not.toBe('joining');
   });
 
-  test('of a player who leaves and joins again is asked for once, by the second of the two', async () => {
+  test('is requested once for a player who leaves and joins again, by the second join', async () => {
     const { voices, answers } = seated();
     const first = voices.join();
     voices.leave();

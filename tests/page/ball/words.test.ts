@@ -113,7 +113,7 @@ describe('the board', () => {
 });
 
 describe('the sheet before and after a match', () => {
-  it('offers the places that are free or a bot’s, and ready to the player who has one', () => {
+  it('offers the free places and those of bots, and ready to a seated player', () => {
     const people = [person('ann', { me: true }), person('Max', { bot: true }), null];
     expect(lobbyButtons(standing(people)).map(({ id }) => id)).toEqual(['seat1', 'seat2', 'rotate', 'ready']);
     const watcher = lobbyButtons(standing([person('ann'), null, person('cal')], fresh, null));
@@ -149,7 +149,7 @@ describe('captions', () => {
 });
 
 describe('pulses', () => {
-  it('a catch is strongest in the holder’s hands, light in the thrower’s, nothing to the other thrower', () => {
+  it('a catch is strongest for the holder, light for the thrower, absent for the other thrower', () => {
     const caught: BallEvent = { type: 'caught', ball: 1, player: 0, at: 2, score: 1 };
     const strongest = (me: number, role: 'thrower' | 'holder') =>
       Math.max(0, ...eventHaptics([caught], me, role).map(({ strength }) => strength));
@@ -160,7 +160,7 @@ describe('pulses', () => {
 });
 
 describe('names over heads', () => {
-  it('are as large to the eye from across the court as from 2.8 m, and no larger than themselves from near', () => {
+  it('look as large across the court as from 2.8 m, and no larger than themselves nearby', () => {
     for (const far of [0.5, 1, 2.8]) expect(labelScale(far)).toBe(1);
     const angle = (far: number) => labelScale(far) / far;
     for (const far of [3, 5, 8]) expect(angle(far)).toBeCloseTo(angle(2.8), 9);
@@ -169,7 +169,7 @@ describe('names over heads', () => {
 });
 
 describe('the clock of a match', () => {
-  it('stands after its end, however long the result is read, and is whole again before the next', () => {
+  it('stands after its end while the result is read, and is whole before the next match', () => {
     const at = (tick: number, more: Partial<BallState>) => ({ ...fresh, tick, startedAt: 0, ...more });
     const running = displayedSeconds(at(60 * 30, { phase: 'running' }), 0);
     expect(running).toBeCloseTo(60, 6);

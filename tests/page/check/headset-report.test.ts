@@ -4,7 +4,7 @@ import { expect, test } from 'vitest';
 import { readHeadsetReport, writeHeadsetReport } from '../../../src/page/check/headset-report';
 import { anyReport } from './any-report';
 
-test('what a check writes is read again, to four digits', () => {
+test('a written report is read again, to four digits', () => {
   fc.assert(
     fc.property(anyReport, (report) => {
       const read = readHeadsetReport(writeHeadsetReport(report));
@@ -96,7 +96,7 @@ test('an unknown field, a repeated tracker and what contradicts itself are refus
   );
 });
 
-test('what is no report at all is refused in a sentence', () => {
+test('a text that is no report is refused in a sentence', () => {
   expect(refusal('{').message).toMatch(/^is no JSON \(/);
   expect(refusal('7').message).toBe('expected an object');
   expect(refusal(' '.repeat(2_000_000)).message).toBe('expected at most 1000000 characters');

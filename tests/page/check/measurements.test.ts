@@ -35,7 +35,7 @@ const deviceNames = {
   hips: 'hips',
 } as const;
 
-test('a device whose elbows lie 3 cm from ours differs by 3 cm there and by nothing elsewhere', () => {
+test('a device with elbows 3 cm from ours differs by 3 cm there and nowhere else', () => {
   const { body, measurements } = wornBody();
   const joints = createJointPoses();
   for (let row = 0; row < 200; row++) {
@@ -69,7 +69,7 @@ test('a device without a body has a reason instead of figures', () => {
   });
 });
 
-test('guessed hands are lost hands, menus count for nothing, and no frame counts in the lead of a step', () => {
+test('guessed hands are lost hands, menus count for nothing, and lead frames are left out', () => {
   const { measurements } = wornBody();
   const frame = (time: number, change: Partial<TrackingFrame>) => ({
     time,

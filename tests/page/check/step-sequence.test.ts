@@ -49,7 +49,7 @@ test('the pace shortens leads and steps alike', () => {
   expect(quick!.steps).toEqual(whole!.steps);
 });
 
-test('a body that appears during the first steps adds its steps; one that appears later changes nothing', () => {
+test('a body that appears during the first steps adds its steps; a later one changes nothing', () => {
   let requests = 0;
   // The first request is for the preview, the second one follows the opening steps.
   const { steps } = run(() => remainingSteps(requests++ > 0), 0.1);

@@ -82,7 +82,7 @@ test('white noise in is the same figure out, at every rate, from any orientation
   );
 });
 
-test('a person who sways by 1 cm and turns by 2° is not counted as noise, and is reported as sway', () => {
+test('a person who sways by 1 cm and turns by 2° adds sway, not noise', () => {
   const held = { rateHz: 72, mm: 0.1, degrees: 0.03, sway: 0.01, turn: 0.035 };
   const { positionMm, rotationDegrees } = figuresOf(held)!;
   expect(Math.abs(positionMm.frame / 0.1 - 1)).toBeLessThan(0.05);
@@ -101,7 +101,7 @@ test('sway without noise adds what the documentation states', () => {
   expect(positionMm.frame).toBeLessThan(alone * 0.65);
 });
 
-test('noise that the device smooths is larger at a lag of 0.1 s than from frame to frame', () => {
+test('noise that the device smooths is larger at a 0.1 s lag than between frames', () => {
   const { positionMm } = figuresOf({ rateHz: 72, mm: 0.5, degrees: 0.1, smoothing: 0.8 })!;
   expect(positionMm.frame).toBeLessThan(0.25);
   expect(positionMm.slow).toBeGreaterThan(0.35);

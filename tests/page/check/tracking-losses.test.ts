@@ -20,7 +20,7 @@ test('a loss lasts from the first frame without the hand to that of its return',
   });
 });
 
-test('a hand that was never seen has no losses, and time before its first frame does not count', () => {
+test('a hand never seen has no losses, and time before its first frame is left out', () => {
   expect(played('llll')).toBeNull();
   expect(played('lllltt')).toEqual({ observedSeconds: expect.closeTo(0.01, 9), lengthsMs: [], openEnd: false });
 });

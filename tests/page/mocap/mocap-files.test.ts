@@ -41,7 +41,7 @@ describe('an opened clip', () => {
     for (const [i, name] of reportNames.entries()) expect(step.value[i]).toBeCloseTo(joints[name].mean, 2);
   });
 
-  test('of half an hour is replayed without more of its frames in memory than are looked at', () => {
+  test('replays half an hour without more frames in memory than are looked at', () => {
     const frameCount = 30 * 60 * mocapRateHz;
     const tracked = new Float32Array(21 * frameCount);
     for (let i = 0; i < tracked.length; i++) tracked[i] = clip.tracked[i % clip.tracked.length]!;
@@ -74,7 +74,7 @@ describe('an opened clip', () => {
     expect(read.frames).toHaveLength(clip.frameCount);
   });
 
-  test('is true between two frames where a straight line between them is, and stays at its ends', () => {
+  test('is true between two frames where a line between them is, and keeps its ends', () => {
     const truth = new Truth(clip);
     const at = (seconds: number) => ({ ...truth.at(seconds).leftHand! });
     const [before, after] = [at(10 / mocapRateHz), at(11 / mocapRateHz)];

@@ -102,7 +102,7 @@ const fire = (session: XRSession, type: string, inputSource: object, frame: XRFr
   session.dispatchEvent(Object.assign(new Event(type), { inputSource, frame }));
 
 describe('the mirror in the room of its user', () => {
-  test('stands on the real floor that a hit test finds, faces the user, and is anchored and kept', async () => {
+  test('stands on the real floor of a hit test, faces the user, and is kept anchored', async () => {
     const { stand, draw, kept } = room({ floorHeight: 0.03 });
     await draw(1);
     const { x, y, z, turned } = stand.place;
@@ -148,7 +148,7 @@ describe('the mirror in the room of its user', () => {
     expect(session).toBeDefined();
   });
 
-  test('does not stand on a table: after six seconds it stands on the floor of the session', async () => {
+  test('does not stand on a table: after six seconds it takes the session’s floor', async () => {
     const { stand, draw, setHit } = room();
     setHit(at(0, 0.75, -0.8));
     await draw(5);
@@ -158,7 +158,7 @@ describe('the mirror in the room of its user', () => {
     expect(stand.place.y).toBe(0);
   });
 
-  test('is moved by a grip of a controller, keeps its height, and is anchored where it is released', async () => {
+  test('is moved by a controller’s grip, keeps its height, and is anchored on release', async () => {
     const { stand, draw, session, frame, floor, made, deleted, kept } = room();
     await draw(1);
     const ray = { at: at(0.2, 1.1, -0.3) as Seen };
@@ -201,7 +201,7 @@ describe('the mirror in the room of its user', () => {
     expect(Math.hypot(stand.place.x, stand.place.z)).toBeGreaterThanOrEqual(0.9);
   });
 
-  test('stays where a ray points past it, where a trigger is pulled, and where the menu lies before it', async () => {
+  test('stays where a ray misses it, a trigger is pulled, or the menu covers it', async () => {
     const { stand, draw, session, frame, cover } = room();
     await draw(1);
     const before = stand.place;

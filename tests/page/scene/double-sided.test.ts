@@ -6,7 +6,7 @@ import { createZone } from '../../../src/page/archery/range/zone';
 import { createZoneRing } from '../../../src/page/ball/court/zone-ring';
 import { createAimArc } from '../../../src/page/ball/view/aim-arc';
 
-test('what is transparent and seen from both sides is drawn in one pass, so that its program is not looked up anew in every frame', () => {
+test('a transparent object with two sides is drawn in one pass, its program looked up once', () => {
   const drawn: Object3D[] = [
     createBackstop('low'),
     createTrails(0.7).object,

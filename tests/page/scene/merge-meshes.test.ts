@@ -46,7 +46,7 @@ describe('scenery that looks alike', () => {
     expect(after.max.distanceTo(before.max)).toBeLessThan(1e-6);
   });
 
-  test('keeps apart what casts shadows, has two sides, a picture or its own material, or is hidden', () => {
+  test('keeps apart meshes with shadows, two sides, a picture or own material, and hidden ones', () => {
     const scenery = new Group();
     const casting = box(1);
     casting.castShadow = true;

@@ -33,7 +33,7 @@ async function packed(file: ArrayBuffer, claimed?: number): Promise<ArrayBuffer>
 }
 
 describe('a rig whose skin is packed by meshopt', () => {
-  test('is worn like any other where the page has the means to unpack it, and refused where it has not', async () => {
+  test('is worn where the page has the means to unpack it, and refused elsewhere', async () => {
     const file = await packed(builtRig({ nameOf: vroid }));
     await expect(parseAvatar(file, 'packed.glb')).rejects.toThrow(
       'packed.glb: is compressed (EXT_meshopt_compression)',

@@ -51,7 +51,7 @@ describe('audio that the system suspends', () => {
     expect(stage.player).not.toBeNull();
   });
 
-  test('that was interrupted continues when the interruption is over', async () => {
+  test('continues after an interruption is over', async () => {
     const { context, stage } = stageWithContext();
     await stage.unlock();
     context.allowed = false;
@@ -62,7 +62,7 @@ describe('audio that the system suspends', () => {
     expect(stage.player).not.toBeNull();
   });
 
-  test('that may not continue by itself does so with the next unlock, and renders no sound again', async () => {
+  test('continues with the next unlock if it may not by itself, and renders no sound again', async () => {
     const { context, stage } = stageWithContext();
     await stage.unlock();
     context.allowed = false;

@@ -67,7 +67,7 @@ describe('one frame', () => {
     expect(seen.jumpsBeforeTracking).toBe(1);
   });
 
-  test('whose part throws reports it, and the next frame runs', () => {
+  test('reports a part that throws, and the next frame runs', () => {
     const failure = new Error('no bones');
     let broken = true;
     const { loop, seen } = running({

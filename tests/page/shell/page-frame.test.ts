@@ -22,7 +22,7 @@ function page(draw: () => void = () => undefined): PageFrame {
   return new PageFrame(parts, fake<Controls>({ point: () => undefined }), fake<PassthroughHost>({}));
 }
 
-test('who waits for the next picture waits for the device that draws it, and no longer', async () => {
+test('a wait for the next picture waits for the device that draws it, and no longer', async () => {
   const frame = page();
   frame.render(1, null);
   const seen: number[] = [];

@@ -60,7 +60,7 @@ function player(recorder = new Recorder()) {
   };
 }
 
-test('a player whose session goes behind a menu of the device is away until it comes back', () => {
+test('a player whose session goes behind a device menu is away until it comes back', () => {
   const { enter, setSession, isAway } = player();
   enter();
   setSession('hidden');

@@ -31,7 +31,7 @@ describe('the recorder', () => {
     expect(recorder.sample(5)).toBeNull();
   });
 
-  test('what was recorded is replayed at the viewer’s time', () => {
+  test('a recording is replayed at the viewer’s time', () => {
     const recorder = recorded(10, 12);
     recorder.replay();
     expect(recorder.sample(100)?.head.position.x).toBeCloseTo(10, 6);
@@ -50,7 +50,7 @@ describe('the recorder', () => {
     expect(recorder.mode).toBe('idle');
   });
 
-  test('tells of its end where no one has stopped it: a replay is over, a recording is full', () => {
+  test('reports its end where no one stopped it: a replay is over, a recording is full', () => {
     let ends = 0;
     const recorder = new Recorder(() => {
       ends += 1;
@@ -70,7 +70,7 @@ describe('the recorder', () => {
     expect([ends, recorder.frameCount]).toEqual([2, 108_000]);
   });
 
-  test('a replay that is paused stands at its second while time passes, and goes on from there', () => {
+  test('a paused replay stands at its second while time passes, and goes on from there', () => {
     const recorder = recorded(0, 4);
     recorder.replay();
     recorder.sample(50);
@@ -94,7 +94,7 @@ describe('the recorder', () => {
     expect(recorder.sample(51)?.head.position.x).toBeCloseTo(0.5, 6);
   });
 
-  test('what was asked for before a recording was made comes too late, and leaves it', () => {
+  test('a request made before a recording comes too late, and leaves it', () => {
     const recorder = new Recorder();
     const requestNumber = recorder.nextRequest();
     recorder.record(source);

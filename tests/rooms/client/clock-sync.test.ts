@@ -38,14 +38,14 @@ const lan = () => {
 };
 
 describe('clock sync', () => {
-  test.each([0, 600, -600])('on a LAN, clocks %d s apart: within 10 ms in 3 s', (skew) => {
+  test.each([0, 600, -600])('brings clocks %d s apart within 10 ms in 3 s on a LAN', (skew) => {
     const { error, settled } = follow(new ClockSync(), 5, 10, skew, lan(), lan());
     printFigures(`clock skew ${skew} s`, { 'error [ms]': error * 1000, 'within 10 ms after [s]': settled });
     expect(settled).toBeLessThan(3);
     expect(error).toBeLessThan(0.01);
   });
 
-  test('a machine that slept for 60 s, its clock standing still or not: within 10 ms in 3 s', () => {
+  test('a machine that slept 60 s is within 10 ms in 3 s, whatever its clock', () => {
     for (const stood of [0, 60]) {
       const sync = new ClockSync();
       follow(sync, 5, 10, 3, lan(), lan());
@@ -82,7 +82,7 @@ describe('clock sync', () => {
     expect(asks).toBeLessThanOrEqual(9);
   });
 
-  test('a pause that our clock left out is told of and costs nothing; an answer from before it counts no more', () => {
+  test('a pause that our clock left out is reported and harmless; earlier answers count no more', () => {
     const sync = new ClockSync();
     const { error } = follow(sync, 5, 10, 3, lan(), lan());
     expect(error).toBeLessThan(0.01);
@@ -104,7 +104,7 @@ describe('clock sync', () => {
     expect(sync.offset).toBeCloseTo(3, 2);
   });
 
-  test('tells how long answers take: the median of the last five, and the wait for one that does not come', () => {
+  test('reports the delay of answers: the median of five, and the wait for a missing one', () => {
     const sync = new ClockSync();
     expect(sync.delayAt(5)).toBeNull();
     let now = 5;

@@ -72,7 +72,7 @@ describe('a room in the page', () => {
     expect(three.ben.happened('caught')).toHaveLength(1);
   });
 
-  test('shows a grab and a throw to the hand that does it before the Room has heard of them', () => {
+  test('shows a grab and a throw to the acting hand before the Room knows of them', () => {
     const { ann, begin, pass, frame, time } = threeTogether();
     begin();
     ann.place(atRack(0));
@@ -127,7 +127,7 @@ describe('a room in the page', () => {
     expect(ann.room?.seats.map((row) => row?.bot)).toEqual([false, true, true]);
   });
 
-  test('what a match was told plays it again to the same end', () => {
+  test('the inputs of a match play it again to the same end', () => {
     const log: (readonly BallInput[])[] = [];
     const three = threeTogether({ stepped: (actions) => log.push(actions), seed: 7 });
     three.begin();

@@ -66,7 +66,7 @@ function playback(
 }
 
 describe('playback of others', () => {
-  test('on an even network is smooth, a tenth of a second late at first and less later', () => {
+  test('on an even network is smooth, a tenth of a second late at first, then less', () => {
     let before: number | null = null;
     let [worst, first, last] = [0, 0, 0];
     playback(
@@ -88,7 +88,7 @@ describe('playback of others', () => {
     expect(worst).toBeLessThan(0.0015);
   });
 
-  test('100 ms ± 30 ms with 2 % of losses: less than one freeze over 250 ms a minute', () => {
+  test('100 ms ± 30 ms with 2 % of losses freezes over 250 ms under once a minute', () => {
     const minutes = isNightly ? 60 : 5;
     const chance = createRandom(20261121);
     // What TCP makes of a loss: three later segments report it, and everything behind it waits for it to be sent again.
@@ -109,7 +109,7 @@ describe('playback of others', () => {
     measure('the same, both players so', () => badWay() + badWay());
   });
 
-  test('a hand on a circle is drawn within 1.5 mm of it, a head that turns within 0.2°', () => {
+  test('a hand on a circle is drawn within 1.5 mm, a turning head within 0.2°', () => {
     const radius = 0.3;
     const turn = (angle: number) => fromAxisAngle(up, 2 * Math.sin(angle));
     const onCircle = (angle: number) => vec3(radius * Math.cos(angle), 1.2 + radius * Math.sin(angle), 0);
@@ -141,7 +141,7 @@ describe('playback of others', () => {
     expect(players.report(1)!.freezes).toBe(0);
   });
 
-  test('a hand that stops dead from 2 m/s is drawn at most 1 cm beyond, and rests within 0.1 s', () => {
+  test('a hand that stops dead from 2 m/s overshoots 1 cm and rests within 0.1 s', () => {
     const stopAt = 3;
     let [furthest, settled] = [0, 0];
     playback(
@@ -164,7 +164,7 @@ describe('playback of others', () => {
     expect(settled).toBeLessThan(0.1);
   });
 
-  test('runs on for a tenth of a second, then stands still, then is a ghost at 1 s and gone at 3 s', () => {
+  test('runs on for 0.1 s, stands still, fades after 1 s and leaves after 3 s', () => {
     const silenceFrom = 2;
     let [furthest, ghostAt, hiddenAt] = [0, 0, 0];
     playback(
@@ -201,7 +201,7 @@ describe('playback of others', () => {
 
   // Packet times wrap around every 16 s: after half of that a later one seems to be an earlier one.
   test.each([1, 6, 10, 14, 60])(
-    'a person silent for %i s while this page was hidden is back with their first packet',
+    'a person silent for %i s while this page was hidden returns with their first packet',
     (seconds) => {
       const players = new RemotePlayers();
       players.receive({ seat: 1, packet: walker(0), arrivedAt: 0 });
@@ -215,7 +215,7 @@ describe('playback of others', () => {
     },
   );
 
-  test('a hand that is lost stays where it was or is not there: it is never on a way', () => {
+  test('a lost hand stays where it was or is absent: it is never on a way', () => {
     const places = new Set<number>();
     playback(
       2,

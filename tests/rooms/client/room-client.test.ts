@@ -40,7 +40,7 @@ test('a person who takes the seat of another is never drawn between the two', ()
   expect(drawn.filter((x) => Math.abs(Math.abs(x) - 3) > 0.001)).toEqual([]);
 });
 
-test('the floors of others are placed in that of the own seat, and in the arena for a spectator', () => {
+test('the floors of others are placed in the own seat’s, and in the arena for spectators', () => {
   const { join, frame } = roomOfTwo();
   const [ann, ben, zoe] = [join('Ann'), join('Ben'), join('Zoe')];
   for (let i = 0; i < 30; i++) frame([ann, ben, zoe], new Map([ann, ben].map((client) => [client, 0])));

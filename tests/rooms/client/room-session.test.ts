@@ -95,7 +95,7 @@ function change(client: SlowClient): void {
 
 const changed = { voice: { session: 'annas-page', muted: true }, avatar: 'man-dark', height: 1.75 };
 
-test('what is changed while the welcome is on its way reaches the room, on joining and on returning', () => {
+test('a change during the welcome reaches the room, on joining and on returning', () => {
   const client = new SlowClient();
   client.connect();
   change(client);
@@ -111,7 +111,7 @@ test('what is changed while the welcome is on its way reaches the room, on joini
   expect(client.known).toEqual(changed);
 });
 
-test('what is changed without a connection is part of what is said first on the next one', () => {
+test('a change without a connection is part of the first message on the next one', () => {
   const client = new SlowClient();
   client.connect();
   client.deliver();
@@ -129,7 +129,7 @@ function wanted(client: SlowClient) {
   return { seat: mySeat, isReady: match?.players[0]?.ready, presence: seat?.presence, rotate };
 }
 
-test('what is pressed while there is no connection, or its welcome is on its way, reaches the room', () => {
+test('a press without a connection, or before its welcome, reaches the room', () => {
   const client = new SlowClient();
   client.connect();
   client.setReady(true);
@@ -154,7 +154,7 @@ test('what is pressed while there is no connection, or its welcome is on its way
   expect(wanted(client).seat).toBeNull();
 });
 
-test('what was pressed on one connection is not said again on the next', () => {
+test('a press on one connection is not repeated on the next', () => {
   const client = new SlowClient();
   client.connect();
   client.setReady(true);

@@ -43,7 +43,7 @@ test('a client follows a game that its session does not know: events, refusals, 
   expect(ben.arenaFromFloor(1).position.y).toBe(1);
 });
 
-test('a round of it is played to its end over a relay, by the client that plays the ball game', async () => {
+test('a whole round of it is played over a relay by the ball game’s client', async () => {
   const relay = await relayOfTest();
   const room = `${countingKind}-over-sockets`;
   const [ann, ben] = ['Ann', 'Ben'].map((name) => {

@@ -15,10 +15,10 @@ function seen(way: Way, seed: number) {
   return { ...figures, beyondWayMs: p95Ms - 500 * way.roundTrip };
 }
 
-describe('what is seen of others in a headset that is steady to 0.03 mm', () => {
+describe('the sight of others in a headset that is steady to 0.03 mm', () => {
   for (const roundTrip of [0, 0.05, 0.15]) {
     for (const jitter of [0, 0.005]) {
-      test(`is the way and at most 50 ms old at round trips of ${1000 * roundTrip} ± ${1000 * jitter} ms, as smooth as they move`, () => {
+      test(`is at most 50 ms later than round trips of ${1000 * roundTrip} ± ${1000 * jitter} ms, and as smooth`, () => {
         for (const seed of [1, 2]) {
           const { beyondWayMs, freezes, jerkRatio } = seen({ roundTrip, jitter, loss: 0 }, seed);
           expect(beyondWayMs).toBeLessThanOrEqual(50);
@@ -28,7 +28,7 @@ describe('what is seen of others in a headset that is steady to 0.03 mm', () => 
       });
     }
 
-    test(`stands still less than once a minute at ${1000 * roundTrip} ± 20 ms with 2 % of losses, and moves as smoothly`, () => {
+    test(`freezes under once a minute at ${1000 * roundTrip} ± 20 ms with 2 % of losses, moving smoothly`, () => {
       for (const seed of [1, 2]) {
         const { freezes, jerkRatio } = seen({ roundTrip, jitter: 0.02, loss: 0.02 }, seed);
         expect(freezes).toBeLessThan(1);

@@ -2,7 +2,7 @@ import { nextRandom } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { TransitWindow } from '../../../src/rooms/client/transit-window';
 
-test('the transits of the last seconds are ranked as a sort of them would, packet after packet', () => {
+test('the transits of the last seconds are ranked as by a sort, packet after packet', () => {
   const window = new TransitWindow(5);
   expect([window.minimum, window.jitter]).toEqual([0, 0]);
   let random = { seed: 11 };

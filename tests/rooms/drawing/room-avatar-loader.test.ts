@@ -29,7 +29,7 @@ const exchangeAt = (addressesOf: AvatarExchange['addressesOf']): AvatarExchange 
   addressesOf,
 });
 
-test('a file that never ends is given up with a sentence, and the next place is not asked', async () => {
+test('a file that never ends is abandoned with a sentence, and no next place is asked', async () => {
   const [first, second] = [await answeredBy(neverEnding), await answeredBy(neverEnding)];
   const asked: string[] = [];
   const exchange = exchangeAt(async () =>

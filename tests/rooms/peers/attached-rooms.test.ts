@@ -49,7 +49,7 @@ async function joins(url: string, name: string, options: Partial<JoinRoomOptions
 
 const drawn = (room: JoinedRoom) => room.others.object.children.filter(({ visible }) => visible);
 
-test('two pages see each other on any server of node:http, whose own addresses stay as they were', async () => {
+test('two pages meet on any server of node:http, whose own addresses stay as they were', async () => {
   const { url, rooms } = await servedRooms();
   expect(await (await fetch(`${url}/hello`)).text()).toBe('mine: /hello');
   expect((await fetch(`${url}/api/rooms`)).status).toBe(200);
@@ -160,7 +160,7 @@ test.each<[what: string, file: () => ArrayBuffer, sentence: RegExp]>([
   },
 );
 
-test('a page of a game acts in it and gets its events, and draws the others on their floors', async () => {
+test('a page of a game acts, gets its events, and draws the others on their floors', async () => {
   const { url } = await servedRooms({ games: new Map([[countingKind, countingRoomKind(2)]]) });
   const joinGame = async (name: string) => {
     const body = solvedActor();
@@ -219,7 +219,7 @@ test('far from the origin of the scene people are where the object of the others
   expect(distance(drawn(room)[0]!.getWorldPosition(new Vector3()), pier.position)).toBeLessThan(0.01);
 });
 
-test('who has no body watches', async () => {
+test('a person without a body watches', async () => {
   const { url } = await servedRooms();
   const ann = await joins(url, 'Ann');
   const watcher = await joins(url, 'Zoe', { body: null });

@@ -46,7 +46,7 @@ function withTime(packet: Uint8Array, timeMs: number): Uint8Array {
   return bytes;
 }
 
-test('another page shows head, hands and elbows of a moving person as they were, 2 % of the packets lost', () => {
+test('another page shows a moving person’s head, hands and elbows, with 2 % of packets lost', () => {
   const { until, sent } = sending();
   until(10_000);
   const others = new RemotePoses();
@@ -122,7 +122,7 @@ test('a person whose session ends is not shown until poses come again', () => {
   expect(others.update(1200)).toHaveLength(1);
 });
 
-test('a floor that the page moves is part of the packet, far beyond what a pose packet reaches', () => {
+test('a floor that the page moves is part of the packet, far beyond pose coordinates', () => {
   const { until, sent } = sending();
   until(500, { placement: { position: { x: 312.5, y: 2, z: -90 }, heading: 3 }, mouth: 0.5 });
   until(1000, { placement: { position: { x: 312.5, y: 2, z: -90 }, heading: -3 }, mouth: 1 });
@@ -158,7 +158,7 @@ test('a peer with another version is refused with a sentence that names both', (
   ]);
 });
 
-test('a flood costs its sender the packets beyond three times the usual rate, and nobody else any', () => {
+test('a flood costs its sender the packets beyond three times the usual rate, and nobody else', () => {
   const { until, sent } = sending();
   until(2000);
   const reasons = new Set<string>();
@@ -172,7 +172,7 @@ test('a flood costs its sender the packets beyond three times the usual rate, an
   expect([...reasons]).toEqual(['flood: it sends too many packets']);
 });
 
-test('a page that is hidden for an hour keeps a few packets, and draws the newest when it is shown', () => {
+test('a page hidden for an hour keeps a few packets and draws the newest when shown', () => {
   const { until, sent } = sending();
   until(8000);
   const others = new RemotePoses();
@@ -193,7 +193,7 @@ test('a page that is hidden for an hour keeps a few packets, and draws the newes
   expect(at / 1000 - others.report('ada')!.shownTime).toBeLessThan(0.25);
 });
 
-test('so many peers and no more, and one that is silent for 30 s is forgotten', () => {
+test('the number of peers is limited, and one that is silent for 30 s is forgotten', () => {
   const { until, sent } = sending();
   until(50);
   const refused: string[] = [];

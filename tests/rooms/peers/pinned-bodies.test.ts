@@ -156,7 +156,7 @@ test.each(postures)('others draw a person who is %s as the trackers pin the body
   expect(worst.drawnFoot).toBeLessThan(0.005);
 });
 
-test('a foot that is lost for a while is not drawn from its tracker, and the other foot is', () => {
+test('a foot lost for a while is not drawn from its tracker; the other one is', () => {
   const [, raised] = postures[1]!;
   const ada = person(raised);
   const others = new RemotePoses();
@@ -176,7 +176,7 @@ test('a foot that is lost for a while is not drawn from its tracker, and the oth
   expect(feet.filter((names) => names !== 'none')).toEqual(['left right', 'left', 'left right']);
 });
 
-test('the feet of a body on a floor that the page has moved are moved with it', () => {
+test('the feet of a body on a moved floor move with it', () => {
   const [, raised] = postures[1]!;
   const ada = person(raised);
   ada.moveTo(0);

@@ -5,7 +5,7 @@ import { RemoteBodies } from '../../../src/rooms/drawing/remote-bodies';
 import { PoseSender } from '../../../src/rooms/peers/pose-sender';
 import { solvedActor } from './solved-actor';
 
-test('the body of a peer who has sent nothing for 30 s is removed, as if the transport had reported it', async () => {
+test('a body whose peer is silent for 30 s is removed, as by the transport', async () => {
   const avatar = await loadAvatar(await readFile('public/avatars/mannequin.vrm'));
   const dispose = vi.spyOn(avatar, 'dispose');
   const forgotten: string[] = [];

@@ -114,7 +114,7 @@ describe('control messages', () => {
     expect(readInBallRoom(message)).toBeNull();
   });
 
-  test('a signal that is more than a voice, or breaks a browser, is passed on by no room and read by no page', () => {
+  test('a signal beyond a voice, or harmful to browsers, is passed on and read by none', () => {
     const descriptions = [
       ['a video', 'v=0\r\nm=video 9 UDP/TLS/RTP/SAVPF 96\r\n'],
       ['a channel of data', 'v=0\r\nm=application 9 UDP/DTLS/SCTP webrtc-datachannel\r\n'],
@@ -149,7 +149,7 @@ describe('control messages', () => {
     );
   });
 
-  test('what is known of a seat survives packing, measures to the millimetre', () => {
+  test('the facts of a seat survive packing, measures to the millimetre', () => {
     fc.assert(
       fc.property(
         fc.record({
@@ -212,7 +212,7 @@ describe('control messages', () => {
   });
 });
 
-test('a change of packets or frames is told to older pages as a change of messages is: by the version of the protocol', () => {
+test('a change of packets or frames shows to older pages as a new protocol version', () => {
   // A change of packets, or of the frames they come in, raises the first: pages that would not see each other get a
   // reason when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
@@ -262,7 +262,7 @@ describe('the parser of small frames', () => {
     }
   });
 
-  test('what is no packet throws', () => {
+  test('a text that is no packet throws', () => {
     const decoder = new relayParser.Decoder();
     for (const text of [
       '',

@@ -119,7 +119,7 @@ describe('a body on the wire', () => {
   test.each([
     ['ik', undefined, cases(500)],
     ['learned', 'learned', cases(100)],
-  ] as const)('of %s: 1 mm and 0.5° at head and hands, 1 cm at any joint, 64 bytes', async (_, name, runs) => {
+  ] as const)('from %s keeps 1 mm and 0.5° at head and hands, 1 cm elsewhere, 64 bytes', async (_, name, runs) => {
     const worst = worstOf();
     const create =
       name && ((calibration: typeof defaultCalibration) => createEstimator(name, calibration, learned.regressor));
@@ -162,7 +162,7 @@ describe('a body on the wire', () => {
     );
   });
 
-  test('costs 64 bytes with the fingers of both hands, and 56 without while no wrist would break: 1.9 and 1.7 kB/s at 30 Hz', async () => {
+  test('costs 64 bytes with the fingers of both hands and 56 without, while wrists stay whole', async () => {
     let unbroken = 0;
     await fc.assert(
       fc.asyncProperty(senders, async (sender) => {
@@ -187,7 +187,7 @@ describe('a body on the wire', () => {
     expect(unbroken).toBeGreaterThan(160);
   });
 
-  test('that is sent again as it was received arrives within the same bounds', async () => {
+  test('arrives within the same bounds when it is sent again as received', async () => {
     await fc.assert(
       fc.asyncProperty(senders, async (sender) => {
         const { packet, skeleton } = await packetOf(sender);
@@ -283,7 +283,7 @@ describe('bytes', () => {
     return { ...handsOnly, timeMs: 0, pose };
   }
 
-  test('of a T-pose are these, until the version changes', () => {
+  test('a T-pose has these until the version changes', () => {
     const packet = restPose(0);
     const { body } = packet.pose;
     const hex = [...encodePose(packet, skeleton)!].map((byte) => byte.toString(16).padStart(2, '0')).join('');
@@ -297,7 +297,7 @@ describe('bytes', () => {
     }
   });
 
-  test('of another version are no pose', () => {
+  test('another version’s are no pose', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     for (let version = 0; version < 16; version++) {
       const other = Uint8Array.from(bytes);
@@ -306,7 +306,7 @@ describe('bytes', () => {
     }
   });
 
-  test('that are too few, too many or not filled up with zeros are no pose', () => {
+  test('too few, too many or unpadded ones are no pose', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     for (let length = 0; length < bytes.length; length++) {
       expect(decodePose(bytes.slice(0, length), skeleton)).toBeNull();
@@ -318,7 +318,7 @@ describe('bytes', () => {
     expect(decodePose(unclean, skeleton)).toBeNull();
   });
 
-  test('that say what cannot be are no pose: a free arm without a body', () => {
+  test('impossible ones are no pose: a free arm without a body', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     const withBits = (...bits: number[]) => {
       const changed = Uint8Array.from(bytes);
@@ -332,7 +332,7 @@ describe('bytes', () => {
     expect(withBits(10, 11, 12)).toBeNull();
   });
 
-  test('that say that something is pinned, and not what, are no pose', () => {
+  test('ones that pin something unnamed are no pose', () => {
     const bent = restPose(0.1);
     const bytes = encodePose(bent, skeleton)!;
     expect(decodePose(bytes, skeleton)).not.toBeNull();
@@ -362,7 +362,7 @@ describe('bytes', () => {
   });
 });
 
-test('100,000 bad packets (a million at night) decode to null or to a finite pose, and throw nothing', {
+test('bad packets (100,000, or a million at night) decode to null or to a finite pose', {
   tags: ['full'],
 }, async () => {
   const packets = isNightly ? 1_000_000 : 100_000;

@@ -27,7 +27,7 @@ function received(head: Vec3, hand: Vec3): Vec3 {
 
 const axes = ['x', 'y', 'z'] as const;
 
-test('a hand within 1.25 m of the head on each axis is an eighth of a millimetre off, one within 2.08 m half a millimetre', () => {
+test('a hand within 1.25 m of the head is within an eighth millimetre, farther within half', () => {
   let far = 0;
   fc.assert(
     fc.property(vector(4), vector(2.08), (head, away) => {
@@ -54,7 +54,7 @@ test('a hand that is further away is at the edge', () => {
   );
 });
 
-test('codes that no hand has are refused: those above all, and coarse places where finer ones are', () => {
+test('codes that no hand has are refused: higher ones, and coarse places where finer exist', () => {
   const read = (high: number, low: number): boolean => {
     const writer = new BitWriter();
     writer.write(high, 20);

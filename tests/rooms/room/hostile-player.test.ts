@@ -75,7 +75,7 @@ describe('a seated player who changes with every message', () => {
   const attackSeconds = 10;
   const perSecond = 1000;
 
-  test.each(changes)('is seen in a few of a thousand %s a second, and at the end as they are', (what, change) => {
+  test.each(changes)('is seen in a few of a thousand %s a second, and finally as they are', (what, change) => {
     const testRoom = createTestRoom({ voices: true });
     testRoom.join('ann');
     testRoom.join('ben');

@@ -15,7 +15,7 @@ function playing() {
 }
 
 describe('a pause', () => {
-  test('stops the clock of the match for as long as one player wants, and no other clock', () => {
+  test('stops the clock of the match while one player wants, and no other clock', () => {
     const { testRoom, pause, match } = playing();
     testRoom.pass(5, testRoom.stand);
     pause('ann', true);
@@ -98,7 +98,7 @@ describe('a pause', () => {
     );
   });
 
-  test('ends when the player who wanted it gives the seat up or has lost it, not with a hiccup of the connection', () => {
+  test('ends when its player gives up or loses the seat, not with a short disconnection', () => {
     const { testRoom, pause } = playing();
     pause('ann', true);
     testRoom.tick();
@@ -114,7 +114,7 @@ describe('a pause', () => {
     expect(testRoom.room.paused).toBe(false);
   });
 
-  test('that is asked for before the start stops the match as soon as it has begun', () => {
+  test('stops the match as soon as it has begun when requested before the start', () => {
     const testRoom = createTestRoom({ pausable: true });
     for (const client of ['ann', 'ben', 'cal']) testRoom.join(client, { name: client });
     testRoom.say('ann', { type: 'pause', pause: true });
@@ -126,7 +126,7 @@ describe('a pause', () => {
     expect(ballSecondsLeft(testRoom.room.match)).toBeGreaterThan(89.9);
   });
 
-  test('that is asked for in the very tick of the bell stops nothing: the match is over for all', () => {
+  test('stops nothing when requested in the very tick of the bell: the match is over', () => {
     const testRoom = createTestRoom({ pausable: true, ball: { seconds: 5 } });
     testRoom.begin();
     testRoom.pass(4.5, testRoom.stand);
@@ -142,7 +142,7 @@ describe('a pause', () => {
     expect(testRoom.room.match.phase).toBe('running');
   });
 
-  test('is refused where the terms of the room do not allow it, and to who only watches', () => {
+  test('is refused where the room’s terms forbid it, and to mere watchers', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.say('ann', { type: 'pause', pause: true });
@@ -173,8 +173,8 @@ describe('a pause', () => {
   });
 });
 
-describe('where a player was', () => {
-  test('is forgotten within 2 s of silence, in the room and in the match; the seat is not', () => {
+describe('the last place of a player', () => {
+  test('is forgotten within 2 s of silence, in room and match; the seat is not', () => {
     const { testRoom, match } = playing();
     testRoom.pass(1, testRoom.stand);
     const silent = testRoom.time;
@@ -192,7 +192,7 @@ describe('where a player was', () => {
     expect(match().players[0]?.head).not.toBeNull();
   });
 
-  test('is forgotten of a lost connection as well', () => {
+  test('is forgotten after a lost connection as well', () => {
     const { testRoom, match } = playing();
     testRoom.room.disconnect('ann', testRoom.time);
     testRoom.pass(2);

@@ -4,7 +4,7 @@ import { fists } from '../client/people';
 import { createTestRoom } from './test-room';
 
 describe('poses that the Room rejects', () => {
-  test('a head that is suddenly elsewhere, unless its space was re-anchored; after a second it is accepted', () => {
+  test('a head suddenly elsewhere, unless its space was re-anchored; after a second it is accepted', () => {
     const testRoom = createTestRoom();
     testRoom.join('ann');
     const at = (x: number) => testRoom.packet(0, fists(vec3(x, 1, 0)));

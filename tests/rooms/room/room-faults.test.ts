@@ -264,7 +264,7 @@ describe('a page that comes at t = 60 s', () => {
     );
   });
 
-  test('and of a room with as many seats as there may be', () => {
+  test('no welcome to a room with the most seats takes more than 2 kB', () => {
     const sent: number[] = [];
     const room = new Room(
       countingPolicy(maxSeats),

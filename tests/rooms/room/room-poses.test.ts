@@ -25,7 +25,7 @@ describe('poses and stillness of a room', () => {
     ]);
   });
 
-  test('after a standstill of its host a room passes on the newest poses of a seat, and the rest is gone', () => {
+  test('after a standstill of its host a room passes on a seat’s newest poses alone', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.frames.length = 0;

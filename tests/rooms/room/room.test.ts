@@ -27,7 +27,7 @@ describe('seats', () => {
     expect(unpackSeatInfo(testRoom.welcomeOf('x').seats[0]!)?.name).toBe('Player 1');
   });
 
-  test('a connection lost for less than 30 s gets its seat and score back, even with 16 others waiting', () => {
+  test('a connection lost under 30 s gets its seat and score back, with 16 others waiting', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.room.disconnect('ann', testRoom.time);
@@ -54,7 +54,7 @@ describe('seats', () => {
     for (let second = 0; second < 3600; second++) testRoom.tick(1);
   };
 
-  test('a tab that is hidden for an hour and stays connected finds its seat, and the round over', () => {
+  test('a connected tab hidden for an hour finds its seat, and the round over', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.say('ann', { type: 'away', away: true });
@@ -70,7 +70,7 @@ describe('seats', () => {
     expect(testRoom.room.match.phase).toBe('running');
   });
 
-  test('a tab that the browser disconnects for an hour finds a free seat, or watches where there is none', () => {
+  test('a tab disconnected for an hour finds a free seat, or watches where none is', () => {
     for (const taken of [false, true]) {
       const testRoom = createTestRoom();
       testRoom.begin();
@@ -84,7 +84,7 @@ describe('seats', () => {
     }
   });
 
-  test('a ball in hand survives a hiccup of the connection and goes back to the rack after a longer one', () => {
+  test('a ball in hand survives a short disconnection and returns to the rack after longer ones', () => {
     const hold = () => {
       const testRoom = createTestRoom();
       testRoom.begin();
@@ -106,7 +106,7 @@ describe('seats', () => {
     expect(longer.room.match.players[0]?.present).toBe(true);
   });
 
-  test('a page that is loaded again at once numbers its actions from 1 again: none counts as seen before', () => {
+  test('a page reloaded at once numbers its actions from 1: none counts as seen before', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.grab();
@@ -136,7 +136,7 @@ describe('seats', () => {
     expect(testRoom.join('eve', { seat: 1 }).seat).toBeNull();
   });
 
-  test('others learn that a player is away: at once when declared, within 3 s of silence, and at once on return', () => {
+  test('others learn of an absence at once when declared, within 3 s of silence otherwise', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.say('ann', { type: 'away', away: true });
@@ -155,7 +155,7 @@ describe('seats', () => {
     expect(presence(testRoom, 1)).toBe('here');
   });
 
-  test('clients may do anything in any order: a seat belongs to at most one, and each who is welcomed knows theirs', () => {
+  test('a seat belongs to one client at most in any order, and the welcomed know theirs', () => {
     const step = fc.record({
       who: fc.integer({ min: 0, max: 5 }),
       what: fc.constantFrom('join', 'watch', 'bot', 'disconnect', 'leave', 'sit', 'ready', 'wait'),
@@ -197,7 +197,7 @@ describe('seats', () => {
 });
 
 describe('a match in a room', () => {
-  test('two grabs of one ball in one tick have one winner, for any two players in any order', () => {
+  test('two grabs of a ball in one tick have one winner, for any players and order', () => {
     fc.assert(
       fc.property(fc.constantFrom(1, 3), fc.boolean(), (ball, benFirst) => {
         const testRoom = createTestRoom({ ball: { balls: 4 } });
@@ -245,7 +245,7 @@ describe('a match in a room', () => {
     },
   );
 
-  test('that begins between two ticks of the last one knows who has come since', () => {
+  test('the next one knows newcomers if it begins between two ticks of the last', () => {
     const testRoom = createTestRoom({ ball: { balls: 2, seconds: 0.5 } });
     testRoom.begin();
     testRoom.pass(1);
@@ -309,7 +309,7 @@ describe('a match in a room', () => {
     }
   }
 
-  test('a client that follows the events from a snapshot, taken at any time, knows what the Room knows', () => {
+  test('a client that follows events from a snapshot, taken any time, knows the Room’s state', () => {
     fc.assert(
       fc.property(fc.array(somethingHappens, { minLength: 5, maxLength: 60 }), (happenings) => {
         const testRoom = createTestRoom({ ball: { balls: 4, seconds: 20 } });
@@ -339,7 +339,7 @@ describe('a match in a room', () => {
     );
   });
 
-  test('the same messages give the same match, to the last digit', () => {
+  test('equal messages give equal matches, to the last digit', () => {
     fc.assert(
       fc.property(fc.array(somethingHappens, { minLength: 5, maxLength: 40 }), (happenings) => {
         const [one, two] = [createTestRoom({ ball: { balls: 4 } }), createTestRoom({ ball: { balls: 4 } })];

@@ -46,7 +46,7 @@ function countingRoom() {
   return testRoom;
 }
 
-test('a Room hosts a game that it has never heard of: its actions, events, refusals and states', () => {
+test('a Room hosts a game unknown to it: its actions, events, refusals and states', () => {
   const testRoom = countingRoom();
   expect(testRoom.room.match.phase).toBe('running');
   expect(testRoom.count('ann', 1)).toBe('taken');
@@ -65,7 +65,7 @@ test('a Room hosts a game that it has never heard of: its actions, events, refus
   expect(welcome).toMatchObject({ type: 'welcome', kind: 'counting', seat: null, match: { total: 1 } });
 });
 
-test('which has its pauses, rematches and poses', () => {
+test('an unknown game has its pauses, rematches and poses', () => {
   const testRoom = countingRoom();
   testRoom.say('ben', { type: 'pause', pause: true });
   testRoom.pass(0.2);

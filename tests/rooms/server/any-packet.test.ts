@@ -54,7 +54,7 @@ async function converse(url: string, stage: (typeof stages)[number], frames: rea
   socket.terminate();
 }
 
-test('what is no packet ends the connection that sends it, and nothing else', async () => {
+test('a text that is no packet ends the connection that sends it, and nothing else', async () => {
   const relay = await forkServer();
   const witness = await guestOfTest(relay.url, 'hostile');
   for (const packet of noPackets) {

@@ -40,7 +40,7 @@ async function seated(room: string) {
 const sentence = async (response: Response): Promise<string> => ((await response.json()) as { error: string }).error;
 
 describe('an avatar in the store', () => {
-  test('comes to the others of the room as it was brought, as a file that no browser runs', async () => {
+  test('comes to the others of the room as brought, as a file that no browser runs', async () => {
     const [ann, ben] = [await seated('meadow'), await seated('meadow')];
     const bytes = file();
     expect((await ann.store(bytes)).status).toBe(204);
@@ -72,7 +72,7 @@ describe('an avatar in the store', () => {
     expect((await fetch(`${relay.url}/api/avatars/${hash}?room=birch`)).status).toBe(401);
   });
 
-  test('of another player, worn by its hash, stays the owner’s: it is deleted when the owner wears another', async () => {
+  test('remains its owner’s when another wears its hash: it is deleted with the owner’s next one', async () => {
     const [ann, ben] = [await seated('copies'), await seated('copies')];
     const hash = hashOf(file());
     const bytes = file();
@@ -177,7 +177,7 @@ describe('the store takes no', () => {
     expect(chunked).toBe(411);
   });
 
-  test('file of those who watch, of those in a study, and of those whose seat is gone', async () => {
+  test('file of watchers, of participants in a study, or of holders of a lost seat', async () => {
     const bytes = file();
     const eve = await seated('no-seat');
     eve.say({ type: 'sit', seat: null });
@@ -209,7 +209,7 @@ describe('the store takes no', () => {
   });
 });
 
-test('seats in many rooms fill no more than the share of their address: the others find place for theirs', async () => {
+test('seats in many rooms fill only the share of their address: others find theirs', async () => {
   await relay.close();
   relay = await startRelay({ THREEPOINT_AVATAR_MEGABYTES: '96', THREEPOINT_TRUST_PROXY: '1' });
   const upload = async (room: string, address: string, bytes: Uint8Array) => {
@@ -232,7 +232,7 @@ test('seats in many rooms fill no more than the share of their address: the othe
   });
 });
 
-test('an upload that never ends keeps no one else from theirs, and is forgotten with its connection', async () => {
+test('an upload that never ends blocks no other and is forgotten with its connection', async () => {
   const eve = await seated('endless');
   const bytes = file();
   const sending = httpRequest(`${relay.url}/api/avatars/${hashOf(bytes)}?room=endless`, {
@@ -252,7 +252,7 @@ test('an upload that never ends keeps no one else from theirs, and is forgotten 
   await until('its place to be free', () => relay.relay.avatars.bytes === bytes.length);
 });
 
-test('a page finds what it needs to know by its pass: once more with a new one where that has expired', async () => {
+test('a page learns what it needs by its pass, or by a new one after expiry', async () => {
   const ann = await seated('exchange');
   let asked = 0;
   const pass = {

@@ -36,7 +36,7 @@ async function play(port: number, { rooms, seconds }: typeof crowd) {
   };
 }
 
-test('rooms of three play on time, and are gone with all that they took when their players are, again and again', {
+test('rooms of three play on time and leave nothing when their players do, repeatedly', {
   tags: ['full'],
   timeout: 1_800_000,
 }, async () => {

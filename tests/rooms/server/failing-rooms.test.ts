@@ -28,7 +28,7 @@ async function failingRooms() {
   return { ...(await servedRooms({ games })), failing };
 }
 
-test('a game that fails at a message costs its sender the connection, and the room goes on', async () => {
+test('a game that fails at a message costs its sender the connection; the room goes on', async () => {
   const { url, rooms } = await failingRooms();
   const room = `${countingKind}-room`;
   const other = await guestOfTest(url, room);

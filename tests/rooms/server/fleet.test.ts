@@ -191,7 +191,7 @@ describe.skipIf(missing)(
       }
     });
 
-    test('who may end a room ends it wherever it is; others do not', async () => {
+    test('an authorised caller ends a room wherever it is; others do not', async () => {
       const end = (room: string, token: string) =>
         fetch(`${relays[0]!.url}/api/rooms/end`, {
           method: 'POST',
@@ -210,7 +210,7 @@ describe.skipIf(missing)(
       for (const { person } of guests) person.stop();
     });
 
-    test('requests on one connection, offers of upgrades among them, are answered in their turn through the proxy', async () => {
+    test('requests on one connection, among them upgrades, are answered in turn through the proxy', async () => {
       const requests = [
         ...Array.from({ length: isNightly ? 100 : 5 }, () => pipelined).flat(),
         [webSocket, '101'] as const,

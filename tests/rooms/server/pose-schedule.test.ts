@@ -45,7 +45,7 @@ describe('poses leave', () => {
     expect(room.sent).toHaveLength(21);
   });
 
-  test('several in one message where it has none, and none of them waits for longer than 12 ms', () => {
+  test('several in one message where it has none, each within 12 ms', () => {
     const schedule = new PoseSchedule(now, () => 1);
     const room = roomOf(3);
     // The load has to last before it counts.

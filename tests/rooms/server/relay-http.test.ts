@@ -74,7 +74,7 @@ describe('the relay over HTTP', () => {
     expect((await signed({ ...asked, token })).pass).toEqual(pass);
   });
 
-  test('lets five new people a minute in from one address; who has a pass is none of them', async () => {
+  test('lets five new people a minute in from one address, not counting holders of a pass', async () => {
     const from = { 'x-forwarded-for': '6.6.6.6, 203.0.113.7' };
     const asked = { room: 'amber', kind: 'ball' };
     const statuses: number[] = [];
@@ -145,7 +145,7 @@ describe('connecting', () => {
     expect(welcome).toMatchObject({ room: 'heath' });
   });
 
-  test('the same token again is the same person: the seat goes to the newer page', async () => {
+  test('a repeated token is the same person: the seat goes to the newer page', async () => {
     const token = await tokenFor(server.url, 'dell');
     const first = await guestOfTest(server.url, 'dell', token);
     const second = await guestOfTest(server.url, 'dell', token);

@@ -23,7 +23,7 @@ describe('a relay', () => {
     // The join of version 3, when the pose packet had another layout: without an avatar.
     ['an older', { version: 3 }],
     ['a newer', { version: protocolVersion + 1, avatar: { name: 'of the future' }, posture: 'seated' }],
-  ])('reports to the page of %s version that it is one, and shows it to no one in the room', async (_, ofVersion) => {
+  ])('reports to the page of %s version that it is one, and to no one else', async (_, ofVersion) => {
     const ann = personOfTest(server.url, 'versions', 'Ann');
     await until('ann in', () => ann.connection.room !== null);
     const token = await tokenFor(server.url, 'versions');

@@ -44,7 +44,7 @@ async function twoTalkers(room: string) {
 }
 
 describe('the voices of a room', () => {
-  test('are known seat by seat, to a person who joins later too, and end with the seat', async () => {
+  test('are known seat by seat, to later guests too, and end with the seat', async () => {
     const { ann, ben } = await twoTalkers('known');
     ann.connection.voices.setVoice({ session: 'annas-page', muted: false });
     await until('ben to know', () => ben.voiceOf(0)?.muted === false);
@@ -61,7 +61,7 @@ describe('the voices of a room', () => {
     await until('ben silent', () => cal.voiceOf(1) === null);
   });
 
-  test('are signalled to the page that is meant, under the session that the room knows its sender by', async () => {
+  test('are signalled to the intended page under the session that the room knows its sender by', async () => {
     const { ann, ben } = await twoTalkers('signals');
     const cal = talker(server.url, 'signals', 'Cal');
     await until('cal in', () => cal.connection.room !== null);
@@ -76,7 +76,7 @@ describe('the voices of a room', () => {
     expect(cal.heard).toEqual([]);
   });
 
-  test('a seat keeps its voice while a lost connection is waited for, and a page that returns says how it takes part', async () => {
+  test('a seat keeps its voice while a lost connection is awaited; returning pages declare their own', async () => {
     const { ann } = await twoTalkers('returning');
     const token = await tokenFor(server.url, 'returning');
     const raw = await guestOfTest(server.url, 'returning', token);
@@ -91,7 +91,7 @@ describe('the voices of a room', () => {
     expect(ann.voiceOf(2)).toBeNull();
   });
 
-  test('go to no other room, to no page that is not among them, and not to oneself', async () => {
+  test('go to no other room, no foreign page, and not to oneself', async () => {
     const { ann } = await twoTalkers('one');
     const { ann: other } = await twoTalkers('other');
     const dot = talker(server.url, 'one', 'Dot');
@@ -118,7 +118,7 @@ describe('the voices of a room', () => {
     await expect.poll(() => refusals(server.url, 'session-taken')).toBe(before + 2);
   });
 
-  test('a signal too long, or with a seat of its own, is a bad message; the third ends the connection', async () => {
+  test('a signal too long or with its own seat is bad; the third ends the connection', async () => {
     const guest = await guestOfTest(server.url, 'bad');
     guest.say({ type: 'signal', to: 'bens-page', body: { description: { type: 'offer', sdp: 'v'.repeat(3300) } } });
     guest.say({ type: 'signal', to: 'bens-page', from: 'annas-page', body: offer });
@@ -127,7 +127,7 @@ describe('the voices of a room', () => {
     expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'misbehaved' });
   });
 
-  test('a flood of signals ends with its sender; what was within the budget has arrived, and the rest of the room goes on', async () => {
+  test('a flood of signals ends with its sender; the budget arrived, and the room goes on', async () => {
     const { ben } = await twoTalkers('flood');
     const flooding = await guestOfTest(server.url, 'flood');
     flooding.say({ type: 'voice', voice: { session: 'floods-page', muted: true } });
@@ -166,7 +166,7 @@ describe('a server without voices', () => {
     await expect.poll(() => refusals(relay.url, 'no-voices')).toBe(1);
   });
 
-  test('the room of a study has none, also for a page that asks for them while joining', async () => {
+  test('the room of a study has none, even for a page that joins with one', async () => {
     const seat = await studySeats.sign(paperPlan(), 'P01', { step: 'ball/1/trial-1', run: 1 }, false);
     const answer = await fetch(`${server.url}/api/voices?room=${seat.room}`, {
       headers: { authorization: `Bearer ${seat.token}` },
@@ -175,8 +175,8 @@ describe('a server without voices', () => {
   });
 });
 
-describe('how pages find each other', () => {
-  test('by the servers that the environment names; a pass to TURN is good for four hours and tells no name', async () => {
+describe('the way from page to page', () => {
+  test('leads over the environment’s servers; a pass to TURN lasts four hours without a name', async () => {
     const relayed = await forkServer({
       THREEPOINT_STUN: 'stun:stun.example.org:3478',
       THREEPOINT_TURN: 'turn:turn.example.org:3478?transport=udp, turns:turn.example.org:5349',

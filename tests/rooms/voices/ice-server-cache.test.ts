@@ -17,7 +17,7 @@ const hour = 3600_000;
 const passOf = (terms: VoiceSettings | null) => terms?.iceServers[0]?.username ?? null;
 
 describe('a pass to a relay for voices', () => {
-  test('of four hours is asked for anew after three, once', async () => {
+  test('is renewed after three of its four hours, once', async () => {
     const { server, kept } = serverOf(4 * 3600);
     await kept.refresh();
     server.nowMs = 2.9 * hour;
@@ -55,7 +55,7 @@ describe('a pass to a relay for voices', () => {
     expect(passOf(await kept.refreshIfDue())).toBe('6');
   });
 
-  test('that is not there is never asked for again', async () => {
+  test('a missing one is never asked for again', async () => {
     const { server, kept } = serverOf(null);
     await kept.refresh();
     server.nowMs = 1000 * hour;

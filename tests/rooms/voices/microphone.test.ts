@@ -59,7 +59,7 @@ async function opened() {
 }
 
 describe('a microphone that a headset ends when it sleeps', () => {
-  test('is taken again at once where the page is still seen, and said to be lost until then', async () => {
+  test('is taken again at once where the page is visible, and counted lost until then', async () => {
     const { microphone, tracks } = await opened();
     device.tracks[0]?.end();
     expect(microphone.track).toBeNull();
@@ -72,7 +72,7 @@ describe('a microphone that a headset ends when it sleeps', () => {
     expect(tracks).toEqual([device.tracks[0], null, device.tracks[1]]);
   });
 
-  test('is asked for when the page is seen again, and every two seconds while it does not come back', async () => {
+  test('is requested when the page is visible again, and every two seconds until it returns', async () => {
     const { microphone } = await opened();
     seen.visibilityState = 'hidden';
     device.refuses = 'NotReadableError';
@@ -91,7 +91,7 @@ describe('a microphone that a headset ends when it sleeps', () => {
     expect(device.asked).toBe(3);
   });
 
-  test('and refused on return is a sentence; it is not asked for again and again, but when its owner wants it', async () => {
+  test('is requested once where refused on return, with a sentence, then at its owner’s wish', async () => {
     const { microphone } = await opened();
     device.refuses = 'NotAllowedError';
     device.tracks[0]?.end();

@@ -69,7 +69,7 @@ test('a peer signals its offer and addresses, and lets the other be heard', asyn
   expect(told).toEqual(['heard', 'description', 'candidates']);
 });
 
-test('a peer that is over sends, signals and lets hear nothing more at once; its connection is closed a moment later', async () => {
+test('a peer that is over sends and plays nothing more; its connection closes soon after', async () => {
   const { made, told, connection } = peer();
   made.close();
   expect(connection.sent.at(-1)).toBeNull();

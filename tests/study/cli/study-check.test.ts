@@ -38,14 +38,14 @@ describe('the schema for editors', () => {
   });
 });
 
-describe('what is wrong with a plan', () => {
-  test('is nothing with the shipped ones', () => {
+describe('the list of faults in a plan', () => {
+  test('is empty for the shipped ones', () => {
     for (const name of ['paper', 'example']) {
       expect(planComplaints(read(`public/studies/${name}.json`), `${name}.json`)).toEqual([]);
     }
   });
 
-  test('is all said at once, each with file, field and reason', () => {
+  test('is complete at once, each fault with file, field and reason', () => {
     const wrong = JSON.parse(paperFile);
     wrong.seed = 'seven';
     wrong.conditions[1].estimator = 'magic';
@@ -57,7 +57,7 @@ describe('what is wrong with a plan', () => {
     ]);
   });
 
-  test('is what its parts demand of each other, once each is right', () => {
+  test('has what its parts demand of each other, once each is right', () => {
     expect(planComplaints(JSON.stringify({ ...paperPlan(), participants: 16 }), 'mine.json')).toEqual([
       'mine.json: tasks[1].groupSize: 16 participants cannot be divided into groups of 3',
     ]);
@@ -65,14 +65,14 @@ describe('what is wrong with a plan', () => {
   });
 });
 
-describe('what a plan comes to', () => {
-  test('is as long as its rounds, rests and questionnaires', () => {
+describe('the summary of a plan', () => {
+  test('gives the time of its rounds, rests and questionnaires', () => {
     // Archery: practice 70, two rounds of 70; ball: practice 90 and its rest, two rounds of 90. Four rests, four
     // questionnaires.
     expect(durationOf(paperPlan())).toEqual({ played: 480, rests: 300, questionnaires: 1680 });
   });
 
-  test('is every screen in order, every question among them', () => {
+  test('has every screen in order, every question among them', () => {
     const screens = outlineOf(examplePlan(), 'P01');
     expect(screens[0]?.shows).toBe('Consent: Taking part');
     expect(screens.filter(({ at, shows }) => at === 'either' && / of 6, /.test(shows))).toHaveLength(2 * 12);
@@ -100,7 +100,7 @@ describe('npm run tool -- study:check', () => {
     expect(status).toBe(0);
   });
 
-  test('says who has no one beside them and who is asked whether to stop, and where they meet that', () => {
+  test('names those without a neighbour and those who may stop, and where they meet this', () => {
     const file = join(directoryWith(), 'mine.json');
     const remote = { contact: 'Call 555 0100.', freeSpace: 2.5 };
     const askToStop = [

@@ -6,7 +6,7 @@ const root = fileURLToPath(new URL('../../..', import.meta.url));
 const power = (...args: readonly string[]) =>
   spawnSync(process.execPath, ['scripts/tool.mjs', 'study:power', ...args], { cwd: root, encoding: 'utf8' });
 
-test('npm run tool -- study:power says how many participants a study needs, or what is wrong with the question', {
+test('npm run tool -- study:power gives the participants a study needs, or the question’s fault', {
   tags: ['full'],
 }, () => {
   const { stdout, status } = power('--effect', '1', '--studies', '2000');

@@ -48,7 +48,7 @@ describe('a simulated study', () => {
     for (const { score, maximum } of valid) expect(score).toBeLessThanOrEqual(maximum);
   });
 
-  test('goes through mishaps as people do: what was interrupted is tried again, what was voided does not count', () => {
+  test('retries what was interrupted and discounts what was voided, as people do', () => {
     const performance = { ...statedPerformanceModel, mishaps: { reload: 0.3, voided: 0.3 } };
     const records = simulate({ performance });
     const types = new Set(records.flatMap((record) => (record.kind === 'event' ? [record.body.type] : [])));
@@ -58,7 +58,7 @@ describe('a simulated study', () => {
     expect(trials.filter(({ excluded }) => !excluded)).toHaveLength(15 * 4);
   });
 
-  test('gives the three of a group the same score, and their throws add up to no more than twenty', () => {
+  test('gives a group of three one score, with at most twenty throws together', () => {
     const ball = simulated.flatMap((record) =>
       record.kind === 'trial' && record.body.place.task === 'ball' ? [record] : [],
     );

@@ -16,7 +16,7 @@ test('a host of files is distinguished from a server without the study', async (
   await expect(server.study({ study: 'paper', participant: 'P01' })).rejects.toMatchObject({ reason: 'unknown' });
 });
 
-test('a server that is away for now is unreachable, with a proxy’s page as with our own sentence', async () => {
+test('a server that is away is unreachable, behind a proxy’s page or our own sentence', async () => {
   for (const body of ['<h1>Bad gateway</h1>', '{"error":"starting"}']) {
     await expect((await clientOf(502, body)).study({ study: 'paper', participant: 'P01' })).rejects.toThrow(
       ServerUnreachable,
@@ -24,6 +24,6 @@ test('a server that is away for now is unreachable, with a proxy’s page as wit
   }
 });
 
-test('a recording may be on its way for as long as the server lets a request arrive', () => {
+test('a recording may travel for as long as the server lets a request arrive', () => {
   expect(motionTimeoutMs).toBe(requestTimeoutMs);
 });

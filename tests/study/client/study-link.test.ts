@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { invitationIn, studyLink } from '../../../src/study/client/study-link';
 
-test('a link to a place says study and participant to the server, and the invitation to the page alone', () => {
+test('a link gives the server study and participant, and keeps the invitation for the page', () => {
   const link = new URL(
     studyLink({ study: 'paper', participant: 'P07', invitation: 'G4F9-TMTZ-4S8W-GZ1P' }),
     'https://a.example/threepoint/',

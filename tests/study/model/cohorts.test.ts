@@ -17,7 +17,7 @@ const bodies = (count: number): StudyCohort[] =>
 const [archery] = paperPlan().tasks as [StudyTask];
 
 describe('cohorts', () => {
-  test('stand in the schedules of those who are in them, and in none where the plan has none', () => {
+  test('appear in the schedules of their members, and in none where the plan has none', () => {
     const plan = checkedPlan(paperPlan({ cohorts: bodies(2), participants: 6, tasks: [archery] }));
     const drawn = cohortsByParticipant(plan);
     expect(participantsOf(plan).map((one) => scheduleFor(plan, one).cohort)).toEqual(
@@ -26,7 +26,7 @@ describe('cohorts', () => {
     expect(scheduleFor(paperPlan(), 'P01').cohort).toBeNull();
   });
 
-  test('are as large as each other, those who play together are in one, and every order comes in each', () => {
+  test('are equally large, keep groups together, and contain every order', () => {
     fc.assert(
       fc.property(
         fc.nat(2 ** 31 - 1),
@@ -74,8 +74,8 @@ describe('cohorts', () => {
   });
 });
 
-describe('what should be known before the first participant', () => {
-  test('is which orders are not balanced, and how many participants would balance them', () => {
+describe('the remarks before the first participant', () => {
+  test('name orders that are not balanced, and how many participants would balance them', () => {
     expect(remarksOn(paperPlan())).toEqual([
       'Archery: the 2 orders are not balanced: some occur 8 times, others 7 times; a multiple of 6 participants would balance them.',
       'Ball game: the 2 orders are not balanced: some occur 3 times, others 2 times; a multiple of 6 participants would balance them.',
@@ -83,7 +83,7 @@ describe('what should be known before the first participant', () => {
     expect(remarksOn(paperPlan({ participants: 18 }))).toEqual([]);
   });
 
-  test('is which cohorts do not, which conditions have the same body, and where there is no mirror', () => {
+  test('name unbalanced cohorts, conditions with the same body, and tasks without a mirror', () => {
     const conditions = ['a', 'b'].map((id) => ({ id, label: id, estimator: 'ik' as const, mirror: true }));
     const remarks = remarksOn(checkedPlan(paperPlan({ participants: 9, cohorts: bodies(2), conditions })));
     expect(remarks).toContainEqual(expect.stringMatching(/^The cohorts are not balanced: body-0 \d, body-1 \d/));

@@ -40,7 +40,7 @@ describe('two cohorts', () => {
     expect(mean?.test).toEqual(welchTest(second.map(meanOf), first.map(meanOf)));
   });
 
-  test('who lacks a condition counts under the others, and not in the mean of all', () => {
+  test('a person who lacks a condition counts under the others, not in the overall mean', () => {
     const rows = rowsOf(chicks.flat()).map((row) =>
       row.participant === 'P01' && row.condition === 'c1' ? { ...row, excluded: 'voided: the phone rang' } : row,
     );
@@ -68,7 +68,7 @@ describe('two cohorts', () => {
     expect(compared).toMatchObject([{ ranks: { statistic: 0.5, effect: 0 } }]);
   });
 
-  test('are alike where the means of their rounds add up to the same under all conditions: tied, and without a spread', () => {
+  test('are alike where round means add up equally under all conditions: tied, without a spread', () => {
     // Three rounds under three conditions: 5/3 + 5/3 + 1 is 4/3 + 2 + 1.
     const sums = [
       [5, 5, 3],
@@ -85,7 +85,7 @@ describe('two cohorts', () => {
     ]);
   });
 
-  test('of whom one has no one: means alone, no test', () => {
+  test('a cohort of no one leaves means alone, no test', () => {
     const measures = answerMeasures(rowsOf([[3], [4]]), () => 'all');
     const compared = compareCohorts(measures, { sides: ['all', 'none'], conditions: ['c0'] });
     expect(compared).toMatchObject([{ first: { n: 2, mean: 3.5 }, second: null, test: null, ranks: null }]);
@@ -106,7 +106,7 @@ describe('a mixed study', () => {
   const records = simulateStudy(plan, models, 5, 1e9).flatMap((one) => one.records);
   const tables = new Map(resultTables(records, plan).map((table) => [table.name, table.rows]));
 
-  test('compares its cohorts by the mean of all conditions and under each, every view a family of its own', () => {
+  test('compares its cohorts overall and under each condition, every view a family of its own', () => {
     const rows = tables.get('planned-cohorts') ?? [];
     expect(rows.map(({ condition, of }) => `${condition} ${of}`)).toEqual(
       ['', 'late-0', 'late-100', 'late-200'].flatMap((view) =>

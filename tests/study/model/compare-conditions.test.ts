@@ -55,7 +55,7 @@ describe('an analysis of simulated studies', () => {
     }
   });
 
-  test('finds an effect of 1.5 points in most questions of every study, and in the direction put in', () => {
+  test('finds an effect of 1.5 points in most questions of every study, in its direction', () => {
     for (let study = 0; study < 20; study++) {
       const { comparisons } = compareAnswers(simulatedAnswers(answerModelWith({ learned: 1.5 }), study));
       const found = comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05);
@@ -75,7 +75,7 @@ describe('an analysis of simulated studies', () => {
   });
 });
 
-describe('what is compared', () => {
+describe('a comparison', () => {
   const answer = (participant: string, condition: string, value: number, excluded = ''): AnswerRow => ({
     participant,
     simulated: false,
@@ -87,7 +87,7 @@ describe('what is compared', () => {
     excluded,
   });
 
-  test('are those who answered under both conditions; the others are named with the reason', () => {
+  test('is of people who answered under both conditions, and names others with the reason', () => {
     const { comparisons, excluded } = compareAnswers([
       answer('P01', 'learned', 5),
       answer('P01', 'ik', 3),
@@ -105,13 +105,13 @@ describe('what is compared', () => {
     ]);
   });
 
-  test('is never people with simulated people', () => {
+  test('is never of people with simulated people', () => {
     expect(() => compareAnswers([answer('P01', 'ik', 3), { ...answer('P02', 'ik', 3), simulated: true }])).toThrow(
       'must not be mixed',
     );
   });
 
-  test("is a group's score once, though each member reports it", () => {
+  test("has a group's score once, though each member reports it", () => {
     const trial = (participant: string, group: number, condition: string, score: number): TrialRow => ({
       participant,
       simulated: false,
@@ -149,7 +149,7 @@ describe('what is compared', () => {
     expect(compared?.test).toMatchObject({ t: null, p: null, d: null, interval: null });
   });
 
-  test('has the signed ranks of its sums, though the means of three rounds are compared, in points and in per cent', () => {
+  test('has the signed ranks of its sums when means of rounds are compared, in any unit', () => {
     const trial = (condition: string, rounds: readonly (readonly number[])[]) =>
       rounds.flatMap((own, index) =>
         own.map(

@@ -53,8 +53,8 @@ describe('a sentence with a name that is filled in', () => {
   });
 });
 
-describe('what the page says in German', () => {
-  test('is every phrase, none of them empty or left in English', () => {
+describe('the German of the page', () => {
+  test('has every phrase, none of them empty or left in English', () => {
     expect(Object.keys(german).toSorted()).toEqual(Object.keys(english).toSorted());
     for (const key of phraseKeys) for (const text of formsOf(german[key])) expect(text.trim()).not.toBe('');
     const alike = phraseKeys.filter((key) => JSON.stringify(german[key]) === JSON.stringify(english[key]));

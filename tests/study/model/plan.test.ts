@@ -34,7 +34,7 @@ describe('limits at which participants are asked to stop', () => {
     expect(limited({ measure: 'Q9' })).toThrow('askToStop[0].measure: "archery" has no scale "Q9"');
   });
 
-  test('of the simulator sickness questionnaire are of its total', () => {
+  test('the questionnaire for simulator sickness has them for its total', () => {
     const [archery] = paperPlan().tasks as [StudyTask];
     const plan = paperPlan({
       tasks: [{ ...archery, questionnaire: ['ssq'] }],
@@ -94,7 +94,7 @@ describe('the shipped study', () => {
 });
 
 describe('the order of conditions', () => {
-  test('of fifteen participants, the two orders come eight and seven times; of five groups, three and two', () => {
+  test('fifteen participants get the two orders eight and seven times, five groups three and two', () => {
     const plan = paperPlan();
     const [archery, ball] = plan.tasks as [StudyTask, StudyTask];
     expect(Object.values(counts(orderNames(plan, archery))).toSorted()).toEqual([7, 8]);
@@ -150,7 +150,7 @@ describe('the order of conditions', () => {
   });
 
   test.each([2, 3, 4, 5, 6, 7, 12, 15, 20])(
-    'of %i conditions as Williams: each at each place and after each other equally often',
+    '%i conditions follow Williams: each at each place and after each other equally often',
     (count) => {
       const orders = ordersOf({ orders: 'williams', conditions: conditionsOf(count) });
       expect(orders).toHaveLength(count % 2 === 0 ? count : 2 * count);
@@ -217,24 +217,24 @@ describe('a study file with a mistake', () => {
     expect(() => parsePlan(wrong, 'mine.json')).toThrow(`mine.json: ${message}`);
   });
 
-  test('that is no JSON says so', () => {
+  test('is refused as no JSON', () => {
     expect(() => parsePlan('{', 'mine.json')).toThrow('mine.json: this is not JSON');
   });
 
-  test('and a participant who is not in it has no schedule', () => {
+  test('has no schedule for a participant who is not in it', () => {
     expect(() => scheduleFor(paperPlan(), 'P16')).toThrow('P01 to P15, not P16');
   });
 });
 
-describe('who plays together', () => {
+describe('the size of a group', () => {
   const groupsOfSize = (game: StudyTask['game'], groupSize: number) => () =>
     checkedPlan(paperPlan({ tasks: [{ ...(paperPlan().tasks[0] as StudyTask), game, groupSize }] }));
 
-  test('is one in archery: of a group one score would count for all', () => {
+  test('is one in archery: one score of more would count for all', () => {
     expect(groupsOfSize('archery', 3)).toThrow('tasks[0].groupSize: archery is played alone: expected 1');
   });
 
-  test.each([1, 5])('is three in the ball game: of %i no round would begin', (size) => {
+  test.each([1, 5])('is three in the ball game: %i begin no round', (size) => {
     expect(groupsOfSize('ball', size)).toThrow('tasks[0].groupSize: the ball game is played by three: expected 3');
   });
 });

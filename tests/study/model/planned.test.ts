@@ -12,7 +12,7 @@ const effects = { answers: { 'late-200': -1 }, scores: {} };
 const records = simulateStudy(plan, modelsWith(plan, effects), 5, 1e9).flatMap((one) => one.records);
 const measures = measuresIn(records, plan);
 
-test('what a plan names is a family of its own: Holm over it alone, however much else was asked', () => {
+test('a plan’s named questions are a family: Holm applies to them alone, whatever else was asked', () => {
   const { answers, scales, planned } = measures;
   expect(answers.length + scales.length).toBeGreaterThan(15);
   const family = compareConditions(planned, ['late-200', 'late-0']).comparisons;
@@ -25,7 +25,7 @@ test('what a plan names is a family of its own: Holm over it alone, however much
   );
 });
 
-test('the tables of an export hold the planned family with its own Holm p, and mark all else as explored', () => {
+test('the tables of an export hold the planned Holm p and mark everything else as explored', () => {
   const tables = new Map(resultTables(records, plan).map((table) => [table.name, table.rows]));
   const planned = tables.get('planned-compared') ?? [];
   expect(planned.map(({ of, first, second }) => `${of} ${first} ${second}`)).toEqual(
@@ -72,7 +72,7 @@ test('a measure that is nowhere is named', () => {
   expect(() => checkedPlan(wrong)).toThrow('planned[1]: "archery/embodiment/soul" is not measured');
 });
 
-test('an experimenter is told of a planned question that is answered by a choice or in words: no test takes it', () => {
+test('an experimenter learns that a planned question by choice or words suits no test', () => {
   const named = [
     'archery/body/watched',
     'archery/body/guess',

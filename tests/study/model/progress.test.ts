@@ -172,7 +172,7 @@ describe('a rest that another device goes on with', () => {
     expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(25, 6);
   });
 
-  test('but not in a pause', () => {
+  test('stands in a pause', () => {
     const { one } = reportedAfter(20);
     one.tell({ type: 'pause' });
     one.progress = sinceReport(reported(one.progress, one.now), 15);
@@ -269,7 +269,7 @@ describe('a trial', () => {
     return one;
   };
 
-  test('that a reload interrupts is noted and tried again', () => {
+  test('is noted and tried again after a reload interrupts it', () => {
     const one = playing();
     one.progress = resumed(schedule, JSON.stringify(one.progress));
     one.tell({ type: 'reload' });
@@ -296,7 +296,7 @@ describe('a trial', () => {
     });
   });
 
-  test('that ends while paused leaves a rest whose clock stands', () => {
+  test('leaves a rest whose clock stands when it ends while paused', () => {
     const one = playing();
     one.tell({ type: 'pause' });
     expect(one.tell({ type: 'trial-finished', outcome: outcomeOf() })).toBeNull();
@@ -336,7 +336,7 @@ describe('a voided block', () => {
     expect(one.progress.runs).toEqual({ 'archery/2': 2 });
   });
 
-  test('or is left behind', () => {
+  test('is left behind without a repetition', () => {
     const one = session(schedule);
     one.doUntil(({ id }) => id === 'archery/1/trial-1');
     one.tell({ type: 'void-block', reason: 'unwell', repeat: false });
@@ -401,7 +401,7 @@ describe('a stored session', () => {
     expect(isLater(schedule, one.progress, late)).toBe(true);
   });
 
-  test('that is no JSON is refused', () => {
+  test('is refused when it is no JSON', () => {
     expect(() => resumed(schedule, '{"version":1')).toThrow('the stored session is not JSON');
   });
 });

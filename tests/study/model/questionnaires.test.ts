@@ -95,7 +95,7 @@ describe('scores of the shipped questionnaires', () => {
     expect(nauseous.total).toBeCloseTo(7.48, 9);
   });
 
-  test('NASA-TLX: ratings 30, 15, 60, 40, 30, 40 chosen 3, 0, 5, 1, 3, 3 times weigh 640 / 15', () => {
+  test('NASA-TLX: ratings 30, 15, 60, 40, 30, 40 with six weights give 640 / 15', () => {
     const ratings = { mental: 30, physical: 15, temporal: 60, performance: 40, frustration: 30, effort: 40 };
     const choices = {
       'mental-or-physical': 'mental',
@@ -258,7 +258,7 @@ describe('a questionnaire of one’s own', () => {
   });
 });
 
-test('what is typed is an answer as soon as it is one', () => {
+test('a typed text is an answer as soon as it is valid', () => {
   const age = { kind: 'number', from: 16, to: 120, whole: true } as const;
   expect(typedAnswer(age, '1')).toBeNull();
   expect(typedAnswer(age, '17')).toBe(17);

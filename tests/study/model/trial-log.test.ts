@@ -35,7 +35,7 @@ describe('durations', () => {
     );
   });
 
-  test('that are none say nothing', () => {
+  test('invalid ones are ignored', () => {
     const statistics = new DurationStatistics();
     statistics.add(Number.NaN);
     statistics.add(-1);

@@ -3,7 +3,7 @@ import { simulatedPlan } from '../../../src/study/simulation/simulate-study';
 import { examplePlan } from '../model/studies';
 import { now, servedStudies } from '../server/running-studies';
 
-test('a study is begun as simulated with any name that a plan may have, and is called so in each of its languages', async () => {
+test('a study begins as simulated under any valid name, and is called so in each language', async () => {
   const { store } = await servedStudies();
   const title = { en: `Two ${'very '.repeat(21)}alike`, de: `Zwei ${'sehr '.repeat(21)}gleiche` };
   const plan = simulatedPlan({ ...examplePlan(), id: `two-${'a'.repeat(44)}`, title });

@@ -6,7 +6,7 @@ import { shownResults } from '../../../src/study/pages/results/shown-results';
 import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { latencyPlan } from '../model/studies';
 
-test('two tasks that participants read alike stand side by side in a figure, each with its id', () => {
+test('two tasks with like questions stand side by side in a figure, each with its id', () => {
   const [task] = latencyPlan().tasks as [StudyTask];
   const { planned: _, ...unplanned } = latencyPlan({ participants: 6, tasks: [task, { ...task, id: 'archery-far' }] });
   const plan = checkedPlan(unplanned);

@@ -17,7 +17,7 @@ async function server() {
   return { ...served, plan, client: createExperimenterClient(experimenter, served.origin) };
 }
 
-test('a simulation goes through the plan to the end, into a separate study, with the stated effects', async () => {
+test('a simulation runs the plan to its end in a separate study, with the stated effects', async () => {
   const { client, plan } = await server();
   const reported: string[] = [];
   const onProgress = (done: number, all: number) => reported.push(`${done}/${all}`);

@@ -31,7 +31,7 @@ test('an export opens again as what was exported, its mark of simulation include
   expect(openStudyFile(exported)).toEqual({ plan, simulated: true, records });
 });
 
-test('an export of a plan with versions says which, so that what is saved from two of them has two names', () => {
+test('an export of a plan with versions names its own, so that two have different names', () => {
   const named = openStudyFile(exportZip({ ...content, planVersion: 2 }));
   expect(named.planVersion).toBe(2);
   const { planVersion: _, ...unnamed } = named;
@@ -53,7 +53,7 @@ test.each<[string, Uint8Array, RegExp]>([
   expect(() => openStudyFile(file)).toThrow(message);
 });
 
-test('the table of comparisons has a row per question and full precision, and says that it is simulated', () => {
+test('the table of comparisons has a row per question, full precision, and the mark “simulated”', () => {
   const { comparisons } = compareAnswers(answersIn(records, plan));
   const facts = { family: 'explored', simulated: true, plan } as const;
   const csv = tidyCsv(conditionsTable('answers', [{ sides: ['learned', 'ik'], comparisons }], facts))

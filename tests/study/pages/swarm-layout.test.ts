@@ -17,7 +17,7 @@ test('dots that are far from each other stand in the middle of their strip', () 
   expect(swarmOffsets([7, 1, 3], 5)).toEqual([0, 0, 0]);
 });
 
-test('alike values stand side by side, one to the right and one to the left of the first', () => {
+test('alike values stand side by side, right and left of the first in turn', () => {
   expect(swarmOffsets([4, 4, 4], 5)).toEqual([0, 1, -1]);
 });
 

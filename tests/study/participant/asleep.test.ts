@@ -10,8 +10,8 @@ const clocks = [
   { name: 'both clocks', both: true },
 ];
 
-describe.each(clocks)('a machine sleeps for an hour, of which $name has it', ({ name, both }) => {
-  test('in a round, which goes on with the seconds that were played', async () => {
+describe.each(clocks)('an hour’s sleep of a machine, of which $name has it', ({ name, both }) => {
+  test('lets a round go on with the seconds that were played', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
     tab.display.press('start');
@@ -28,7 +28,7 @@ describe.each(clocks)('a machine sleeps for an hour, of which $name has it', ({ 
     expect(server.events()).toEqual([]);
   });
 
-  test('in a rest, which is over, and in questions, which lie open and say how long', async () => {
+  test('ends a rest, and leaves questions open, whose answers then say how long', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
     play(tab, 40);
@@ -45,7 +45,7 @@ describe.each(clocks)('a machine sleeps for an hour, of which $name has it', ({ 
     reportFigures('asleep', { [`study, ${name}: records refused`]: tab.visit.state().unsent });
   });
 
-  test('with the headset off, and the commands of the experimenter arrive', async () => {
+  test('with the headset off holds up no commands of the experimenter', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
     tab.display.press('start');

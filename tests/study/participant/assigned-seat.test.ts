@@ -40,7 +40,7 @@ async function invited() {
   return { origin, group, come };
 }
 
-test('participants who were invited meet in the room of their trial, each on their own seat, through the server as it is started', async () => {
+test('invited participants meet in their trial’s room, each on their seat, through the started server', async () => {
   const { origin, group, come } = await invited();
   const connections = await Promise.all(group.map(come));
   await until('all three seated', () =>
@@ -54,7 +54,7 @@ test('participants who were invited meet in the room of their trial, each on the
   expect(await (await fetch(`${origin}/api/rooms`)).json()).toMatchObject({ rooms: [] });
 });
 
-test('a match of a group waits for all of it: one whose connection is lost is not played without', async () => {
+test('a match of a group waits for all of it, even for a lost connection', async () => {
   const { group, come } = await invited();
   const [thrower, late, holder] = group as [string, string, string];
   const there = [await come(thrower), await come(holder)];

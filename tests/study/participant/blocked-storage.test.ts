@@ -113,7 +113,7 @@ test('storage that answers again takes what it missed', { tags: ['full'] }, asyn
   await expect.poll(async () => (await vault.session(place))?.progress.paused).toBe(false);
 });
 
-test('a session that the storage does not give out is not begun a second time, and goes on once it does', {
+test('a session that the storage withholds is not begun twice and resumes once it is readable', {
   tags: ['full'],
 }, async () => {
   const server = await studyServer();

@@ -43,7 +43,7 @@ test('a server that answers is asked every two seconds', async () => {
   expect(standing()).toEqual([2000]);
 });
 
-test('a server that does not answer is asked ever more seldom, every 15 s at the most, until it answers', async () => {
+test('a server that does not answer is asked ever more seldom, every 15 s at most', async () => {
   const { timer, server, standing } = timed();
   server.online = false;
   const delays: number[] = [];

@@ -3,7 +3,7 @@ import { openStudyVault } from '../../../src/study/participant/session/study-vau
 import { beforeTheQuestions, choose } from './participant-steps';
 import { place, studyServer } from './study-server';
 
-test('after a withdrawal in another tab nothing that is pressed here stores the participant in this browser again', async () => {
+test('a press after a withdrawal in another tab stores no participant in this browser', async () => {
   const server = await studyServer();
   const { tab } = await beforeTheQuestions(server);
   await tab.exchange();

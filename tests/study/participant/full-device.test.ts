@@ -23,7 +23,7 @@ test('answers given while the device is full are restored after a crash from the
   expect(again.display.screen?.question?.field).toMatchObject({ answer: 2 });
 });
 
-test('what happened while the device was full keeps its place in the records after a crash', async () => {
+test('the records of a full device keep their place after a crash', async () => {
   const server = await studyServer();
   const { device, tab } = await beforeTheQuestions(server);
   await tab.exchange();

@@ -18,7 +18,7 @@ describe('Back', () => {
     expect(Object.values(answers?.answers ?? {})).toEqual([4, 4, 4, 4, 4, 4, 4]);
   });
 
-  test('of the browser in a round voids the attempt, and the link goes on with the same round', async () => {
+  test('in the browser during a round voids the attempt, and the link repeats that round', async () => {
     const server = await studyServer();
     const { device, tab } = await beforeTheRound(server);
     tab.display.press('start');
@@ -38,7 +38,7 @@ describe('Back', () => {
 });
 
 describe('storage that the browser evicts between two steps', () => {
-  test('loses nothing while the page is open: what is recorded then is stored once more and sent', async () => {
+  test('loses nothing while the page is open: later records are stored again and sent', async () => {
     const server = await studyServer();
     const opened: IDBDatabase[] = [];
     const open = IDBFactory.prototype.open;

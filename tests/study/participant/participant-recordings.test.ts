@@ -31,7 +31,7 @@ test('tracked frames reach the server with consent to them, and leave the device
   expect(await vault.motion(place)).toEqual([]);
 });
 
-test('a recording that the server refuses is reported and kept, and holds up neither commands nor other recordings', async () => {
+test('a recording that the server refuses is reported and kept, and blocks nothing else', async () => {
   const server = await studyServer();
   const { store, experimenter } = server;
   const { first, vault } = await device(server);

@@ -6,7 +6,7 @@ import { place, studyServer } from './study-server';
 
 afterEach(() => vi.restoreAllMocks());
 
-test('what the server has acknowledged leaves the device, and nothing before', async () => {
+test('an acknowledged record leaves the device, and no other does', async () => {
   const server = await studyServer();
   const { store } = server;
   const { first, vault } = await device(server);
@@ -29,7 +29,7 @@ test('what the server has acknowledged leaves the device, and nothing before', a
   expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
 });
 
-test('a reload in a questionnaire without a network goes on at the same question, and all is sent later', async () => {
+test('a reload in a questionnaire without network resumes the same question, and all is sent later', async () => {
   const server = await studyServer();
   const { first, reload } = await device(server);
   await server.stop();
@@ -56,7 +56,7 @@ test('a reload in a questionnaire without a network goes on at the same question
   expect(server.bodies('answers')[0]).toMatchObject({ answers: { Q1: 4, Q2: 5, Q3: 3, Q4: 3, Q5: 3, Q6: 3, Q7: 3 } });
 });
 
-test('a full device says so, keeps the answers in the page, and stores them when there is room again', async () => {
+test('a full device says so, keeps the answers in the page, and stores them later', async () => {
   const server = await studyServer();
   const { first, vault } = await device(server);
   await first.settled();
@@ -178,7 +178,7 @@ test('a session that an older page kept follows no command again', async () => {
   expect(second.progress.paused).toBe(false);
 });
 
-test('a record that the server refuses is reported and kept, and does not hold up the others', async () => {
+test('a record that the server refuses is reported and kept, and does not block others', async () => {
   const server = await studyServer();
   const { store } = server;
   const { first, vault } = await device(server);

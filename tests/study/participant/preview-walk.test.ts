@@ -43,7 +43,7 @@ test.each([examplePlan(), latencyPlan(), paperPlan()])(
   },
 );
 
-test('answers stay while one walks on and comes back, and handing in leads to what is missing', () => {
+test('answers stay through walks back and forth, and handing in leads to missing ones', () => {
   const walk = walkOf();
   walk.goTo(walk.stops.findIndex(({ id }) => id.endsWith('/mine')));
   const { field } = screenAt(walk).question ?? {};
@@ -124,7 +124,7 @@ describe('a screen that asks whether to stop', () => {
   });
 });
 
-test('what is met at one place alone is shown there; the rest where one wants it', () => {
+test('a stop of one place is shown there, the others at the chosen place', () => {
   const walk = walkOf(paperPlan());
   expect(walk.place).toBe('desk');
   walk.goTo(walk.stops.findIndex(({ kind }) => kind === 'waiting'));

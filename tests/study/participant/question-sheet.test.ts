@@ -68,7 +68,7 @@ function reader(asked: readonly Question[], language = 'en') {
 }
 
 describe('a question on the sheet in the headset', () => {
-  test('of every kind is answered by pressing: points, a place on the line, an option, keys', () => {
+  test('every kind is answered by pressing: points, a place on the line, an option, keys', () => {
     const one = reader(questions);
     one.goTo('mine').press('answer-6');
     one.goTo('delay').press('answer-37');
@@ -85,7 +85,7 @@ describe('a question on the sheet in the headset', () => {
     expect(one.goTo('delay').press('answer-37').part().hint).toBeNull();
   });
 
-  test('a place on the line is corrected by one step, and has none before it is given', () => {
+  test('a place on the line is corrected by single steps, once there is one', () => {
     const one = reader(questions).goTo('delay');
     expect(one.press('more').answerTo('delay')).toBeUndefined();
     expect(one.press('answer-100', 'more', 'less', 'less').answerTo('delay')).toBe(98);

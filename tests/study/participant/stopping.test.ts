@@ -42,7 +42,7 @@ describe('a participant stops', () => {
     expect(server.store.records.all('paper').filter(({ kind }) => kind === 'trial')).toHaveLength(1);
   });
 
-  test('and hands that are up for a moment only pause nothing, nor do hands that were not lowered since', async () => {
+  test('hands up for a moment, or not lowered since a pause, pause nothing', async () => {
     const { tab } = await beforeTheRound(await studyServer());
     tab.display.press('start');
     tab.draw(1, true);
@@ -79,7 +79,7 @@ describe('a participant stops', () => {
     expect(tab.display.screen?.text.join(' ')).toContain('/withdraw?study=paper');
   });
 
-  test('or thinks better of it, and goes on where it paused', async () => {
+  test('can decide to go on, where the visit paused', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheQuestions(server);
     tab.display.press('pause');

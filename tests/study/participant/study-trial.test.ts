@@ -6,7 +6,7 @@ import { PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { epoch, frameSeconds, playedRound } from './played-round';
 import { OneShotGame } from './study-browser';
 
-describe('what scores in a round', () => {
+describe('a scoring event of a round', () => {
   test.each([
     ['without a pause', () => false],
     ['that was paused for twenty seconds', (time: number) => time > 9 && time < 29],
@@ -24,7 +24,7 @@ describe('what scores in a round', () => {
     }
   });
 
-  test('after the head was lost for three seconds too, though the game stood meanwhile', () => {
+  test('is found after a three-second loss of the head, too, which stops the game', () => {
     const { outcome, landed } = playedRound({ paused: () => false, headless: (time) => time > 5 && time < 8 });
     const { clock, events } = outcome;
     if (!clock) throw new Error('the outcome has no clock');
@@ -37,7 +37,7 @@ describe('what scores in a round', () => {
   });
 });
 
-test('the outcome gives second 0 of a round by the clock of the device, and every pause with its second', () => {
+test('the outcome gives a round’s second 0 and every pause by the device’s clock', () => {
   const { outcome, began } = playedRound({ paused: (time) => time > 9 && time < 29 });
   expect(outcome.clock).toMatchObject({ start: began, epoch: epoch + began });
   expect(outcome.clock?.pauses).toHaveLength(1);
@@ -46,7 +46,7 @@ test('the outcome gives second 0 of a round by the clock of the device, and ever
   expect(pause?.seconds).toBeCloseTo(20, 1);
 });
 
-test('of a round that is longer than the server takes at once, the first frames are kept, and the outcome says how many', async () => {
+test('a round too long for the server keeps its first frames, and the outcome counts them', async () => {
   const game = new OneShotGame();
   await game.prepare({ seat: () => Promise.reject(), participant: 'P01', members: [], seconds: 600 });
   const step = { kind: 'trial', id: 'archery/1/trial-1', embodiment: { estimator: 'ik' }, seconds: 600 };

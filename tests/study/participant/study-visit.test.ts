@@ -16,7 +16,7 @@ import { browser, ofAnother } from './study-browser';
 import { place, studyServer } from './study-server';
 
 describe('the entrance', () => {
-  test('an address without a participant asks for the code, and leads to the place that is entered', async () => {
+  test('an address without a participant asks for the code, and leads to the entered place', async () => {
     const tab = await browser(await studyServer()).open({ participant: null, invitation: null });
     const form = tab.display.asked('participant');
     expect(form).toMatchObject({ complaint: null, known: { participant: null, invitation: null } });
@@ -33,7 +33,7 @@ describe('the entrance', () => {
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
 
-  test('a text that was changed while it was read is shown again, and the place stays free', async () => {
+  test('a text that changed during reading is shown again, and the place stays free', async () => {
     const server = await studyServer();
     const { plan, store } = server;
     const tab = await browser(server).open();
@@ -50,7 +50,7 @@ describe('the entrance', () => {
   });
 
   test.each(['participant', 'consent'] as const)(
-    'a participant who leaves at the first screen, the %s form, is thanked, and nothing is stored here or on the server',
+    'a participant who leaves at the first screen, the %s form, is thanked and stored nowhere',
     async (first) => {
       const server = await studyServer();
       const tab = await browser(server).open(first === 'participant' ? { invitation: null } : {});
@@ -90,7 +90,7 @@ describe('the entrance', () => {
 });
 
 describe('the participant', () => {
-  test('gets the bow in the other hand and the body that was measured, also after a reload', async () => {
+  test('gets the bow in the other hand and the measured body, also after a reload', async () => {
     const { device, tab } = await beforeTheRound(await studyServer());
     const { bowSide, measures, actor } = tab.host;
     expect(bowSide).toBe('left');
@@ -127,7 +127,7 @@ describe('the participant', () => {
 });
 
 describe('a round', () => {
-  test('that was played is on the server with its score, its frames and the movements, with consent to them', async () => {
+  test('reaches the server with score, frames and, by consent, movements', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server, true);
     play(tab, 40);
@@ -204,7 +204,7 @@ describe('a round', () => {
     expect(server.events()).toEqual(['pause', 'resume']);
   });
 
-  test('of a block that the experimenter voids is loaded again for the block’s next run', async () => {
+  test('is loaded again for its block’s next run when the experimenter voids the block', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
     const { archery } = tab.host.games;
@@ -250,7 +250,7 @@ describe('a round', () => {
     expect(practice).not.toBe(first);
   });
 
-  test('whose game refuses says why, and can be prepared again', async () => {
+  test('says why its game refuses, and can be prepared again', async () => {
     const tab = await browser(await studyServer()).open();
     await agree(tab);
     tab.display.asked('demographics').done(aWomanOf26);
@@ -282,7 +282,7 @@ describe('a round', () => {
 });
 
 describe('a questionnaire', () => {
-  test('goes on after a reload where the first answer is missing, in the body of its round', async () => {
+  test('resumes after a reload at its first missing answer, in the body of its round', async () => {
     const { device, tab } = await beforeTheQuestions(await studyServer());
     choose(tab, 3);
     tab.display.press('next');

@@ -23,7 +23,7 @@ function sheetBefore(eyes: number) {
   return sheet;
 }
 
-test('the sheet stands a little below the eyes, and comes down with a person who sits down', () => {
+test('the sheet stands a little below the eyes and comes down with a sitting person', () => {
   const sheet = sheetBefore(1.7);
   expect(sheet.object.position.y).toBeCloseTo(1.58, 9);
   sheet.follow(eyesAt(0.9));

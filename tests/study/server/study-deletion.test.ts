@@ -7,7 +7,7 @@ import { completed, withPaperStudy } from './stored-studies';
 
 const day = 86_400;
 
-describe('deleting', () => {
+describe('the deletion of a participant', () => {
   const bytesOf = (file: string) => {
     const folder = join(file, '..');
     return readdirSync(folder)
@@ -48,7 +48,7 @@ describe('deleting', () => {
     expect(store.records.all('paper')).toHaveLength(completed('P02').length);
   });
 
-  test('by the withdrawal code, however it is typed, and for good', () => {
+  test('takes the withdrawal code, however it is typed, and is for good', () => {
     const { store } = withPaperStudy();
     const { withdrawalCode } = store.places.claim('paper', 'P01', now);
     store.records.store('paper', 'P01', completed(), now);

@@ -71,7 +71,7 @@ describe('a place in a study', () => {
     expect(later.status).toBe(201);
   });
 
-  test('that the experimenter cleared has a new invitation; one that was released keeps its own', async () => {
+  test('has a new invitation once the experimenter clears it, and its old one once released', async () => {
     const { ask, invited, claim, store } = await servedPaperStudy();
     const before = invited('P01');
     await claim('P01');
@@ -82,7 +82,7 @@ describe('a place in a study', () => {
     expect((await ask('POST', claimPath('P01'), { json: invited('P01') })).status).toBe(201);
   });
 
-  test('whose link was lost gets another one, and the lost one opens nothing', async () => {
+  test('gets another link for a lost one, which then opens nothing', async () => {
     const { ask, invited } = await servedPaperStudy();
     const lost = invited('P01');
     const untouched = invited('P02');
@@ -99,7 +99,7 @@ describe('a place in a study', () => {
     expect((await ask('POST', claimPath('P02'), { json: {}, token: `${experimenter}x` })).status).toBe(403);
   });
 
-  test('of an open study is taken by the one invitation of all, a few in an hour from each address', async () => {
+  test('is taken by the one invitation of an open study, a few an hour per address', async () => {
     const server = await servedPaperStudy({ entry: 'open' });
     const { ask, invited } = server;
     expect(new Set(people.map((participant) => invited(participant).invitation)).size).toBe(1);
@@ -116,7 +116,7 @@ describe('a place in a study', () => {
   });
 });
 
-test('a claim of a place that is taken already leaves the address its places of an open study', async () => {
+test('a claim of a taken place leaves the address its places of an open study', async () => {
   const server = await servedPaperStudy({ entry: 'open' });
   const from = '203.0.113.7';
   const claimed = async (participant: string) =>
@@ -155,7 +155,7 @@ describe('3000 guesses from one address', () => {
     return statuses;
   }
 
-  test('of the experimenter’s token are hardly looked at, and the experimenter goes on working', {
+  test('for the experimenter’s token are hardly checked, and the experimenter goes on working', {
     tags: ['full'],
   }, async () => {
     const server = await servedPaperStudy();
@@ -171,7 +171,7 @@ describe('3000 guesses from one address', () => {
     expect(status).toBe(200);
   });
 
-  test('of a withdrawal code are hardly looked at, and what is recorded stays', { tags: ['full'] }, async () => {
+  test('for a withdrawal code are hardly checked, and the records stay', { tags: ['full'] }, async () => {
     const server = await servedPaperStudy();
     const { json } = await server.ask('POST', claimPath('P01'), { json: server.invited('P01') });
     const path = '/api/studies/paper/withdraw';
@@ -180,7 +180,7 @@ describe('3000 guesses from one address', () => {
     expect(withdrawn.json).toMatchObject({ participant: 'P01', reason: 'withdrawn' });
   });
 
-  test('of an invitation, all in one packet, are hardly looked at', { tags: ['full'] }, async () => {
+  test('for an invitation, all in one packet, are hardly checked', { tags: ['full'] }, async () => {
     const server = await servedPaperStudy();
     const { port } = new URL(server.origin);
     const requests = guesses

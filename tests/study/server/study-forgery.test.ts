@@ -141,7 +141,7 @@ describe('an export', () => {
     expect(kept.at(-1)).toMatchObject({ author: 'experimenter', receivedAt: now });
   });
 
-  test('flags what a wrong clock or an older state of a device can cause, and nothing else', async () => {
+  test('flags faults of a wrong clock or an older device state, and nothing else', async () => {
     const server = await participant();
     const { records, send } = server;
     const [, ...others] = records;

@@ -36,7 +36,7 @@ describe('storage that is full', () => {
     expect(roomy.records.all('paper', 'P01')).toHaveLength(stored + 1);
   });
 
-  test('by the limit of the system on files: no acknowledged record goes, and the file stays sound', {
+  test('by the system’s limit on files loses no acknowledged record, and the file stays sound', {
     timeout: 120_000,
   }, async () => {
     const file = join(directoryWith(), 'studies.db');

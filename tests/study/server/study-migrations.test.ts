@@ -121,7 +121,7 @@ describe('a database that the first version of the program wrote', () => {
     expect((await ask('GET', '/api/studies/paper/export', { token: experimenter })).status).toBe(200);
   });
 
-  test('keeps a study whose plan is not allowed any more: it is listed, exported and deleted, and no one else joins it', async () => {
+  test('keeps a study whose plan became invalid: listed, exported and deleted, but closed to newcomers', async () => {
     const { ask, store } = await served();
     const list = await ask('GET', '/api/studies', { token: experimenter });
     expect(list.json.studies.map(({ id }: Anything) => id)).toEqual(['paper', 'pairs']);

@@ -13,7 +13,7 @@ describe('a place in the study', () => {
     expect(store.places.holds('paper', 'P01', `${token}x`)).toBe(false);
   });
 
-  test('that is released goes to the next device; the withdrawal code stays', () => {
+  test('goes to the next device after its release; the withdrawal code stays', () => {
     const { store } = withPaperStudy();
     const first = store.places.claim('paper', 'P01', now);
     store.records.store('paper', 'P01', completed(), now);
@@ -25,7 +25,7 @@ describe('a place in the study', () => {
     expect(store.deletion.withdraw('paper', first.withdrawalCode as string, now)?.participant).toBe('P01');
   });
 
-  test('of which nothing is recorded yet gives a withdrawal code again: the answer to the first claim may have been lost', () => {
+  test('gives its withdrawal code again while it has no record, as the answer may be lost', () => {
     const { store } = withPaperStudy();
     const lost = store.places.claim('paper', 'P01', now).withdrawalCode as string;
     store.places.release('paper', 'P01');

@@ -59,7 +59,7 @@ describe('consent to motion that was taken back', () => {
     expect(await sendMotion()).toBe(403);
   });
 
-  test('on another device, which reports it, holds at the server too', async () => {
+  test('stays taken back at the server when another device reported that', async () => {
     const { send, report, sendMotion } = await participant();
     await send([consentOf(true)]);
     const progress = { ...begin(schedule), step: 'demographics', motion: true, changes: 1 };
@@ -112,7 +112,7 @@ test('records that arrive in any order, in batches that overlap, are stored once
   reportFigures('study-replays', { 'records stored twice or lost': `0 of ${records.length}` });
 });
 
-test('a link that twenty people open at once gives the place to one of them; the others learn nothing', async () => {
+test('a link that twenty people open at once gives one the place, the others nothing', async () => {
   const { ask, invited, store } = await servedPaperStudy();
   const claims = await Promise.all(
     Array.from({ length: 20 }, () => ask('POST', `${place}/claim`, { json: invited('P01') })),

@@ -65,7 +65,7 @@ const post = (path: string, body: unknown) =>
   });
 
 describe('the room of a trial', () => {
-  test('is in no list: not of the lobby, not of its socket, and no one is matched into it', async () => {
+  test('is in no list, neither the lobby’s nor the socket’s, and attracts no match', async () => {
     const lobby = toldByLobby();
     const { guest } = await sitDown('P01');
     const stranger = await rawGuest(server.url, 'meadow');
@@ -80,7 +80,7 @@ describe('the room of a trial', () => {
     stranger.socket.disconnect();
   });
 
-  test('lets each participant of the group onto their own seat, under their own code, even where the page asks for others', async () => {
+  test('seats each participant of the group under their own code, whatever the page asks', async () => {
     const people = [];
     for (const participant of group.toReversed()) people.unshift(await sitDown(participant));
     expect(people.map((one) => welcomeOf(one)?.seat)).toEqual([0, 1, 2]);
@@ -95,7 +95,7 @@ describe('the room of a trial', () => {
     for (const { guest } of people) guest.socket.disconnect();
   });
 
-  test('has no seat for a stranger: a pass for it is signed to no one, and no pass for another room opens it', async () => {
+  test('has no seat for a stranger: nobody signs a pass, and no other pass opens it', async () => {
     const { room, guest } = await sitDown('P01');
     let refused = 0;
     const attempts: unknown[] = [

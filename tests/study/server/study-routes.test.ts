@@ -150,7 +150,7 @@ describe('the experimenter', () => {
   });
 });
 
-describe('what is wrong', () => {
+describe('a mistake', () => {
   test('in a plan is named by field', async () => {
     const { ask } = await servedStudies();
     const plan = { ...paperPlan(), seed: -1 };
@@ -174,7 +174,7 @@ describe('what is wrong', () => {
     expect(store.records.all('paper')).toEqual([]);
   });
 
-  test('answers with the status that says what', async () => {
+  test('gets the status that names its kind', async () => {
     const { ask, claim } = await servedPaperStudy();
     const token = await claim('P01');
     const send = async (raw: RequestInit) =>

@@ -11,7 +11,7 @@ import { experimenter, servedFolder, testSoftware } from './running-studies';
 
 const day = 86_400;
 
-test('the first start draws a token that only its owner can read, and the next start keeps it', async () => {
+test('the first start draws a token readable by its owner alone; the next keeps it', async () => {
   const directory = join(directoryWith(), 'new');
   const first = await servedFolder(directory, null);
   const token = first.savedToken as string;
@@ -25,7 +25,7 @@ test('the first start draws a token that only its owner can read, and the next s
   expect((await fetch(`${second.origin}/anything`)).status).toBe(404);
 });
 
-test('what is past its retention date is deleted when the server starts, and the log says so', async () => {
+test('an expired study is deleted when the server starts, and the log says so', async () => {
   const directory = directoryWith();
   const first = await servedFolder(directory);
   const post = (path: string, body: unknown) =>
@@ -53,7 +53,7 @@ function begunStudy() {
   return { directory, file };
 }
 
-test('a database that refuses to delete what is past its retention date ends no server: it starts, says so, and deletes an hour later', async () => {
+test('a failed deletion after the retention date ends no server: it is logged and repeated hourly', async () => {
   vi.useFakeTimers({ toFake: ['setInterval', 'clearInterval'] });
   onTestFinished(() => {
     vi.useRealTimers();

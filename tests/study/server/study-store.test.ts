@@ -88,7 +88,7 @@ describe('the store', () => {
     expect(store.places.progress('paper', 'P02')?.step).toBe('consent');
   });
 
-  test('counts the time of a step on by its own clock, whatever that of the device says', () => {
+  test('counts the time of a step by its own clock, whatever the device’s says', () => {
     const { store } = withPaperStudy();
     store.places.claim('paper', 'P01', now);
     const one = session(scheduleFor(paperPlan(), 'P01'));
@@ -103,7 +103,7 @@ describe('the store', () => {
     expect(store.places.progress('paper', 'P01')?.elapsed).toBeCloseTo(20, 6);
   });
 
-  test('still opens progress that tells since when the clock of the device runs, as older pages did', () => {
+  test('still opens progress with the start of the device’s clock, as older pages stored', () => {
     const { store } = withPaperStudy();
     const one = session(scheduleFor(paperPlan(), 'P01'));
     one.doUntil(({ kind }) => kind === 'rest');

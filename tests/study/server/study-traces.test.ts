@@ -120,7 +120,7 @@ const tracesOf = (participant: string, { token, code }: { readonly token: string
   gzipSync(recordingOf(participant)).subarray(4000, 4032),
 ];
 
-test('a participant who is deleted leaves no byte in data, logs and temporary files, and nothing but the code in exports', async () => {
+test('a deleted participant leaves no byte in data, logs and files, and a code in exports', async () => {
   const server = await serve();
   const { ask, asExperimenter, directory } = server;
   const searched = () => [...filesIn(directory), { name: 'log', bytes: Buffer.from(server.printed()) }];

@@ -52,7 +52,7 @@ const asksMore = latencyPlan({
 });
 
 describe('a plan that has participants', () => {
-  test('is frozen: a change is refused in a sentence that says who keeps it and what can be done', async () => {
+  test('is frozen: a change is refused in a sentence with its holder and the remedy', async () => {
     const { plan, change, see } = await begunStudy();
     const { status, json } = await change(later);
     expect(status).toBe(409);
@@ -120,7 +120,7 @@ describe('a plan that has participants', () => {
     expect(store.plans.get('latency').retentionUntil).toBe(now + 365 * 86_400);
   });
 
-  test('that is open keeps its one invitation, also to the places that the new version has more', async () => {
+  test('keeps its one invitation if it is open, also for places of the new version', async () => {
     const { store } = await servedStudies();
     const open = latencyPlan({ entry: 'open', participants: 6 });
     store.plans.add(open, { simulated: false, at: now });
@@ -147,7 +147,7 @@ describe('a plan that has participants', () => {
     expect((await change({ ...plan, consent: { ...consent, version: '2' } }, true)).status).toBe(201);
   });
 
-  test('that no one has begun is replaced as before, without a version', async () => {
+  test('is replaced without a version while no one has begun it', async () => {
     const { store } = await servedStudies();
     store.plans.add(latencyPlan(), { simulated: false, at: now });
     expect(store.plans.add(later, { simulated: false, at: now })).toMatchObject({ version: 1, plan: later });
@@ -175,7 +175,7 @@ describe('a place that the experimenter clears', () => {
     expect(store.deletion.receipts('latency')).toMatchObject([{ participant: 'P18', reason: 'experimenter' }]);
   });
 
-  test('stays with the version of a group in which another has begun, and leaves it with the last of them', async () => {
+  test('stays with its version of a group until the last member who began leaves it', async () => {
     const { store } = await servedStudies();
     store.plans.add(paperPlan(), { simulated: false, at: now });
     const [first = '', second = '', third = ''] = togetherWith(paperPlan(), 'P04');
@@ -207,7 +207,7 @@ describe('a place that the experimenter clears', () => {
     expect(store.overview('paper', now).map(({ version }) => version)).toEqual([1, 1, 1, 1, 1, 1]);
   });
 
-  test('of a study that has been opened to all is taken by the invitation of all, and not by the old one', async () => {
+  test('is taken, in a study opened to all, by everyone’s invitation, not the old one', async () => {
     const { store } = await servedStudies();
     const invited = latencyPlan({ participants: 6 });
     store.plans.add(invited, { simulated: false, at: now });
@@ -245,7 +245,7 @@ describe('those who play together', () => {
     }
   });
 
-  test('are never mixed: a change that would put others into their group is refused, and says so', async () => {
+  test('are never mixed: a change that would add others to their group is refused', async () => {
     const { store } = await servedStudies();
     store.plans.add(paperPlan(), { simulated: false, at: now });
     store.places.claim('paper', 'P04', now);

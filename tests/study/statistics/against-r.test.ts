@@ -66,7 +66,7 @@ describe('two groups', () => {
     expectAsInR(slept.p, 0.0693275754336266);
   });
 
-  test('of unequal size and with ties: ChickWeight after 20 days, diet 2 − diet 1', () => {
+  test('unequal sizes and ties: ChickWeight after 20 days, diet 2 − diet 1', () => {
     const after20 = chicks.map((members) => members.map((weights) => weights[2] as number));
     const [first = [], second = []] = after20;
     const { t, df, p, interval, d, dInterval } = welchTest(second, first);
@@ -96,7 +96,7 @@ describe('two groups', () => {
     }
   });
 
-  test('all values of one beyond all of the other: one way of all to choose their ranks, to either side', () => {
+  test('complete separation: one way of all to choose their ranks, to either side', () => {
     const sides = [
       Array.from({ length: 20 }, (_, index) => index),
       Array.from({ length: 25 }, (_, index) => 100 + index),
@@ -126,7 +126,7 @@ test("the effect of a paired test and its interval, by R's pt: sleep", () => {
   expectAsInR(dInterval?.high, -0.414627756380144);
 });
 
-test('signed ranks of means of three rounds, by differences of nine digits: wilcox.test(first, second, paired = TRUE, digits.rank = 9)', () => {
+test('signed ranks of means of three rounds compare differences to nine digits, as R’s digits.rank = 9', () => {
   const {
     statistic: v,
     method,
@@ -142,7 +142,7 @@ test('signed ranks of means of three rounds, by differences of nine digits: wilc
   expectAsInR(effectInterval?.high, 0.948571402369858);
 });
 
-test('an effect whose interval reaches further than can be computed has none, rather than one that is cut off', () => {
+test('an effect whose interval exceeds the computable has none, rather than a cut one', () => {
   // With two differences and t = 18 the noncentrality would reach beyond 40; computing ends at 37.
   expect(pairedTTest([19, 17], [0, 0])).toMatchObject({ t: 18, dInterval: null });
   expect(pairedTTest([8.5, 7.5], [0, 0])).toMatchObject({ t: 16, dInterval: { low: expect.any(Number) } });
@@ -155,7 +155,7 @@ test('an effect whose interval reaches further than can be computed has none, ra
 });
 
 describe("rank-biserial correlations, their intervals by R's tanh(atanh(r) + c(-1, 1) * qnorm(.975) * error)", () => {
-  test('of pairs, error sqrt(n (n + 1) (2 n + 1) / 6) / (n (n + 1) / 2): depression', () => {
+  test('pairs, error sqrt(n (n + 1) (2 n + 1) / 6) / (n (n + 1) / 2): depression', () => {
     const { statistic: v, effect, effectInterval } = signedRankTest(depression.first, depression.second);
     expect(v).toBe(40);
     expectAsInR(effect, 0.777777777777778);
@@ -163,7 +163,7 @@ describe("rank-biserial correlations, their intervals by R's tanh(atanh(r) + c(-
     expectAsInR(effectInterval?.high, 0.944155901920081);
   });
 
-  test('of two groups, error sqrt((m + n + 1) / (3 m n)): placenta', () => {
+  test('two groups, error sqrt((m + n + 1) / (3 m n)): placenta', () => {
     const { effect, effectInterval } = rankSumTest(placenta.term, placenta.early);
     expectAsInR(effect, 0.4);
     expectAsInR(effectInterval?.low, -0.213153495960508);
@@ -184,7 +184,7 @@ test("noncentral distributions are R's pt and pf", () => {
   expectAsInR(noncentralF(0.4, 2, 42)(9), 0.00794975601529174);
 });
 
-describe('more than two', () => {
+describe('tests of more than two', () => {
   test('repeated measures, sphericity and Greenhouse and Geisser\'s correction: anova(lm(cbind(…) ~ 1), X = ~1, test = "Spherical")', () => {
     const { within, between, interaction, n } = varianceAnalysis([roundingTimes]);
     expect([n, between, interaction]).toEqual([22, null, null]);
@@ -264,7 +264,7 @@ describe('more than two', () => {
     expectAsInR(weights.p, 1.05306173575538e-20);
   });
 
-  test('of two conditions is the paired t-test: F is t², and the correction changes nothing', () => {
+  test('two conditions give the paired t-test: F is t², and the correction changes nothing', () => {
     fc.assert(
       fc.property(fc.array(fc.tuple(evenly(-5, 5), evenly(-5, 5)), { minLength: 3, maxLength: 30 }), (pairs) => {
         const { t, p } = pairedTTest(

@@ -153,7 +153,7 @@ describe('a mean', () => {
     expect(interval?.high).toBeCloseTo(2.0297804, 7);
   });
 
-  test('of one value has none', () => {
+  test('a single value has none', () => {
     expect(meanSummary([4])).toEqual({ n: 1, mean: 4, standardDeviation: null, interval: null });
   });
 });

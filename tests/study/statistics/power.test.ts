@@ -25,7 +25,7 @@ describe('the power of a study that is yet to be run', () => {
     expect(wilcoxon).toBeLessThan(0.057);
   });
 
-  test('is found by a table that ends where both tests have it, the same again by the same seed', () => {
+  test('has a table that ends where both tests reach it, repeatable by its seed', () => {
     const planned = { design: 'paired', effect: 0.8, alpha: 0.05 } as const;
     const rows = powerTable(planned, 0.8, { seed: 3, studies: 2000 });
     expect(rows).toEqual(powerTable(planned, 0.8, { seed: 3, studies: 2000 }));

@@ -29,7 +29,7 @@ const halves = <T>(people: readonly T[]) => {
 };
 
 /** Ranks know no unit: a test of means must be that of the sums, which are whole numbers, in every figure. */
-describe.each([2, 3, 4, 5, 6, 7])('of means of %i values the ranks are those of their sums', (k) => {
+describe.each([2, 3, 4, 5, 6, 7])('the ranks of means of %i values are those of their sums', (k) => {
   const always = (alike: (people: readonly (readonly Rounds[])[]) => void) =>
     fc.assert(fc.property(played(k), alike), { seed, numRuns: 200 });
 
@@ -81,7 +81,7 @@ describe('ranks', () => {
     expect(ranksOf([100, 0.0002, 0.0001, 0.0003])).toEqual({ ranks: [4, 2, 1, 3], ties: [] });
   });
 
-  test('of pairs leave out those that differ by rounding alone, however little the others do', () => {
+  test('pairs that differ by rounding alone are left out, however little the others differ', () => {
     const { zeros, n, statistic } = signedRankTest([50.1 + 0.2, 50.1, 50.2], [50.3, 50, 50]);
     expect([zeros, n, statistic]).toEqual([1, 2, 3]);
   });

@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { createAfterFrame } from '../../../src/threepoint/api/after-frame';
 import { openPorts } from './open-ports';
 
-test('what a frame leaves for later is done after it, in order', async () => {
+test('work that a frame leaves for later is done after it, in order', async () => {
   const done: string[] = [];
   const { schedule, close } = createAfterFrame();
   const tasks = new Promise<void>((resolve) => {

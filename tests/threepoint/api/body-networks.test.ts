@@ -120,7 +120,7 @@ describe('a network that answers later', () => {
     await expect.poll(openPorts).toBe(open);
   });
 
-  test('is let go with the body, as is one that was chosen before and one that still arrives', async () => {
+  test('is released with the body, as are one chosen before and one still on its way', async () => {
     const { network, disposed } = answeringLater();
     let arrive: () => void = () => undefined;
     const arriving = new Promise<void>((resolve) => {

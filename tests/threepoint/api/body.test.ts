@@ -41,7 +41,7 @@ describe('a body', () => {
     expect(reported).toEqual(['found head', 'found left', 'found right']);
   });
 
-  test('has the fingers of its frame in the pose, where they are known, and a copy keeps them', async () => {
+  test('has its frame’s fingers in the pose, where they are known; a copy keeps them', async () => {
     const { body } = await observed({ calibration, estimator: 'ik' });
     const fingers = { left: makeHandShape(), right: null };
     expect(body.update({ ...at(0), fingers })!.fingers).toEqual({ left: flatHand, right: null });
@@ -72,7 +72,7 @@ describe('a body', () => {
     expect(reported).toEqual(['lost left', 'found left']);
   });
 
-  test('says that a hand is lost where the device only guesses it: its arm sinks to rest', async () => {
+  test('reports a hand that the device only guesses as lost: its arm sinks to rest', async () => {
     const { body, reported } = await observed({ calibration, estimator: 'ik' });
     body.update(at(0));
     reported.length = 0;
@@ -100,7 +100,7 @@ describe('a body', () => {
     expect(body.calibration.eyeHeight).toBeCloseTo(1.7, 2);
   });
 
-  test('of a wearer who sits at first, or holds the headset, is as tall as they stand up, and no taller on a box', async () => {
+  test('is as tall as a wearer stands up after sitting, and no taller on a box', async () => {
     const { body, reported } = await observed({ estimator: 'ik' });
     for (let frame = 0; frame < 120; frame++) body.update(standing(frame / 60, 1.2));
     for (let frame = 120; frame < 300; frame++) body.update(standing(frame / 60, 1.78));
@@ -142,7 +142,7 @@ describe('a body', () => {
     expect(body.calibration).toEqual(calibration);
   });
 
-  test('takes measures from an object that its page goes on changing, as a panel of sliders does', () => {
+  test('takes measures from an object that its page keeps changing, as a panel of sliders does', () => {
     const reported: number[] = [];
     const measures = { ...calibration };
     const body = new Body({
@@ -269,7 +269,7 @@ describe('a body', () => {
     );
   });
 
-  test('that is disposed of has no pose, and warns once of a page that goes on using it', async () => {
+  test('has no pose after disposal, and warns once of a page that goes on using it', async () => {
     const { body } = await observed({ estimator: 'ik' });
     body.update(at(0));
     await body.dispose();
@@ -346,7 +346,7 @@ describe('measures of a stand-in', () => {
     expect(reported).toHaveLength(4);
   });
 
-  test('that are the wearer’s own go on while the wearer is given others', () => {
+  test('are separate from the wearer’s own, which go on meanwhile', () => {
     const body = new Body({ estimator: 'ik', calibration });
     body.update(at(0), body.userCalibration);
     const person = { ...calibration };

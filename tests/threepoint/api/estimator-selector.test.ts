@@ -55,7 +55,7 @@ function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>,
   return { choice, faults, changes };
 }
 
-describe('which estimator draws', () => {
+describe('the estimator that draws', () => {
   test('inverse kinematics draws while the network loads, then the network does', async () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice, faults } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
@@ -67,7 +67,7 @@ describe('which estimator draws', () => {
     expect(faults).toEqual([]);
   });
 
-  test('what draws already goes on where it is chosen again', async () => {
+  test('the drawing estimator goes on where it is chosen again', async () => {
     const { choice } = choiceThat(async () => networkOn('wasm'));
     const { current } = choice;
     await choice.setEstimator('ik');
@@ -90,7 +90,7 @@ describe('which estimator draws', () => {
     expect(faults).toEqual(['learned: learned.onnx: 404']);
   });
 
-  test('also where another network drew until then, which is not what was wanted', async () => {
+  test('a network that cannot be loaded leaves inverse kinematics after another network, too', async () => {
     const { choice, changes } = choiceThat(async (name) => {
       if (name === 'paper') throw new Error('paper.onnx: 404');
       return networkOn('wasm');
@@ -167,7 +167,7 @@ describe('which estimator draws', () => {
     expect(faults).toHaveLength(1);
   });
 
-  test('what a listener throws is no fault of the network', async () => {
+  test('an exception of a listener is no fault of the network', async () => {
     const { choice, faults } = choiceThat(
       async () => networkOn('wasm'),
       () => {

@@ -59,7 +59,7 @@ describe('a recording', () => {
     expect(new Blob([...parts], { type }).size).toBeGreaterThan(10_000);
   });
 
-  test('is refused in a sentence where the device’s body is asked for and no frame has one', async () => {
+  test('is refused in a sentence where the device’s body is wanted and no frame has one', async () => {
     await expect(exportMotion(recording, { format: 'csv', estimator: 'device', networks })).rejects.toThrow(
       'The recording has no device body. Choose another method.',
     );
@@ -78,7 +78,7 @@ describe('a recording', () => {
     );
   });
 
-  test('is of what is seen of frames that a program has made: one that is nowhere leaves no trace behind it', async () => {
+  test('shows what a program’s frames see: a frame that is nowhere leaves no trace behind it', async () => {
     const nowhere = { x: Number.NaN, y: 0, z: 0 };
     const slips = [
       { ...recording.frames[5]!, leftHand: { ...recording.frames[5]!.leftHand!, position: nowhere } },
@@ -169,7 +169,7 @@ describe('a long export', () => {
     expect(turns).toBeGreaterThan(3);
   });
 
-  test('is given up while its network is still on its way, which is let go when it comes', async () => {
+  test('can be abandoned while its network is on its way, which is released on arrival', async () => {
     const giveUp = new AbortController();
     const network = { ...openPlainModel(), dispose: vi.fn(async () => undefined) };
     let arrive: (network: PoseRegressor) => void = () => undefined;

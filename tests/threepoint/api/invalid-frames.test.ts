@@ -118,7 +118,7 @@ test('a point of a page that does not say how it is tracked is there', () => {
   expect(bodies[0].update(bare)?.body).toEqual(bodies[1].update(at(0))?.body);
 });
 
-test('a rotation of another length than 1, as of quaternions that were mixed straight, is taken for its direction', () => {
+test('a rotation of another length than 1, as from mixed quaternions, counts as its direction', () => {
   const bodies = [new Body({ estimator: 'ik', calibration }), new Body({ estimator: 'ik', calibration })] as const;
   const frame = at(0);
   const longer = (pose: TrackedPose, by: number): TrackedPose => {
@@ -130,7 +130,7 @@ test('a rotation of another length than 1, as of quaternions that were mixed str
   for (const [i, number] of numbersIn(drawn).entries()) expect(number).toBeCloseTo(numbersIn(whole)[i]!, 9);
 });
 
-test('a time that is no number is that of the frame before; before any with one, nothing is seen', () => {
+test('a time that is no number is the last frame’s; before any, nothing is seen', () => {
   const body = new Body({ estimator: 'ik', calibration });
   expect(body.update({ ...at(0), time: Number.NaN })).toBeNull();
   body.update(at(1));

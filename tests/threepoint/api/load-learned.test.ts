@@ -8,7 +8,7 @@ import type { Recording } from '../../../src/threepoint/core/tracking/recording'
 
 const models = new URL('../../../public/models/', import.meta.url);
 
-test('a program of Node has the learned network from the disk, without a word of where it lies', async () => {
+test('a program of Node has the learned network from disk without giving its place', async () => {
   const reported: string[] = [];
   const body = new Body({ events: { fallback: (_, reason) => reported.push(reason) } });
   await body.setEstimator('learned');
@@ -38,7 +38,7 @@ test('a contract that is not on the disk is reported in a sentence', async () =>
   );
 });
 
-test('weights that could not be checked, as on a page without https, are refused in a sentence', async () => {
+test('weights that could not be checked, as on pages without https, are refused in a sentence', async () => {
   vi.stubGlobal('crypto', {});
   await expect(loadLearned()).rejects.toThrow(/^learned\.bin: could not be checked: the page is not secure/);
 });

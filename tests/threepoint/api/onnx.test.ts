@@ -61,7 +61,7 @@ test('another contract’s weights are taken from beside it', async () => {
   expect(regressor.runNow?.(new Float32Array(regressor.contract.inputs[0]!.shape.at(-1)!))).toHaveLength(18);
 });
 
-test('options that it does not know, and an address in place of a function, are refused in a sentence', () => {
+test('unknown options, and an address in place of a function, are refused in a sentence', () => {
   // reason: what a page without types may pass
   const create = (options: object) => () => onnxNetworks(options as Parameters<typeof onnxNetworks>[0]);
   expect(() => onnxNetworks(undefined as never)).toThrow('onnxNetworks needs an object of options. Use modelUrl, ');

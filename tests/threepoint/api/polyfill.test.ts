@@ -91,7 +91,7 @@ function look<Result>(session: Session, see: (frame: BodyFrame) => Result): Resu
 const hipsIn = (frame: BodyFrame) => frame.getPose(frame.body.get('hips')!, headset.floor);
 const standing = { position: { x: 5, y: 1.6, z: 0 }, orientation: fromAxisAngle(up, 0.4) };
 
-test('joints have no pose until the session’s first frame that sees the head, whatever the session before saw', async () => {
+test('joints have no pose until a session’s first frame with a head, whatever came before', async () => {
   headset.setHead(standing);
   const first = await begin();
   expect(look(first, hipsIn)?.transform.position.x).toBeCloseTo(5, 0);
@@ -104,7 +104,7 @@ test('joints have no pose until the session’s first frame that sees the head, 
   expect(look(second, hipsIn)?.transform.position.x).toBeCloseTo(5, 0);
 });
 
-test('a frame asks the browser once where its floor is for all joints in one space, and again in the next frame', async () => {
+test('a frame asks the browser once for its floor for all joints in a space', async () => {
   headset.setHead(standing);
   const session = await begin();
   const table = headset.floor.getOffsetReferenceSpace(new XRRigidTransform({ x: 1 }, fromAxisAngle(up, 1)));
@@ -119,7 +119,7 @@ test('a frame asks the browser once where its floor is for all joints in one spa
   expect(moved!.position).not.toEqual(hips!.position);
 });
 
-test('all joints at once are where they are one by one, and no number where they are not known', async () => {
+test('all joints together are where they are singly, and no number where they are unknown', async () => {
   const session = await begin();
   const table = headset.floor.getOffsetReferenceSpace(new XRRigidTransform({ x: 1 }, fromAxisAngle(up, 1)));
   const fill = (frame: BodyFrame) => {
@@ -155,7 +155,7 @@ test('an option that it does not know is refused', () => {
   );
 });
 
-test('a page that handles no fault is warned of a session without a floor, and of a network that failed', async () => {
+test('a page without a fault handler gets warnings of a missing floor and a failed network', async () => {
   const warn = vi.spyOn(console, 'warn').mockImplementation(() => undefined);
   uninstall();
   uninstall = installBodyTracking({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });

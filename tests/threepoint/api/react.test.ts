@@ -104,7 +104,7 @@ describe('SelfAvatar', () => {
     expect(ref.current).toBe(first);
   });
 
-  test('changed in avatar and measures at once draws the new avatar, and leaves the old body alone', async () => {
+  test('changed in avatar and measures at once draws the new avatar and leaves the old alone', async () => {
     const calibrated: number[] = [];
     const ref = createRef<BodyTracker>();
     const onCalibrated = ({ calibration }: { calibration: typeof tall }) => calibrated.push(calibration.eyeHeight);

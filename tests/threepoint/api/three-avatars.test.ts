@@ -24,7 +24,7 @@ describe('an avatar', () => {
     json.extensionsUsed = [];
   });
 
-  test('of bytes that lie within others, as those of Node’s Buffer do, is read where they lie', async () => {
+  test('is read from bytes within others, as Node’s Buffer has them, where they lie', async () => {
     const bytes = new Uint8Array(mannequin());
     const wider = new Uint8Array(bytes.length + 200);
     wider.set(bytes, 100);
@@ -32,7 +32,7 @@ describe('an avatar', () => {
     expect(avatar.object.children.length).toBeGreaterThan(0);
   });
 
-  test('of a humanoid without VRM stands on a map of its bones', async () => {
+  test('stands on a map of its bones where its file is a humanoid without VRM', async () => {
     const [own, other] = [await loadAvatar(mannequin()), await loadAvatar(foreign, { bones })];
     const pose = poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration));
     const wrist = (avatar: typeof own) => {
@@ -58,7 +58,7 @@ describe('an avatar', () => {
     expect(reach({ left: closedHand, right: flatHand })).toBeLessThan(0.6 * flat);
   });
 
-  test('with a map that has a name that is not there, or lacks a bone, it is refused', async () => {
+  test('is refused with a map that has a missing name or lacks a bone', async () => {
     await expect(loadAvatar(foreign, { bones: { ...bones, leftHand: 'Paw' } })).rejects.toThrow(
       'the avatar: bones.leftHand: no node is called “Paw”',
     );
@@ -68,7 +68,7 @@ describe('an avatar', () => {
   });
 
   test.each(Object.entries({ loadAvatar, avatarMotionWriter: avatarMotionWriter }))(
-    'that has not arrived whole is refused by %s',
+    'is refused by %s when it has not arrived whole',
     async (_, take) => {
       await expect(take(mannequin().slice(0, -4))).rejects.toThrow(
         /^the avatar: not a VRM or GLB file \(.*truncated\)$/,

@@ -7,7 +7,7 @@ import { controller } from '../xr/fake-headset';
 import { begin } from './three-session';
 
 describe('a body in a session of three.js', () => {
-  test('recentres: the head stands at the origin and looks ahead, and the renderer draws in the same space', async () => {
+  test('recentres: the head stands at the origin facing ahead, in the renderer’s space too', async () => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
     headset.setHead({ position: { x: 2, y: 1.6, z: 1 }, orientation: fromAxisAngle(up, 1) });
     headset.putOn();
@@ -21,7 +21,7 @@ describe('a body in a session of three.js', () => {
     expect(orientation.w).toBeCloseTo(1);
   });
 
-  test('lies where the page has teleported its wearer, and knows nothing of it: no way there, no jump, no other pose', async () => {
+  test('lies where the page teleported its wearer, without a way, a jump or another pose', async () => {
     const { headset, tracker, run, reported, drawn } = await begin({ calibration: defaultCalibration });
     tracker.addEventListener('discontinuity', () => reported.push('jumped'));
     headset.putOn();
@@ -66,24 +66,21 @@ describe('a body in a session of three.js', () => {
     expect(jumps).toBe(0);
   });
 
-  test.each([0.1, 3, -3])(
-    'stands on a floor that is %s m higher as on any other, and grows for none',
-    async (height) => {
-      const { headset, tracker, run, drawn } = await begin();
-      headset.putOn();
-      run(100);
-      const { eyeHeight } = tracker.calibration;
-      const before = structuredClone(tracker.avatar.jointPositions());
-      headset.moveFloorTo({ x: 0, y: height, z: 0 });
-      run(200);
-      expect(tracker.calibration.eyeHeight).toBe(eyeHeight);
-      const { hips, leftFoot } = tracker.avatar.jointPositions();
-      expect(drawn(hips!).y - height).toBeCloseTo(before.hips!.y, 2);
-      expect(drawn(leftFoot!).y - height).toBeCloseTo(before.leftFoot!.y, 2);
-    },
-  );
+  test.each([0.1, 3, -3])('stands on a floor that is %s m higher as on any other, without growing', async (height) => {
+    const { headset, tracker, run, drawn } = await begin();
+    headset.putOn();
+    run(100);
+    const { eyeHeight } = tracker.calibration;
+    const before = structuredClone(tracker.avatar.jointPositions());
+    headset.moveFloorTo({ x: 0, y: height, z: 0 });
+    run(200);
+    expect(tracker.calibration.eyeHeight).toBe(eyeHeight);
+    const { hips, leftFoot } = tracker.avatar.jointPositions();
+    expect(drawn(hips!).y - height).toBeCloseTo(before.hips!.y, 2);
+    expect(drawn(leftFoot!).y - height).toBeCloseTo(before.leftFoot!.y, 2);
+  });
 
-  test('that comes to a wearer the page has raised already is as tall as they are', async () => {
+  test('is as tall as its wearer even if the page raised them before', async () => {
     const { headset, tracker, run, drawn } = await begin();
     headset.putOn();
     headset.moveFloorTo({ x: 1, y: 3, z: 0 });
@@ -121,7 +118,7 @@ describe('a body in a session of three.js', () => {
     expect(reported).toEqual(['jumped']);
   });
 
-  test('leaves the space of a page that has moved its wearer to the page, also when the device recentres', async () => {
+  test('leaves the space of a page that moved its wearer to the page, through recentring too', async () => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
     headset.putOn();
     run(2);

@@ -104,7 +104,7 @@ describe('a body in a session of three.js', () => {
     expect(tracker.calibration.trackerOffsets).toBeUndefined();
   });
 
-  test('has no pose after its session, so that a page that sends it leaves no frozen body with others', async () => {
+  test('has no pose after its session, so that a sending page leaves no frozen body', async () => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
     const atEnd: unknown[] = [];
     tracker.addEventListener('sessionend', () => atEnd.push(tracker.pose));
@@ -186,7 +186,7 @@ describe('a body in a session of three.js', () => {
     expect(tracker.calibration.eyeHeight).toBeCloseTo(1.5);
   });
 
-  test('of a device that never calls anything tracked, as emulators do, has its hands on the controllers too', async () => {
+  test('has its hands on the controllers of a device that tracks nothing, as emulators do', async () => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
     const guessed = { ...left, emulated: true };
     headset.setInputs(controller('left', guessed), controller('right', right));
@@ -272,7 +272,7 @@ describe('a body in a session of three.js', () => {
     expect(ownHeadSeen(tracker)).toBe(true);
   });
 
-  test('of a page’s own frames hides its head from the wearer of a session, but shows them the head of a stand-in', async () => {
+  test('hides its head from the wearer in a page’s own frames, but shows a stand-in’s', async () => {
     const { headset, tracker } = await begin({ calibration: defaultCalibration });
     headset.putOn();
     tracker.updateFromFrame(standing);
@@ -284,7 +284,7 @@ describe('a body in a session of three.js', () => {
     expect(ownHeadSeen(tracker)).toBe(true);
   });
 
-  test('that is disposed of stays so: no frame shows it again, and nothing is listened to', async () => {
+  test('stays disposed of: no frame shows it again, and no event is listened to', async () => {
     const { headset, tracker, run, reported } = await begin({ calibration: defaultCalibration });
     const scene = new Group().add(tracker.object);
     headset.putOn();
@@ -314,7 +314,7 @@ describe('a tracker that is given the wrong things', () => {
     // reason: what a page without types may pass
     new BodyTracker({} as WebGLRenderer, options as BodyTrackerOptions);
 
-  test('refuses an avatar that another tracker draws, or has disposed of, and leaves the first its body', async () => {
+  test('refuses an avatar that another tracker has or disposed of, which keeps its body', async () => {
     const { tracker, headset, run } = await begin({ calibration: defaultCalibration });
     const { avatar } = tracker;
     expect(create({ avatar })).toThrow(

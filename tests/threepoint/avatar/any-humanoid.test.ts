@@ -65,7 +65,7 @@ test('the faults of the files that tests build are none of the validator’s', a
 });
 
 describe('a body of other proportions', () => {
-  test('keeps its own neck and, with hanging arms, its own shoulders; stretched out, it reaches as far as its wearer', async () => {
+  test('keeps its own neck and hanging shoulders; stretched out, it reaches as far as its wearer', async () => {
     const { avatar } = await opened({ nameOf: vroid });
     const wearer = 1.5; // the head joint of an adult of 1.70 m, about [m]
     const own = wearer / 1.42;
@@ -125,7 +125,7 @@ describe('is refused with a sentence', () => {
     );
   });
 
-  test('a body with one arm under names that mean nothing, with what was found and what to give', async () => {
+  test('a body with one arm under meaningless names, with what was found and is needed', async () => {
     const nameOf = (bone: string) => `x${bone.length}${bone.at(-1)}q`;
     await refused({ nameOf, without: rightArm }).toThrow(
       /person\.glb: its bones could not be matched to a humanoid: .*loadAvatar\(source, \{bones:/,

@@ -103,7 +103,7 @@ describe('hair', () => {
     expect(usual / fast).toBeCloseTo(1, 3);
   });
 
-  test('swings when its wearer steps aside, and does not when the floor is moved under the wearer', async () => {
+  test('swings when its wearer steps aside, but not when the floor moves under the wearer', async () => {
     const { avatar } = await opened();
     let time = stand(avatar, 0, 3);
     const still = strandOf(avatar);
@@ -123,7 +123,7 @@ describe('hair', () => {
   test.each([
     ['itself', (avatar: Avatar) => avatar.object],
     ['with a group that it is in', (avatar: Avatar) => new Group().add(avatar.object)],
-  ])('is at rest at once when the body is teleported %s, head and hands as they were', async (_, carrier) => {
+  ])('is at rest at once when the body teleports %s, head and hands unchanged', async (_, carrier) => {
     const { avatar } = await opened();
     const carried = carrier(avatar);
     const time = stand(avatar, 0, 3);
@@ -140,7 +140,7 @@ function eyeYaw({ loaded }: { loaded: LoadedAvatar }): number {
 }
 
 describe('eyes', () => {
-  test('stay on what they look at while the head turns a little, and leap to where it faces when it turns on', async () => {
+  test('stay on their target while the head turns a little, and leap ahead when it continues', async () => {
     const body = await opened();
     let time = stand(body.avatar, 0, 1);
     expect(eyeYaw(body)).toBeCloseTo(0, 3);
@@ -151,7 +151,7 @@ describe('eyes', () => {
     expect(eyeYaw(body)).toBeCloseTo(0, 3);
   });
 
-  test('that a file moves by shapes hold what they look at and leap as eyes on bones do, not with the next blink', async () => {
+  test('moved by shapes of a file hold their target and leap as eyes on bones do', async () => {
     const range = { inputMaxValue: 90, outputScale: 1 };
     const bytes = changed(
       (json) => {
@@ -213,7 +213,7 @@ function speak({ loaded, avatar }: Awaited<ReturnType<typeof opened>>, open: num
 }
 
 describe('a mouth', () => {
-  test('opens with what is said within a syllable, is never thrown open from one frame to the next, and shuts all the way', async () => {
+  test('opens with speech within a syllable, never jumps open, and shuts all the way', async () => {
     const body = await opened();
     expect(speak(body, 0, 0, 0.5)).toBe(0);
     const first = speak(body, 1, 0.5, 1 / 72);
@@ -223,20 +223,20 @@ describe('a mouth', () => {
     expect(speak(body, 0, 0.7, 0.4)).toBe(0);
   });
 
-  test('of more than all or of less than nothing is all the way open, or shut', async () => {
+  test('is all the way open for more than all, and shut for less than nothing', async () => {
     const body = await opened();
     expect(speak(body, 7, 0, 1)).toBe(1);
     expect(speak(body, -7, 1, 1)).toBe(0);
   });
 
-  test('of no number is shut, and opens again with the next one', async () => {
+  test('is shut by what is no number, and opens again with the next number', async () => {
     const body = await opened();
     expect(speak(body, 1, 0, 1)).toBe(1);
     expect(speak(body, Number.NaN, 1, 1)).toBe(0);
     expect(speak(body, Number.POSITIVE_INFINITY, 2, 1)).toBe(1);
   });
 
-  test('of a head without lids has its shape before the first frame, for which programs are made, and then while it is open', async () => {
+  test('has its shape for a head without lids before the first frame, then while open', async () => {
     const avatar = createAvatar(
       await parseAvatar(
         changed(() => undefined),
@@ -264,7 +264,7 @@ describe('a mouth', () => {
   });
 
   test.each(['viseme_aa', 'jawOpen', 'mouthOpen'])(
-    'of a file without expressions moves by its shape %s, and by one alone',
+    'moves by the shape %s of a file without expressions, and by one alone',
     async (name) => {
       const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
       const bytes = changed(

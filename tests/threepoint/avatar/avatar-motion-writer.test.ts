@@ -34,7 +34,7 @@ describe.each([
   ['a VRM 0.x', () => old],
 ])('%s with a clip', (_, avatar) => {
   test.each(Object.entries(people))(
-    'moves in three.js as pixiv’s player moves the same avatar by our VRM Animation: the %s person, within 1 mm and 0.1°',
+    'moves in three.js as pixiv’s player moves it, the %s person, to 1 mm and 0.1°',
     async (_, { motion }) => {
       const bytes = bytesOf((await createAvatarMotionWriter(avatar(), 'me.vrm')).write(motion));
       const ours = await load(bytes.buffer, false);
@@ -69,7 +69,7 @@ describe.each([
 describe('an avatar with a clip', () => {
   const { motion, truth } = people.acting;
 
-  test('that stood with its arms down, in centimetres, points them where the person’s are', async () => {
+  test('points arms that hung down, in centimetres, where the person’s are', async () => {
     const file = builtRig({ nameOf: (bone) => bone, armsDown: 50, unit: 100 });
     const bytes = bytesOf(
       (await createAvatarMotionWriter(file, 'person.glb', { bones: namesOf(motion) })).write(motion),
@@ -90,7 +90,7 @@ describe('an avatar with a clip', () => {
     }
   });
 
-  test('keeps what is in its file, and has no fault for the validator that its file had not', async () => {
+  test('keeps what is in its file and adds no fault for the validator', async () => {
     const bytes = bytesOf((await createAvatarMotionWriter(mannequin(), 'me.vrm')).write(motion));
     const faults = async (file: Uint8Array) => {
       const { issues, info } = await validateBytes(file, { format: 'glb', writeTimestamp: false });

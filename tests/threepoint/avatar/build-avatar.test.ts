@@ -66,7 +66,7 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(file.byteLength).toBeLessThan(400e3);
   });
 
-  test('is one closed surface: every edge is passed as often one way as the other, all triangles hang together', () => {
+  test('is one closed surface: each edge is passed equally both ways, and all triangles connect', () => {
     const edges = new Map<string, number>();
     const group = new Map<string, string>();
     const root = (key: string): string => {
@@ -92,7 +92,7 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(new Set(corners.map(root)).size).toBe(1);
   });
 
-  test('stands on the floor, about 1.70 m tall, as wide to the left as to the right', () => {
+  test('stands on the floor, about 1.70 m tall, as wide to the left as right', () => {
     const of = (axis: number) => vertices.map(({ position }) => position[axis] ?? Number.NaN);
     expect(Math.min(...of(1))).toBeGreaterThan(-0.004);
     expect(Math.min(...of(1))).toBeLessThan(0.004);
@@ -147,7 +147,7 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(still).toBeGreaterThan(4000);
   });
 
-  test('says "ah": chin and lower lip go down, the upper lip hardly moves, eyes and neck stay', () => {
+  test('says "ah": chin and lower lip fall, the upper lip hardly moves, eyes and neck stay', () => {
     let [chin, lowest] = [0, Number.POSITIVE_INFINITY];
     const { moved } = shapeOf('aa', ({ position: [x = 0, y = 0, z = 0], moves }, far) => {
       const [, down = 0] = moves.aa ?? [];
@@ -165,13 +165,13 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(chin, 'what lies under the chin goes along').toBeLessThan(0);
   });
 
-  test('opens its mouth to both sides alike: what lies in the middle of the face stays there', () => {
+  test('opens its mouth to both sides alike: the middle of the face stays there', () => {
     const middle = vertices.filter(({ position: [x = 0], moves }) => moves.aa && Math.abs(x) < 0.006);
     expect(middle.length).toBeGreaterThan(20);
     for (const { moves } of middle) expect(Math.abs(moves.aa?.[0] ?? 0)).toBeLessThan(1e-3);
   });
 
-  test('has shoulders that slope from the neck to the acromion, which lies 4 to 5.5 cm above the joint; the deltoid lies no higher', () => {
+  test('has shoulders sloping to the acromion, 4 to 5.5 cm above joint, and no higher deltoid', () => {
     const { shoulder } = figure.rig.armJoints;
     /** The highest skin so far out from the shoulder joint [m]. */
     const top = (from: number, to: number) =>

@@ -150,18 +150,21 @@ describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (
     }
   });
 
-  test.each(['ik', 'learned'] as const)('that hang hold a ball beside the thigh, not in it: %s', async (method) => {
-    const { frame } = hanging(1);
-    const estimator = method === 'ik' ? createIk(wearer) : createWithNetwork(method, wearer, openPlainModel());
-    for (let step = 0; step <= 30; step++) {
-      const time = step / 30;
-      avatar.setPose(await show(estimator, { ...frame, time }), time);
-    }
-    const skin = drawnSkin(avatar, /hips|UpperLeg|LowerLeg/);
-    for (const hand of [frame.leftHand, frame.rightHand]) {
-      const at = ballInPalm(hand!, ballRadius);
-      const gap = nearest(skin, [...skin.keys()], (place) => distanceToBall(place, at, ballRadius));
-      expect(gap).toBeGreaterThan(0);
-    }
-  });
+  test.each(['ik', 'learned'] as const)(
+    'hold a ball beside the thigh when they hang, not in it: %s',
+    async (method) => {
+      const { frame } = hanging(1);
+      const estimator = method === 'ik' ? createIk(wearer) : createWithNetwork(method, wearer, openPlainModel());
+      for (let step = 0; step <= 30; step++) {
+        const time = step / 30;
+        avatar.setPose(await show(estimator, { ...frame, time }), time);
+      }
+      const skin = drawnSkin(avatar, /hips|UpperLeg|LowerLeg/);
+      for (const hand of [frame.leftHand, frame.rightHand]) {
+        const at = ballInPalm(hand!, ballRadius);
+        const gap = nearest(skin, [...skin.keys()], (place) => distanceToBall(place, at, ballRadius));
+        expect(gap).toBeGreaterThan(0);
+      }
+    },
+  );
 });

@@ -34,11 +34,11 @@ describe.each(forms)('FBX as %s', (_, write) => {
     expectBody(wear(await parseChecked(await check(write(builtFbx({ nameOf, turns: wave, studio: true }))), name)));
   });
 
-  test('of bones and their motion alone is motion', async () => {
+  test('is motion where it has bones and their motion alone', async () => {
     await expect(check(write(builtFbx({ nameOf, bare: true, turns: wave })))).rejects.toThrow(MotionOnlyError);
   });
 
-  test('of bones alone is refused', async () => {
+  test('is refused where it has bones alone', async () => {
     await expect(check(write(builtFbx({ nameOf, bare: true })))).rejects.toThrow('nothing that could be seen');
   });
 

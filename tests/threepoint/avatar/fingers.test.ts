@@ -173,7 +173,7 @@ describe('a rig', () => {
     expect(distance(end('right', 'middle'), before.right)).toBeLessThan(1e-6);
   });
 
-  test('whose fingers are bent at rest is bent to the same places', async () => {
+  test('bends fingers that are bent at rest to the same places', async () => {
     const turned = [0, 0, Math.sin(-0.3), Math.cos(-0.3)];
     const bytes = changed((json) => {
       for (const node of json.nodes) if (/^left(Index|Middle)Intermediate$/.test(node.name)) node.rotation = turned;

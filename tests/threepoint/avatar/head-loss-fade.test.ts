@@ -3,7 +3,7 @@ import { createHeadLossFade } from '../../../src/threepoint/avatar/head-loss-fad
 import { reportFigures } from '../../reliability/report-figures';
 
 describe('a body whose head is lost', () => {
-  test('stays solid for a moment, then fades to a quarter, and is whole in the first frame that sees it', () => {
+  test('stays solid for a moment, fades to a quarter, and is whole once the head returns', () => {
     for (const rate of [72, 80, 90, 120]) {
       const loss = createHeadLossFade();
       expect(loss.opacityAt(0, true)).toBe(1);

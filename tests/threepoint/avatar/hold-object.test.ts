@@ -20,7 +20,7 @@ const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
   right: wristAround('right', vec3(gripRadius, 1.1, -0.4), forward, up),
 };
 
-test('both hands of a holder lie round the basket’s rim: no fingertip is in the basket but the thumbs’, which go over the rim', () => {
+test('both hands of a holder surround the basket’s rim, with no fingertip but the thumbs’ inside', () => {
   const opening = basketInHands(wrists.left, wrists.right)!;
   const rim = { at: opening.position, normal: opening.normal, radius: basketRadius, tube: rimTube };
   const holding = new ObjectHolds();
@@ -42,7 +42,7 @@ test('both hands of a holder lie round the basket’s rim: no fingertip is in th
   }
 });
 
-test('a thing that does not move in its hand is held the same way, wherever the hand is', () => {
+test('a thing that stays still in its hand is held alike wherever the hand is', () => {
   const holding = new ObjectHolds();
   const [first, second] = [makeHandShape(), makeHandShape()];
   for (const [shape, x] of [
@@ -61,7 +61,7 @@ test('a thing that does not move in its hand is held the same way, wherever the 
   expect(second).toEqual(first);
 });
 
-test('an avatar’s own fingers close round a ball: long and short ones both lie on its surface', () => {
+test('an avatar’s own fingers, long or short, close round a ball and lie on it', () => {
   const at = vec3(0, -0.09, -0.08);
   const radius = 0.075;
   for (const size of [0.75, 1, 1.3]) {

@@ -241,7 +241,7 @@ describe('a compressed body', () => {
     refused += 1;
   });
 
-  test('what VRMs of others need is read', () => {
+  test('is read where a VRM of others needs its extensions', () => {
     const file = changed((json) => {
       json.extensionsRequired = ['VRMC_vrm', 'VRMC_materials_mtoon', 'KHR_materials_unlit', 'KHR_texture_transform'];
     });
@@ -313,7 +313,7 @@ describe('the size of a picture', () => {
     expect(imageSize(webp)).toEqual({ width: 300, height: 200 });
   });
 
-  test('of anything else, or of one cut short, is none', () => {
+  test('is none for anything else, and none for one cut short', () => {
     for (const text of ['', 'GIF89a', '<svg/>', '\x89PNG', 'RIFF....WEBP'])
       expect(imageSize(Buffer.from(text, 'latin1'))).toBeNull();
     expect(imageSize(Uint8Array.from([0xff, 0xd8, 0xff, 0xe0, 0, 4]))).toBeNull();

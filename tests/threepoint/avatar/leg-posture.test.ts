@@ -34,7 +34,7 @@ const turned = (person: Person, yaw: number, to: Vec3): Person => {
 };
 
 describe('legs', () => {
-  test('of a person who stands stay where they are, flat on the floor, on their own sides', () => {
+  test('stay flat on the floor on their own sides while a person stands', () => {
     const first: Vec3[] = [];
     feetAfter(standing, 5, ({ legs: { left, right } }) => {
       if (first.length === 0) first.push({ ...left.ankle }, { ...right.ankle });
@@ -46,7 +46,7 @@ describe('legs', () => {
     expect(first[1]!.x).toBeGreaterThan(0.04);
   });
 
-  test('of a person who holds both hands high stand on the floor', () => {
+  test('stand on the floor while a person holds both hands high', () => {
     let lifted = 0;
     feetAfter(
       (time) => {
@@ -70,7 +70,7 @@ describe('legs', () => {
     });
   });
 
-  test('of a walker step in turn', () => {
+  test('step in turn while a person walks', () => {
     const lifts: string[] = [];
     const high = { left: false, right: false };
     feetAfter(walking, 8, ({ legs }, time) => {
@@ -123,7 +123,7 @@ describe('legs', () => {
     }
   });
 
-  test('of a person who spins as fast as people do step round: on the floor they stand still', () => {
+  test('step round while a person spins as fast as people do, still when on the floor', () => {
     const yaw = (time: number) => (time < 1 ? 6 * time * time : 12 * time - 6);
     const places: Vec3[] = [];
     feetAfter(

@@ -41,7 +41,7 @@ async function wearer(name: string) {
 }
 
 describe.each(['mannequin', 'woman', 'man', 'stout', 'child'])('the legs of the %s', (name) => {
-  test('keep their girth at hip and knee, sitting, in a deep squat, and with a knee raised', async () => {
+  test('keep their girth at hip and knee, sitting, squatting low, and with a raised knee', async () => {
     const { avatar, show, thinnest } = await wearer(name);
     for (const posture of ['sitting', 'deep squat', 'knee raised']) {
       show(posture);

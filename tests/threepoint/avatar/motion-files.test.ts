@@ -63,7 +63,7 @@ test.each([
   await expectTruth(bytes, 'wave.fbx');
 });
 
-test('so is the clip of a GLB, the longest of several', async () => {
+test('the clip of a GLB, the longest of several, is read too', async () => {
   const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   await expectTruth(glb, 'wave.glb');
   const { json, binary } = partsOf(new Uint8Array(glb));
@@ -99,7 +99,7 @@ test('a skin that was bound in T-pose counts as rest where the file shows anothe
   await expectTruth(posed, 'wave.glb');
 });
 
-test('a skin that was bound to ends of chains that lie a hundredfold off is read all the same', async () => {
+test('a skin bound to chain ends a hundredfold off is read all the same', async () => {
   const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   const { json, binary } = partsOf(new Uint8Array(glb));
   const skin = json.skins[0]! as { joints: number[]; inverseBindMatrices: number };

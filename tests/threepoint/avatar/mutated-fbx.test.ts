@@ -87,7 +87,7 @@ function spoilers(chance: () => number) {
   };
 }
 
-test('what is held of a file of several MB with packed arrays is a few times its size', {
+test('the memory held for a file of packed arrays is a few times its size', {
   tags: ['full'],
 }, async () => {
   const held = (): number => {
@@ -141,7 +141,7 @@ async function wornOrMoved(bytes: ArrayBuffer, parts: SceneParts): Promise<void>
   });
 }
 
-test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each in a moment`, {
+test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each at once`, {
   timeout: 3_600_000,
 }, async () => {
   // The reader warns of what it passes over.

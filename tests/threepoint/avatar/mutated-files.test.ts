@@ -133,7 +133,7 @@ test.each([
   expect((await read(withOffset(file, offset)))?.joints.size ?? 0).toBe(0);
 });
 
-test('files of avatars, spoiled, are refused in a sentence or read as a body of finite numbers, each in a moment', {
+test('spoiled avatar files are refused in a sentence or read as finite bodies, in a moment', {
   tags: ['full'],
   timeout: 3_600_000,
 }, async () => {

@@ -71,7 +71,7 @@ describe('a file whose bones match no humanoid', () => {
     expect(oneHanded.joints.map(({ name }) => name)).toContain('leftToe');
   });
 
-  test('is worn with a map, and by those who have no map once its bones are named', async () => {
+  test('is worn with a map, and without one once its bones are named', async () => {
     const file = builtRig({ nameOf: backwards });
     const named = await withNamedBones(file, bones);
     expect(await gltfFaults(new Uint8Array(named))).toEqual([]);
@@ -89,7 +89,7 @@ describe('a file whose bones match no humanoid', () => {
     expectSame(seen.leftHand, own.leftHand);
   });
 
-  test('may call something else as it calls a bone: the map means the bone, for the wearer and for those who have no map', async () => {
+  test('may name something else as a bone: the map means the bone, for every viewer', async () => {
     const file = changed(
       (json) => {
         const [scene] = json.scenes as { nodes: number[] }[];

@@ -311,7 +311,7 @@ function expectHands(worn: Worn): void {
   }
 }
 
-describe('a rig of few or odd bones has its hands where the wearer’s are, in twelve postures:', () => {
+describe('a rig of few or odd bones has the wearer’s hands in twelve postures:', () => {
   test.each(oddBones)('%s', async (_, options) => {
     expectHands(await opened({ nameOf, ...options }));
   });

@@ -9,7 +9,7 @@ describe('the reflection of a mirror', () => {
     ['Quest 2', 1440 * 1584],
     ['Quest 3', 1680 * 1760],
     ['a small emulated eye', 480 * 270],
-  ])('has at most half of the pixels of an eye of %s, and as many as it shows at 1.5 m', (_, pixels) => {
+  ])('has at most half an eye of %s in pixels, and its share at 1.5 m', (_, pixels) => {
     const { width, height } = reflectionSize(pixels, standing, 1024);
     expect(width * height).toBeLessThanOrEqual(pixels / 2);
     // The mirror fills 0.29 of an eye of 96° there.

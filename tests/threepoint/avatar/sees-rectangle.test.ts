@@ -15,7 +15,7 @@ function cameraAt(x: number, y: number, z: number, lookAt: Vector3): Perspective
   return camera;
 }
 
-test('a camera before the glass sees it, one that looks away does not, nor one whose far end is before it', () => {
+test('a camera sees a glass ahead of it, and none behind or beyond its far plane', () => {
   const ahead = new Vector3(0, 1.1, -1.5);
   expect(seesRectangle(cameraAt(0, 1.6, 1, ahead), middle, width, height)).toBe(true);
   expect(seesRectangle(cameraAt(0, 1.6, 1, new Vector3(0, 1.6, 9)), middle, width, height)).toBe(false);
@@ -30,7 +30,7 @@ test('a glass whose corner alone reaches into the picture is seen', () => {
   expect(seesRectangle(camera, at(halfPicture + width / 2 + 0.01), width, height)).toBe(false);
 });
 
-test('of a thousand glasses anywhere none is missed that shows a point in the picture', () => {
+test('no glass of a thousand anywhere is missed that shows a point in the picture', () => {
   let random = { seed: 20261122 };
   const draw = (low: number, high: number): number => {
     const { value, state } = nextRandom(random);

@@ -112,7 +112,7 @@ describe('feet', () => {
     expect(Math.abs(left.position.x - 0.5)).toBeLessThan(0.1);
   });
 
-  test('are not held in the air for longer than a step, however surely they are expected there', () => {
+  test('are not in the air for longer than a step, however surely they are expected', () => {
     let longest = 0;
     let since = 0;
     step(

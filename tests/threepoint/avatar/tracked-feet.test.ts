@@ -87,7 +87,7 @@ describe('a tracked foot', () => {
     expect(highest, 'the knee above the hip [m]').toBeGreaterThan(0.05);
   });
 
-  test('that moves out of its leg’s reach and back moves the drawn ankle no further than itself, four times', () => {
+  test('moves the drawn ankle no further than itself on four ways out of reach and back', () => {
     const posture = new LegPosture(proportions, eyeHeight);
     let before: { readonly tracked: Vec3; readonly ankle: Vec3 } | null = null;
     for (let frame = 0; frame <= 6 * rateHz; frame++) {
@@ -104,7 +104,7 @@ describe('a tracked foot', () => {
     }
   });
 
-  test('that no leg reaches is ignored', () => {
+  test('is ignored when no leg reaches it', () => {
     const [posture, free] = [new LegPosture(proportions, eyeHeight), new LegPosture(proportions, eyeHeight)];
     const far = { position: vec3(-0.1, 0.1, -1.5), orientation: trackerAtJoint.orientation };
     for (let frame = 0; frame < 10; frame++) {

@@ -60,7 +60,7 @@ describe('a network on a graphics device that fails', () => {
     expect(told).toEqual(['WebGPU failed at learned.onnx (no memory is left): WebAssembly takes over.']);
   });
 
-  test('says that the device was lost where it was, also where that is known only after WebAssembly runs', async () => {
+  test('reports where the device was lost, even if it is known only after WebAssembly runs', async () => {
     const { regressor, device, told, arrive } = failing();
     const run = regressor.run(features);
     arrive();

@@ -49,7 +49,7 @@ describe('a worker for inference is not left running', () => {
       (question: WorkerRequest) => ('model' in question ? names : { numbers: noNumbers }),
       /^learned\.onnx: the first run gave/,
     ],
-  ])('where it %s', async (_, answer, sentence) => {
+  ])('when it %s', async (_, answer, sentence) => {
     const worker = new ToldWorker(answer);
     const createWorker = () => worker as unknown as Worker;
     await expect(startRegressor(contract, new Uint8Array(4), { createWorker })).rejects.toThrow(sentence);
@@ -57,7 +57,7 @@ describe('a worker for inference is not left running', () => {
     expect(vi.getTimerCount()).toBe(0);
   });
 
-  test('where its network is let go', async () => {
+  test('when its network is released', async () => {
     const numbers = new Float32Array(18);
     const worker = new ToldWorker((question) => ('model' in question ? names : { numbers }));
     const createWorker = () => worker as unknown as Worker;

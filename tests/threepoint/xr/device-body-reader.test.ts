@@ -105,7 +105,7 @@ describe('the body that a device reports', () => {
       },
       /cannot be read: the frame is over/,
     ],
-  ])('that %s is none, with a sentence, and comes back when the device has it again', (_, spoil, sentence) => {
+  ])('%s: it is none, with a sentence, and comes back when the device has it', (_, spoil, sentence) => {
     const headset = headsetWithBody();
     const reader = new DeviceBodyReader();
     const { getPose: ask } = headset.frame;
@@ -139,7 +139,7 @@ describe('the body that a device reports', () => {
         for (const name of joints.keys()) if (!seen.includes(name)) joints.set(name, { at: null });
       },
     ],
-  ])('of Pico’s 24 joints, %s, is read; a joint that it lacks is where its neighbour is', (_, change) => {
+  ])('has Pico’s 24 joints, %s; a joint that it lacks is at its neighbour', (_, change) => {
     const headset = headsetWithBody();
     change(headset);
     const reader = new DeviceBodyReader();

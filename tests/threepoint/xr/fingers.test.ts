@@ -58,7 +58,7 @@ describe('fingers of a tracked hand', () => {
     for (const { knuckle, middle: bent } of [middle, ring, little]) expect(knuckle + bent).toBeGreaterThan(2);
   });
 
-  test('that the device loses one by one keep their last bend, then relax; the others go on', () => {
+  test('keep their last bend when the device loses them, then relax; the others go on', () => {
     const { setInputs, read } = tracked();
     const hand = trackedHand('right', wrist, recordedHands.pointing!);
     setInputs(hand);
@@ -73,7 +73,7 @@ describe('fingers of a tracked hand', () => {
     expect(read().right!.middle.middle).toBeCloseTo(relaxedHand.middle.middle, 2);
   });
 
-  test('of a hand that is not seen are unknown', () => {
+  test('are unknown for a hand that is not seen', () => {
     const { setInputs, read } = tracked();
     const hand = trackedHand('right', wrist, recordedHands.pointing!);
     for (const joint of hand.hand.values()) joint.at = null;
@@ -131,7 +131,7 @@ describe('fingers on a controller', () => {
     expect(thumbUp.index.middle).toBeGreaterThan(1);
   });
 
-  test('of a controller that feels no touch lie on it', () => {
+  test('lie on a controller that feels no touch', () => {
     const { index, thumb } = shown(held(nothing, nothing, nothing, nothing));
     expect(index.middle).toBeGreaterThan(0.5);
     expect(thumb.knuckle).toBeGreaterThan(0.5);

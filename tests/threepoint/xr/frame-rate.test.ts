@@ -93,7 +93,7 @@ describe('the frame rate of a headset', () => {
     expect(worn.requestedRates).not.toContain(80);
   });
 
-  test('is tried again after a failure, later each time: at most five times in half an hour', async () => {
+  test('is tried again after failures, ever later: at most five times in half an hour', async () => {
     const worn = new Wearing(90);
     worn.fastest = 90;
     await worn.draw(1800);
@@ -105,7 +105,7 @@ describe('the frame rate of a headset', () => {
     expect(worn.frameRate).toBe(120);
   });
 
-  test('is not raised where the work of a frame would leave no time at the next rate', async () => {
+  test('is not raised where the next rate would leave a frame’s work no time', async () => {
     const worn = new Wearing(72);
     await worn.draw(60, 0.009);
     expect(worn.frameRate).toBe(72);

@@ -44,14 +44,14 @@ describe('a pointer', () => {
     expect(pointing.pointers[0]).toBe(pointer);
   });
 
-  test('of a bare hand has the tip of its index finger', () => {
+  test('has a bare hand’s tip of the index finger', () => {
     const { setInputs, read, pointing } = trackedHeadset();
     setInputs(bareHand('left', at(-0.2, 1.2, -0.3), open));
     read();
     expect(pointing.pointers).toMatchObject([{ source: 'hand', side: 'left', tip: vec3(-0.2, 1.2 + open, -0.3) }]);
   });
 
-  test('of the eyes is there while its user pinches, beside the hand that pinches, and releases when it goes', () => {
+  test('follows the eyes while its user pinches, beside that hand, and releases when it goes', () => {
     const { setInputs, select, read, pointing } = trackedHeadset();
     const hand = bareHand('right', at(0.2, 1.1, -0.3), closed);
     const pinch: Input = { ...controller('right', at(0, 1.6, 0)), targetRayMode: 'transient-pointer' };
@@ -84,7 +84,7 @@ describe('a pointer', () => {
     expect([pointer.isHeldFor('menu'), pointer.isHeldFor('game')]).toEqual([true, false]);
   });
 
-  test('that the device takes cancels what it held, and a session behind a menu has none', () => {
+  test('cancels what it held when the device takes it, and a menu leaves none', () => {
     const { setInputs, select, read, pointing, setVisibility } = trackedHeadset();
     const right = controller('right', at(0.2, 1.2, -0.3));
     setInputs(right);
@@ -125,7 +125,7 @@ describe('a hand that belongs to the device neither points nor presses', () => {
     expect(pointing.pointers).toEqual([]);
   });
 
-  test('whose pinch begins with the palm towards the face, until it opens', () => {
+  test('from a pinch that begins with the palm towards the face, until it opens', () => {
     const { inputs, pointing, read, hand, select } = gesture((it) => setGap(it, closed), palmToFace);
     expect(inputs.buttons.right).toMatchObject({ taken: true, pinch: 0 });
     expect(pointing.pointers).toEqual([]);
@@ -136,7 +136,7 @@ describe('a hand that belongs to the device neither points nor presses', () => {
     expect(pointing.pointers).toMatchObject([{ pressed: false, held: false }]);
   });
 
-  test('but a pinch that began elsewhere stays the page’s when the palm turns to the face', () => {
+  test('a pinch that began elsewhere stays the page’s when the palm turns to the face', () => {
     const { inputs, pointing, read, hand } = gesture((it) => setGap(it, closed));
     expect(inputs.buttons.right.pinch).toBe(1);
     const moved = bareHand('right', palmToFace, closed);
@@ -146,7 +146,7 @@ describe('a hand that belongs to the device neither points nor presses', () => {
     expect(pointing.pointers).toMatchObject([{ held: true }]);
   });
 
-  test('and a drawn bow waits for a string hand whose ray is gone: nothing is shot', () => {
+  test('a drawn bow waits for a string hand whose ray is gone: nothing is shot', () => {
     const { setInputs, read, inputs } = trackedHeadset();
     const bow = bareHand('left', at(0, 1.4, -0.6), open);
     const string = bareHand('right', at(0, 1.4, -0.45), open);

@@ -11,7 +11,7 @@ const left = at(-0.25, 1.1, -0.35);
 const right = at(0.25, 1.1, -0.35);
 
 describe('poses', () => {
-  test('of a head that is not seen, or not a number: no frame, and the next one is whole', () => {
+  test('need a head: unseen or invalid, it leaves no frame, and the next is whole', () => {
     const { read, setHead, setInputs } = trackedHeadset();
     setInputs(controller('left', left), controller('right', right));
     const before = read();
@@ -23,7 +23,7 @@ describe('poses', () => {
     expect({ ...read(), time: 0 }).toEqual({ ...before, time: 0 });
   });
 
-  test('of hands: null is not seen, emulated says so, what is no number is not seen', () => {
+  test('show hands as reported: null is unseen, emulated is marked, an invalid number is unseen', () => {
     const { read, setInputs } = trackedHeadset();
     setInputs(controller('left', left), controller('right', right));
     read();
@@ -33,7 +33,7 @@ describe('poses', () => {
     expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'tracked' } });
   });
 
-  test('of a device that never reports a point as tracked count as tracked, each point by itself, until it has reported it', () => {
+  test('count as tracked, each point separately, until the device first reports one as tracked', () => {
     const { read, setInputs } = trackedHeadset();
     const guessed = { left: { ...left, emulated: true }, right: { ...right, emulated: true } };
     setInputs(controller('left', guessed.left), controller('right', guessed.right));
@@ -68,7 +68,7 @@ describe('behind a menu of the device', () => {
   });
 });
 
-describe('which hand it is', () => {
+describe('the hand on a side', () => {
   test('is decided by handedness, in any order, and a swap is another device on each side', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     setInputs(controller('right', right), controller('left', left));
@@ -82,7 +82,7 @@ describe('which hand it is', () => {
     expect(inputs.buttons.right.device).not.toBe(before.right);
   });
 
-  test('is what is seen of two devices on one side, in whichever order they are listed', () => {
+  test('is the visible one of two devices there, in whichever order they are listed', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     const onTheTable = controller('left', null, 1);
     const hand = bareHand('left', left, 0.005);
@@ -123,7 +123,7 @@ describe('which hand it is', () => {
     },
   );
 
-  test.each(['listed first', 'listed last'])('is of two controllers the one that moves, %s', (order) => {
+  test.each(['listed first', 'listed last'])('is the one that moves of two controllers, %s', (order) => {
     const { read, setInputs, inputs } = trackedHeadset();
     const held = controller('left', left);
     const onTheTable = controller('left', at(-2, 0.7, -0.5));
@@ -147,7 +147,7 @@ describe('which hand it is', () => {
     expect(inputs.buttons.left.device).not.toBe(device);
   });
 
-  test('is a bare hand where the device reports no joints, and it pinches where the device selects', () => {
+  test('is a bare hand where the device reports no joints, and pinches when the device selects', () => {
     const { read, setInputs, inputs, session } = trackedHeadset();
     const hand = { ...controller('right', right), profiles: ['generic-hand-select'] };
     const source = { ...hand, gamepad: { buttons: [], axes: [] } };
@@ -176,14 +176,14 @@ describe('which hand it is', () => {
     expect(inputs.buttons.right).toMatchObject({ kind: 'hand', pinch: 0.8, trigger: 0 });
   });
 
-  test('is where it pinches, of a device that reports nothing else', () => {
+  test('is where it pinches if a device reports nothing else', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     setInputs({ ...controller('right', right, 1), targetRayMode: 'transient-pointer' });
     expect(read()?.rightHand).not.toBeNull();
     expect(inputs.buttons.right.trigger).toBe(1);
   });
 
-  test('and of which kind, through ten changes between controllers and hands, nothing kept of the other', () => {
+  test('has the right kind through ten changes of controllers and hands, keeping nothing of the other', () => {
     const { read, setInputs, inputs } = trackedHeadset();
     let correct = 0;
     for (let i = 0; i < 10; i++) {
@@ -228,7 +228,7 @@ describe('events', () => {
     expect(events).toEqual(['start', 'discontinuity', 'discontinuity', 'discontinuity']);
   });
 
-  test('report the end once; a floor that the device moves later is not the session’s any more', () => {
+  test('report the end once; a floor moved later is no more the session’s', () => {
     const { tracked, session, frame, events, reset } = observed();
     tracked.read(frame, 1);
     session.dispatchEvent(new Event('end'));
@@ -247,7 +247,7 @@ describe('events', () => {
   });
 });
 
-describe('where the floor is', () => {
+describe('the floor', () => {
   test('after recentring lies under the head, and the hands keep their distances', () => {
     const { read, setHead, setInputs, tracker, spaces } = trackedHeadset();
     setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
@@ -278,7 +278,7 @@ describe('where the floor is', () => {
     expect(angleBetween(head.orientation, fromAxisAngle(up, yaw))).toBeLessThan(1e-6);
   });
 
-  test('is as far below the user as they ask, head and hands alike, through recentring, turns and the device’s own', () => {
+  test('is as far below the user as requested, with head and hands, through recentring and turns', () => {
     const { read, setHead, setInputs, tracker, reset } = trackedHeadset();
     setHead(at(0.2, 1.15, 0));
     setInputs(controller('right', at(0.3, 0.8, -0.3)));
@@ -331,7 +331,7 @@ describe('where the floor is', () => {
     reportFigures('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
   });
 
-  test('when the device recentres, is where the device says: what was turned here before is forgotten', () => {
+  test('is where the device puts it when recentring: earlier turns are forgotten', () => {
     const { read, setHead, setInputs, tracker, reset, spaces, floor } = trackedHeadset();
     setInputs(controller('right', right));
     read();
@@ -345,7 +345,7 @@ describe('where the floor is', () => {
     expect(angleBetween(head.orientation, identity)).toBeLessThan(1e-9);
   });
 
-  test('is no matter of a tracker that is done with: a device that recentres later moves nothing', () => {
+  test('is independent of a finished tracker: a device that recentres later moves nothing', () => {
     const { read, tracker, reset, spaces } = trackedHeadset();
     read();
     tracker.turn(1);

@@ -89,7 +89,7 @@ function page({ actor = false, emulator = null as Emulator | null } = {}) {
 }
 
 describe('calibrating at a desk', () => {
-  test('with the actor off and a real headset to put on first says so, and opens no countdown', () => {
+  test('says to put a real headset on first, with the actor off, and opens no countdown', () => {
     const { measuring, told } = page();
     measuring.start();
     expect(measuring.step).toBeNull();
@@ -135,7 +135,7 @@ describe('calibrating at a desk', () => {
     expect([left.remembered, left.measuring.step, left.told.length]).toEqual([[], null, 1]);
   });
 
-  test('that is over stays on the screen while a recording replays', () => {
+  test('a finished calibration stays on the screen while a recording replays', () => {
     const { measuring, told, pass, replay } = page({ emulator: emulatedHeadset });
     measuring.start();
     pass(8);

@@ -85,7 +85,7 @@ function files() {
 }
 
 describe('a dropped file', () => {
-  test('that is a recording of 300 MB is refused by a sentence before it is read', async () => {
+  test('a recording of 300 MB is refused by a sentence before it is read', async () => {
     const { files: page, notices, recorder } = files();
     const { file, asked } = largeFile('walk.json', 300);
     await page.open(file);
@@ -99,7 +99,7 @@ describe('a dropped file', () => {
     expect(recorder.mode).toBe('idle');
   });
 
-  test('that is a recording is replayed at once, by the body of the person in it', async () => {
+  test('a recording is replayed at once, by the body of the person in it', async () => {
     const { files: page, notices, recorder, done } = files();
     await page.open(recordingFile());
     expect(notices).toEqual([]);
@@ -111,7 +111,7 @@ describe('a dropped file', () => {
     expect(recorder.person).toBeNull();
   });
 
-  test('that is no recording leaves what was replayed as it was', async () => {
+  test('a file that is no recording leaves what was replayed as it was', async () => {
     const { files: page, notices, recorder } = files();
     await page.open(recordingFile('walk.json'));
     await page.open(new File(['{"frames": 3}'], 'other.JSON'));
@@ -121,7 +121,7 @@ describe('a dropped file', () => {
     expect(recorder.mode).toBe('replaying');
   });
 
-  test('that is a recording leaves one that is being made as it is, and a sentence says so', async () => {
+  test('a recording leaves another that is being made as it is, and a sentence says so', async () => {
     const { files: page, notices, recorder } = files();
     recorder.record({ device: 'a test', rateHz: 72, calibration: person });
     recorder.observe(frameAt(1));
@@ -136,7 +136,7 @@ describe('a dropped file', () => {
     expect([recorder.name, recorder.mode]).toEqual(['walk.json', 'replaying']);
   });
 
-  test('that is read for longer than a recording opened after it comes too late, and a sentence says so', async () => {
+  test('a recording read for longer than a later one comes too late, with a sentence', async () => {
     const { files: page, notices, recorder } = files();
     const { file, arrive } = slowRecording('slow.json');
     const slow = page.openRecording(file);
@@ -149,7 +149,7 @@ describe('a dropped file', () => {
     ]);
   });
 
-  test('that was opened before another is replayed where that is no recording', async () => {
+  test('an earlier recording is replayed where the later file is no recording', async () => {
     const { files: page, recorder } = files();
     const { file, arrive } = slowRecording('slow.json');
     const slow = page.open(file);
@@ -159,7 +159,7 @@ describe('a dropped file', () => {
     expect([recorder.name, recorder.mode]).toEqual(['slow.json', 'replaying']);
   });
 
-  test('of any other name is opened as an avatar, and its name is told when it stands there', async () => {
+  test('a file of any other name is opened as an avatar, whose name is then announced', async () => {
     const { files: page, notices, opened, recorder } = files();
     const file = new File(['glTF'], 'robot.vrm');
     await page.open(file);
@@ -168,7 +168,7 @@ describe('a dropped file', () => {
     expect(notices).toEqual([{ level: 'info', text: 'robot.vrm is your avatar now.' }]);
   });
 
-  test('of motion capture goes with its skeleton, and what came with both is opened too', () => {
+  test('motion capture goes with its skeleton, and a file that came with both is opened too', () => {
     const { files: page, opened, mocap } = files();
     const [motion, skeleton, robot] = ['01_02.AMC', '01.asf', 'robot.vrm'].map((name) => new File([''], name)) as [
       File,

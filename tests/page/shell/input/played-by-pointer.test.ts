@@ -110,7 +110,7 @@ const pinch = (ray: Pose<'floor'>): Input => ({
 });
 
 describe('archery without hands', () => {
-  test('by pinches that aim with the eyes: a pinch draws, and shoots what it points at when it opens', () => {
+  test('a pinch that aims with the eyes draws, and shoots its target when it opens', () => {
     const { play, pass, setInputs, select } = range();
     pass(1.5);
     for (const target of [0, 1]) {
@@ -126,7 +126,7 @@ describe('archery without hands', () => {
     expect(hits(play.newest!)).toEqual([0, 1]);
   });
 
-  test('by gaze: resting on a target nocks, draws and shoots, and looking away puts the arrow back', () => {
+  test('a resting gaze nocks, draws and shoots; looking away puts the arrow back', () => {
     const { play, pass, setHead } = range({ gaze: true });
     pass(1.5);
     const lookAt = (at: Vec3) => setHead(lookingAt(at));
@@ -151,7 +151,7 @@ describe('archery without hands', () => {
     expect(hits(play.newest!)).toEqual([2, 3, 0]);
   });
 
-  test('hands that come back play at once, and the arrow of the pointer is not shot by them', () => {
+  test('hands that come back play at once and do not shoot the pointer’s arrow', () => {
     const { play, pass, setHead, setInputs, happened, pointers } = range({ gaze: true });
     pass(1.5);
     setHead(lookingAt(play.targets[0]!.centre));
@@ -164,7 +164,7 @@ describe('archery without hands', () => {
     expect(play.newest?.state.arrowsLeft).toBe(5);
   });
 
-  test('nothing plays for a user who has hands and only holds them still, nor without a gaze that was chosen', () => {
+  test('nothing plays for a user with still hands, nor without a gaze that was chosen', () => {
     const { pass, pointers, setInputs } = range();
     pass(4);
     expect([pointers.steering, pointers.offersGaze]).toEqual([null, true]);

@@ -146,7 +146,7 @@ describe('in the headset', () => {
     expect([menu.visible, rays.objects.visible]).toEqual([false, false]);
   });
 
-  test('of two hands at a sheet of the game the one that presses is heard', () => {
+  test('a sheet of the game takes the press of the hand that presses', () => {
     const { controls, hands, done } = headset();
     controls.setWorn(true);
     const overhead = (pressed: boolean) => handAt(new Vector3(0, 5, 0), pressed);
@@ -189,7 +189,7 @@ describe('in the headset', () => {
     expect(hand.pointedAt?.distance).toBeCloseTo(1.6, 0);
   });
 
-  test('a hand that rests on a button has the menu compared with what it shows once, not in every frame', () => {
+  test('a hand resting on a button has the menu compared once, not in every frame', () => {
     const { controls, hands, onMenu } = headset();
     controls.setWorn(true);
     controls.show();
@@ -269,7 +269,7 @@ describe('without a controller', () => {
     expect(sheet.getWorldPosition(new Vector3()).distanceTo(home)).toBeLessThan(1e-6);
   });
 
-  test('the back of a wrist before the eyes has a button for the menu, for a finger of the other hand', () => {
+  test('the back of a wrist before the eyes has a menu button for the other hand', () => {
     const { controls, menu, hands } = headset();
     controls.setWorn(true);
     controls.show();
@@ -302,7 +302,7 @@ describe('without a controller', () => {
     }
   });
 
-  test('the gaze is offered to who has no hands, acts on nothing else before, and then on the menu', () => {
+  test('the gaze is offered to a user without hands, and acts on the menu once accepted', () => {
     const { controls, settings, hands, pointers, done, onMenu, menu } = headset();
     controls.setWorn(true);
     controls.show();
@@ -483,7 +483,7 @@ describe('the buttons of the menu', () => {
     expect(exit?.label).toBe(label);
   });
 
-  test('that change something ask for the other state', () => {
+  test('each switch asks for the other state', () => {
     const press = (id: string, state: VrMenuState) =>
       menuButtons(state, actions)
         .find((each) => each.id === id)
@@ -517,7 +517,7 @@ describe('the buttons of the menu', () => {
   });
 
   // Measured: 600 to 750 bytes of numbers and emptied lists; 2,580 with a list and hits for each panel.
-  test('a frame with the gaze offer, a wrist button and the menu allocates no objects for each pointer', () => {
+  test('a frame with gaze offer, wrist button and menu allocates no objects for each pointer', () => {
     const { controls, hands, pointers } = headset();
     controls.setWorn(true);
     const gaze = new GazePointer();

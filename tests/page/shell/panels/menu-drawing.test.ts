@@ -29,7 +29,7 @@ function drawn(change: Partial<ShownInvitation>) {
 }
 
 describe('the invitation in the headset', () => {
-  test('is the code of the address, module for module, on white that is wide enough for cameras', async () => {
+  test('is the address’s code, module for module, on white wide enough for cameras', async () => {
     const { boxes } = drawn({ code: await qrCode(address) });
     const [ground, ...modules] = boxes;
     expect(ground).toEqual({

@@ -58,7 +58,7 @@ const shown = (...others: readonly OtherPlayer[]) =>
   buttonsFor(...others).map(({ id, label, look }) => [id, label, look]);
 
 describe('the other players in the headset', () => {
-  test('have a button each to mute and to hide them; a bot, which has no voice, the second alone', () => {
+  test('have a button each to mute and to hide; a bot, voiceless, the second alone', () => {
     expect(shown(ben, bot)).toEqual([
       ['mute-0', 'Mute', 'plain'],
       ['hide-0', 'Hide', 'plain'],
@@ -67,7 +67,7 @@ describe('the other players in the headset', () => {
     ]);
   });
 
-  test('who are muted or hidden have lit buttons that take it back; a hidden one cannot be muted besides', () => {
+  test('have lit buttons that undo muting or hiding; a hidden one cannot be muted besides', () => {
     expect(shown({ ...ben, silenced: true })[0]).toEqual(['mute-0', 'Unmute', 'chosen']);
     expect(shown({ ...ben, hidden: true, muting: 'off' }).slice(0, 2)).toEqual([
       ['mute-0', 'Mute', 'off'],
@@ -85,7 +85,7 @@ describe('the other players in the headset', () => {
     ]);
   });
 
-  test('the buttons of all that a spectator sees lie apart and inside the sheet, as big as a palm', () => {
+  test('the buttons of everyone a spectator sees lie apart on the sheet, as big as palms', () => {
     const buttons = buttonsFor(...stations.map((_, seat) => player(seat)));
     expect(buttons).toHaveLength(2 * stations.length + 1);
     for (const { at } of buttons) {

@@ -12,7 +12,7 @@ function handClock() {
   };
 }
 
-describe('where the time of a frame goes', () => {
+describe('the time of a frame', () => {
   test('each stage gets the time since the mark before it, the frame gets the sum', () => {
     const clock = handClock();
     const timing = new FrameTiming(clock.now);
@@ -36,7 +36,7 @@ describe('where the time of a frame goes', () => {
     expect(summary.p50Ms).toBe(8);
   });
 
-  test('what a frame leaves for later counts with the next one, the pause before it with none', () => {
+  test('work that a frame leaves for later counts with the next one, the pause with none', () => {
     const clock = handClock();
     const timing = new FrameTiming(clock.now);
     for (let frame = 0; frame < 10; frame++) {
@@ -65,7 +65,7 @@ describe('where the time of a frame goes', () => {
     expect(timing.summary()).toMatchObject({ p50Ms: 5, p95Ms: 30 });
   });
 
-  test('a frame is missed when it comes later than one and a half intervals of the device', () => {
+  test('a frame is missed when it comes over one and a half device intervals late', () => {
     const timing = new FrameTiming(() => 0);
     timing.setRate(72);
     for (const timestamp of [0, 14, 28, 56, 70, 112]) {

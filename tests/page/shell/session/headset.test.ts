@@ -89,7 +89,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
 const soon = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
 describe('entering VR', () => {
-  test('and leaving it again: each is told once', async () => {
+  test('is reported once, as is leaving again', async () => {
     const { headset, session, happened, told } = await page();
     const entering = headset.enter();
     await soon();
@@ -104,7 +104,7 @@ describe('entering VR', () => {
     expect(told).toEqual([]);
   });
 
-  test('by a double click, or once more from within, is entering once', async () => {
+  test('happens once by a double click, or again from within', async () => {
     const { headset, session, happened, told } = await page();
     const entering = [headset.enter(), headset.enter()];
     await soon();
@@ -116,7 +116,7 @@ describe('entering VR', () => {
     expect(told).toEqual([]);
   });
 
-  test('in a session that ends before it has begun leaves the page without one', async () => {
+  test('leaves no session where it ends before it has begun', async () => {
     const { headset, session, happened, told } = await page();
     const entering = headset.enter();
     await soon();
@@ -129,7 +129,7 @@ describe('entering VR', () => {
     expect(told).toEqual([expect.stringContaining('ended before it had begun')]);
   });
 
-  test('where the picture cannot be drawn there ends the session that has begun', async () => {
+  test('a picture that cannot be drawn there ends the session that has begun', async () => {
     const failing = () => Promise.reject(new DOMException('no such graphics device', 'InvalidStateError'));
     const { headset, session, happened, told } = await page(failing);
     await headset.enter();

@@ -10,7 +10,7 @@ function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
 }
 
-describe('what the page remembers', () => {
+describe('the memory of the page', () => {
   test('a calibration survives a reload', () => {
     const storage = memory();
     createPreferenceStore(storage).remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });
@@ -27,7 +27,7 @@ describe('what the page remembers', () => {
     expect(createPreferenceStore(storage).preferences).toEqual({ mirror: false });
   });
 
-  test('what another window of the page has learned since stays', () => {
+  test('the changes of another window of the page stay', () => {
     const storage = memory();
     const [one, other] = [createPreferenceStore(storage), createPreferenceStore(storage)];
     one.remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });
@@ -43,7 +43,7 @@ describe('what the page remembers', () => {
     expect(createPreferenceStore(storage).preferences).toEqual({ ...learned, overlay: true });
   });
 
-  test('what a full storage did not take lasts as long as the page', () => {
+  test('a preference that a full storage did not take lasts as long as the page', () => {
     const storage = memory();
     createPreferenceStore(storage).remember({ mirror: false });
     const full = {
@@ -58,7 +58,7 @@ describe('what the page remembers', () => {
     expect(store.preferences).toEqual({ mirror: false, sound: false, overlay: true });
   });
 
-  test('what was damaged in the meantime is written anew from what this visit knows', () => {
+  test('a damaged entry is written anew from what this visit knows', () => {
     const storage = memory();
     const store = createPreferenceStore(storage);
     store.remember({ mirror: false });
@@ -111,7 +111,7 @@ describe('what the page remembers', () => {
     expect(seen.calibrations).toBeGreaterThan(2);
   });
 
-  test('where the browser stores nothing, the choice lasts as long as the page, which says so once', () => {
+  test('a choice that the browser cannot store lasts as long as the page, which says so', () => {
     const full = {
       getItem: () => null,
       setItem: () => {

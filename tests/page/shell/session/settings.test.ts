@@ -7,7 +7,7 @@ import { readSwitches } from '../../../../src/page/shell/session/switches';
 const visit = (query: string, remembered: Preferences = {}) =>
   createSettings(readSwitches(query).switches, { preferences: { overlay: false, ...remembered } });
 
-describe('what a visit begins with', () => {
+describe('the settings of a new visit', () => {
   test('a first visit has a mirror, sound, the bow in the left hand, and nothing calibrated', () => {
     expect(visit('')).toMatchObject({
       ...{
@@ -23,7 +23,7 @@ describe('what a visit begins with', () => {
     });
   });
 
-  test('what was remembered comes back', () => {
+  test('include those that were remembered', () => {
     const calibration = { eyeHeight: 1.5, armSpan: 1.4 };
     const remembered = { mirror: false, sound: false, bowSide: 'right', name: 'Robin' } as const;
     const settings = visit('', { ...remembered, calibration });
@@ -54,7 +54,7 @@ describe('bots', () => {
     expect(visit('', { bots: false }).bots).toBe(false);
   });
 
-  test('stay away from a room where others may come, even if remembered, unless the address asks for them', () => {
+  test('stay away from a room open to others unless the address asks, even if remembered', () => {
     expect(visit('?room=garden', { bots: true }).bots).toBe(false);
     expect(visit('?room=garden&bots=on').bots).toBe(true);
     expect(visit('?bots=off', { bots: true }).bots).toBe(false);

@@ -62,7 +62,7 @@ describe('the address of the page', () => {
     expect(readSwitches('?study=Paper%2F..&participant=P07').complaints).toHaveLength(1);
   });
 
-  test('a value that no switch takes is said in a sentence and counts as not given, the others count', () => {
+  test('a value that no switch takes is reported and counts as not given; the others count', () => {
     const { switches, complaints } = readSwitches('?estimator=magic&quality=low&ep=gpu');
     expect(switches).toMatchObject({ estimator: null, quality: 'low', executionProvider: 'wasm' });
     expect(complaints).toHaveLength(2);
@@ -70,7 +70,7 @@ describe('the address of the page', () => {
     expect(complaints.join(' ')).toContain('ep=gpu');
   });
 
-  test('what a switch takes is said in words, not in patterns', () => {
+  test('the values that a switch takes are described in words, not in patterns', () => {
     const asked =
       '?replay=&avatar=&seconds=x&balls=99&seed=-1&room=Our%20Room&study=..&participant=me&actor=maybe&view=top';
     const { switches, complaints } = readSwitches(asked);

@@ -105,7 +105,7 @@ describe('going to a game', () => {
     expect(places).toHaveLength(1);
   });
 
-  test('what is asked for on the way to the range is not taken up when it is there', async () => {
+  test('a request on the way to the range is not taken up there', async () => {
     const { activities, places } = page();
     await Promise.all([activities.goTo('archery'), activities.goTo('ball')]);
     expect(activities.name).toBe('archery');
@@ -121,7 +121,7 @@ describe('going to a game', () => {
     expect(places.at(-1)).toBeNull();
   });
 
-  test('a court whose bodies cannot be downloaded yields a notice, and the user stays at the mirror', async () => {
+  test('a court without downloadable bodies yields a notice, and the user stays at the mirror', async () => {
     // Nothing is served there.
     vi.stubGlobal('location', { href: 'http://127.0.0.1:9/' });
     const { activities, notices, seen } = page();
@@ -138,7 +138,7 @@ describe('going to a game', () => {
 describe('a round', () => {
   const opened = range();
 
-  test('starts anew with a rule that counts hits differently, and goes on with another hand or one hand alone', async () => {
+  test('starts anew with a rule that counts differently, and goes on with another hand', async () => {
     const { archery, layout } = await opened;
     const begun = layout();
     archery().setRules({ bowSide: 'right' });
@@ -160,7 +160,7 @@ describe('a round', () => {
     expect(seen.mirror).toBe('left');
   });
 
-  test('of a seated player has targets as high for the eyes as those of one who stands', async () => {
+  test('gives a seated player targets as high for the eyes as a standing one’s', async () => {
     const { activities, archery, headset, layout } = await opened;
     const targetsFor = (eyeHeight: number) => {
       activities.play(wearer(eyeHeight, eyeHeight), nothingPressed);
@@ -197,7 +197,7 @@ describe('a round', () => {
     }
   });
 
-  test('of a player who has left the range and comes back is a new one: its layout is the next', async () => {
+  test('is a new one for a player who comes back, with the next layout', async () => {
     const [left, stayed] = await Promise.all([range(), range()]);
     const first = left.layout();
     expect(first).toEqual(stayed.layout());
@@ -252,7 +252,7 @@ describe('a player who takes the headset off', () => {
     };
   }
 
-  test('at full draw shoots no arrow: it is back in the quiver before other hands move the bow', async () => {
+  test('at full draw shoots no arrow: it returns to the quiver before the bow moves', async () => {
     const { activities, archery, enter, leave } = await worn();
     enter();
     const pressed = { left: allReleased, right: { ...allReleased, trigger: 1 } };
@@ -272,7 +272,7 @@ describe('a player who takes the headset off', () => {
     expect(archery().probe()).toMatchObject({ phase: 'ready', arrowsLeft: 5, stage: 'empty' });
   });
 
-  test('aims by the mouse again that was chosen at the desk, also on a range that was opened in the headset', async () => {
+  test('aims again by the mouse chosen at the desk, also on a range opened in VR', async () => {
     const { activities, archery, seen, aims, enter, leave } = await worn();
     archery().chooseShooter('mouse');
     enter();
@@ -381,7 +381,7 @@ describe('a third activity', () => {
     return { ...page([...registered, darts(done)]), done };
   }
 
-  test('is entered by its name and gets the camera, the mirror and the colours that it wants', async () => {
+  test('is entered by its name and gets the camera, mirror and colours that it wants', async () => {
     const { activities, seen, done } = dartsPage();
     await activities.goTo('darts');
     expect(activities.name).toBe('darts');

@@ -45,7 +45,7 @@ const createTracker = () =>
 
 const noBones = () => new BoneMapStore(createPreferenceStore(null));
 
-test('a body of ours keeps the colours of its seat when another takes its place, and its tone of skin', async () => {
+test('our body keeps its seat’s colours when another replaces it, and its tone of skin', async () => {
   const tracker = createTracker();
   const parts = fake<SessionParts>({
     tracker,
@@ -117,7 +117,7 @@ function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.r
   return { avatar, told };
 }
 
-describe('of files that are asked for one after the other', () => {
+describe('several files requested in turn', () => {
   test('one that another has taken the place of asks for no bones', async () => {
     const letGo = checkFilesHere('first.glb');
     const { avatar } = wardrobe();
@@ -144,7 +144,7 @@ describe('of files that are asked for one after the other', () => {
   });
 });
 
-test('a body from a file that comes to the graphics device only in part leaves nothing there', async () => {
+test('a body from a file that reaches the graphics device only in part leaves nothing there', async () => {
   checkFilesHere();
   let held = 0;
   const { avatar, told } = wardrobe(async (object) => {
@@ -185,7 +185,7 @@ describe('a file that is worn with a wrong bone', () => {
     ['GLB', 'rig.glb', rig, 'the '],
     ['VRM 1.0', 'rig.vrm', smallVrm, ''],
     ['VRM 0.x', 'old.vrm', smallOldVrm, ''],
-  ])('as %s is corrected, keeps the correction, and goes back', async (_, name, content, prefix) => {
+  ])('is corrected as %s, keeps the correction, and goes back', async (_, name, content, prefix) => {
     checkFilesHere();
     const store = createPreferenceStore(null);
     const { avatar, told } = wardrobe(undefined, new BoneMapStore(store));

@@ -139,7 +139,7 @@ describe('the motion of a study as BIDS', () => {
     expect(lost.length / 72).toBeCloseTo(1.5, 0);
   });
 
-  test('has what scored at the frame that showed it, after pauses and losses of the head too', () => {
+  test('has each scored event at its frame, after pauses and losses of the head too', () => {
     for (const { path, recording, landed, began } of study.rounds) {
       const events = tableOf(read(`${path.replace('_tracksys-webxr', '')}_events.tsv`));
       const first = recording.frames[0]?.time ?? Number.NaN;

@@ -46,7 +46,7 @@ describe('an export', () => {
     for (const name of Object.keys(files)) expect(strFromU8(files[name] as Uint8Array)).not.toContain('P02');
   });
 
-  test('of what a participant typed runs nothing in a spreadsheet', () => {
+  test('runs nothing that a participant typed in a spreadsheet', () => {
     const { store } = withPaperStudy();
     const records = completed().map((record) =>
       record.kind === 'demographics' ? { ...record, body: { ...record.body, major: '=cmd|calc' } } : record,
@@ -56,7 +56,7 @@ describe('an export', () => {
     expect(strFromU8(files['paper-P01/participants.csv'] as Uint8Array)).toContain(",'=cmd|calc,");
   });
 
-  test('of simulated people says so in its name, its text and every row', () => {
+  test('names its simulated people in its name, its text and every row', () => {
     const { store } = withPaperStudy({ simulated: true });
     store.records.store('paper', 'P01', completed('P01', { simulated: true }), now);
     const files = unzipSync(exportZip(contentOf(store)));

@@ -39,7 +39,7 @@ const complaintsOf = (changes: Readonly<Record<string, string | null>>): readonl
 };
 
 describe('the codebook of an export', () => {
-  test('has a line for every column of every table, and none for others, each with meaning, values and source', () => {
+  test('has a line with meaning, values and source for every column, and no other lines', () => {
     const [heads = [], ...lines] = csvRows(files['codebook.csv'] as string);
     const explained = lines.map((line) => Object.fromEntries(heads.map((head, index) => [head, line[index] ?? ''])));
     const columns = Object.keys(files).flatMap((path) => {
@@ -72,12 +72,12 @@ describe('the codebook of an export', () => {
 });
 
 describe('an export', () => {
-  test('says which version of the program served the study, with the hash of its networks, and which exported it', () => {
+  test('names the program’s version that served the study, its networks’ hash, and the exporting one', () => {
     expect(JSON.parse(files['software.json'] as string)).toEqual(content.software);
     expect(content.software.exportedBy.weights[0]?.sha256).toMatch(/^[0-9a-f]{64}$/);
   });
 
-  test('of a whole study holds results, of one participant none', () => {
+  test('holds results for a whole study, none for one participant', () => {
     expect(Object.keys(files)).toContain('results/answers-overall.csv');
     const records = content.records.filter(({ participant }) => participant === 'P01');
     const own = Object.keys(exportFiles({ ...content, records }, 'P01'));
@@ -158,7 +158,7 @@ describe('verifying an export', () => {
     }
   });
 
-  test('says of a zip with a byte that was lost in its middle what it cannot read or what differs', () => {
+  test('says of a zip with a lost byte what it cannot read or what differs', () => {
     const zip = exportZip(content);
     const broken = zip.slice();
     broken.fill(0, Math.floor(zip.length / 2), Math.floor(zip.length / 2) + 64);

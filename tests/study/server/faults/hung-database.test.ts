@@ -136,7 +136,7 @@ async function observed(
 }
 
 describe('a database that hangs', () => {
-  test('because another program holds its lock: rooms go on, writes are refused with a time to try again, reads are answered', async () => {
+  test('by another program’s lock lets rooms go on, refuses writes for a time, answers reads', async () => {
     const study = begunStudy();
     const server = await forkServer({}, { directory: study.directory });
     const script = fileURLToPath(new URL('./database-locker.ts', import.meta.url));
@@ -165,7 +165,7 @@ describe('a database that hangs', () => {
   }
 
   test.skipIf(strace === null)(
-    'because its disk does not finish a flush: rooms go on, nothing is acknowledged, reads are answered',
+    'by an unfinished flush lets rooms go on, acknowledges nothing, answers reads',
     { tags: ['full'] },
     async () => {
       const study = begunStudy();

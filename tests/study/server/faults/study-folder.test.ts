@@ -36,7 +36,7 @@ describe('the folder of the studies', () => {
     for (const file of files) expect(modeOf(join(directory, file)), file).toBe(0o600);
   });
 
-  test.skipIf(!hasFileModes)('that others could read is closed to them at the start, and the log says so', async () => {
+  test.skipIf(!hasFileModes)('is closed to others at the start, and the log says so', async () => {
     const directory = join(directoryWith(), 'open');
     mkdirSync(directory);
     openStudyStore(join(directory, 'studies.db')).close();
@@ -55,28 +55,25 @@ describe('the folder of the studies', () => {
     reportFigures('study-folder', { 'files open to others after the start': 0 });
   });
 
-  test.skipIf(!movesOpenFiles)(
-    'that is deleted or replaced while the server runs is answered with 507 and a line of the log, until it is back',
-    async () => {
-      const directory = join(directoryWith(), 'studies');
-      const { add, lines } = await started(directory);
-      expect((await add('before')).status).toBe(201);
-      renameSync(directory, `${directory}-moved`);
-      const deleted = [await add('gone-1'), await add('gone-2')];
-      const sentence = 'the folder of the studies was deleted or replaced. Put it back, or restart the server';
-      expect(deleted).toEqual([1, 2].map(() => ({ status: 507, error: sentence })));
-      expect(lines).toEqual([`study: ${sentence} (${directory}/studies.db was deleted)`]);
-      mkdirSync(directory);
-      openStudyStore(join(directory, 'studies.db')).close();
-      expect(await add('gone-3')).toEqual({ status: 507, error: sentence });
-      rmSync(directory, { recursive: true });
-      renameSync(`${directory}-moved`, directory);
-      expect((await add('after')).status).toBe(201);
-      reportFigures('study-folder', { 'writes acknowledged into a file that was deleted or replaced': '0 of 3' });
-    },
-  );
+  test.skipIf(!movesOpenFiles)('is answered with 507 and a log line while it is deleted or replaced', async () => {
+    const directory = join(directoryWith(), 'studies');
+    const { add, lines } = await started(directory);
+    expect((await add('before')).status).toBe(201);
+    renameSync(directory, `${directory}-moved`);
+    const deleted = [await add('gone-1'), await add('gone-2')];
+    const sentence = 'the folder of the studies was deleted or replaced. Put it back, or restart the server';
+    expect(deleted).toEqual([1, 2].map(() => ({ status: 507, error: sentence })));
+    expect(lines).toEqual([`study: ${sentence} (${directory}/studies.db was deleted)`]);
+    mkdirSync(directory);
+    openStudyStore(join(directory, 'studies.db')).close();
+    expect(await add('gone-3')).toEqual({ status: 507, error: sentence });
+    rmSync(directory, { recursive: true });
+    renameSync(`${directory}-moved`, directory);
+    expect((await add('after')).status).toBe(201);
+    reportFigures('study-folder', { 'writes acknowledged into a file that was deleted or replaced': '0 of 3' });
+  });
 
-  test.skipIf(!movesOpenFiles)('whose log alone is deleted is answered with 507 too', async () => {
+  test.skipIf(!movesOpenFiles)('is answered with 507 when its log alone is deleted, too', async () => {
     const directory = directoryWith();
     const { add, lines } = await started(directory);
     rmSync(join(directory, 'studies.db-wal'));
@@ -84,7 +81,7 @@ describe('the folder of the studies', () => {
     expect(lines).toEqual([expect.stringContaining('studies.db-wal was deleted')]);
   });
 
-  test('of another server is refused', async () => {
+  test('is refused when another server uses it', async () => {
     const directory = directoryWith();
     const first = await started(directory);
     await expect(started(directory)).rejects.toThrow(
@@ -163,7 +160,7 @@ describe('a database that cannot be opened is refused with its file and what to 
     expect((await (await started(directory)).add('new')).status).toBe(201);
   });
 
-  test('and one of an older version is brought up to date', async () => {
+  test('one of an older version is brought up to date', async () => {
     const { directory, file } = studied();
     sql(file, withoutInvitations);
     expect((await (await started(directory)).add('new')).status).toBe(201);

@@ -6,7 +6,7 @@ import { killedStudy } from './killed-study';
 /** The number of kills; the nightly run sets a thousand (STUDY_KILLS). */
 const kills = Number(process.env.STUDY_KILLS ?? 40);
 
-test(`a study whose server is killed ${kills} times while it writes loses nothing acknowledged, and no one is in two conditions`, async () => {
+test(`a study whose server is killed ${kills} times loses nothing acknowledged and mixes no conditions`, async () => {
   const report = await killedStudy(kills, 22, (line) => console.log(line));
   printFigures('a study whose server is killed', {
     kills: report.kills,

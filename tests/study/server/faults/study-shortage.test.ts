@@ -49,7 +49,7 @@ async function ask({ port }: StartedServer, method: string, path: string, body?:
 
 const remark = (server: StartedServer) => ask(server, 'POST', '/participants/P01/remarks', { text: 'still here' });
 
-test('a heap of 64 MB refuses what does not fit with a sentence, and the server goes on', {
+test('a heap of 64 MB refuses an excess with a sentence, and the server goes on', {
   tags: ['full'],
 }, async () => {
   const { directory } = studyWith(30_000);
@@ -67,7 +67,7 @@ test('a heap of 64 MB refuses what does not fit with a sentence, and the server 
   });
 });
 
-test('a limit of files that strangers’ connections use up leaves the studies writable, and refuses an export with a sentence', {
+test('a limit of files reached by strangers leaves studies writable and refuses exports', {
   tags: ['full'],
 }, async () => {
   const { directory } = studyWith(1);
@@ -90,7 +90,7 @@ test('a limit of files that strangers’ connections use up leaves the studies w
   reportFigures('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
 });
 
-test('a disk that fills refuses to store and to delete, and is no matter to an export', async () => {
+test('a disk that fills refuses to store and to delete, but not to export', async () => {
   const { directory, file, code } = studyWith(100);
   // The limit is the size of the database in blocks of 1024 bytes. Further writes fail, as on a full disk.
   const through = ['bash', '-c', `trap '' XFSZ; ulimit -f 48; exec "$0" "$@"`];

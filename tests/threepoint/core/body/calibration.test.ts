@@ -28,7 +28,7 @@ describe('measures of people', () => {
     expect(1.8 - armSpanFromFingertipSpan(1.8)).toBeLessThan(0.45);
   });
 
-  test('what was converted converts back', () => {
+  test('a converted measure converts back', () => {
     fc.assert(
       fc.property(number(0.5, 2.5), (value) => {
         expect(statureFromEyeHeight(eyeHeightFromStature(value))).toBeCloseTo(value, 12);
@@ -39,8 +39,8 @@ describe('measures of people', () => {
   });
 });
 
-describe('what is a person’s body', () => {
-  test('ordinary people, small children and giants are', () => {
+describe('the range of a person’s body', () => {
+  test('includes ordinary people, small children and giants', () => {
     expect(calibrationProblem(defaultCalibration)).toBeNull();
     for (const stature of [1.02, 1.2, 1.5, 1.7, 1.9, 2.1, 2.28]) {
       const calibration = { eyeHeight: eyeHeightFromStature(stature), armSpan: armSpanFromFingertipSpan(stature) };
@@ -102,7 +102,7 @@ describe('what is a person’s body', () => {
       { ...defaultCalibration, handTilts: { right: { pitch: 0, yaw: Number.NaN } } },
       /right hand’s tilt/,
     ],
-  ])('%s is not, and the sentence says why', (_, calibration, sentence) => {
+  ])('excludes %s, and the sentence says why', (_, calibration, sentence) => {
     expect(calibrationProblem(calibration)).toMatch(sentence);
   });
 });
@@ -148,12 +148,12 @@ test('a forearm that was typed stays with other measures, unless no such arm has
 });
 
 describe('before the first calibration', () => {
-  test('who stands is as tall as they stand', () => {
+  test('a standing person is as tall as they stand', () => {
     expect(calibrationFromHeadHeight(1.72).eyeHeight).toBe(1.72);
     expect(calibrationFromHeadHeight(1.45).eyeHeight).toBe(1.45);
   });
 
-  test('who sits, or whose floor is wrong, is an ordinary adult', () => {
+  test('a person who sits, or whose floor is wrong, is an ordinary adult', () => {
     expect(calibrationFromHeadHeight(1.15)).toEqual(defaultCalibration);
     expect(calibrationFromHeadHeight(0)).toEqual(defaultCalibration);
     expect(calibrationFromHeadHeight(eyeHeightRange.max + 0.5)).toEqual(defaultCalibration);

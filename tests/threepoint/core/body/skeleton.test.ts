@@ -25,7 +25,7 @@ describe('the calibrated skeleton', () => {
     }
   });
 
-  test('at rest a person stands upright in T-pose: eyes at eye height, arms as wide as they span, face to −Z', () => {
+  test('stands upright at rest in T-pose: eyes at eye height, arms at span, face to −Z', () => {
     fc.assert(
       fc.property(body, (calibration) => {
         const skeleton = skeletonFromCalibration(calibration);
@@ -64,7 +64,7 @@ describe('the calibrated skeleton', () => {
     expect(length(wide.leftLowerArm)).toBeGreaterThan(length(small.leftLowerArm));
   });
 
-  test('a measured forearm divides the arm and moves nothing else: half-way between the average’s and the measured one', () => {
+  test('a measured forearm divides the arm half-way from average to measure, and moves nothing else', () => {
     const told = { eyeHeight: 1.6, armSpan: 1.5, forearm: 0.25 };
     const average = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 }).restOffsets;
     const { restOffsets } = skeletonFromCalibration(told);

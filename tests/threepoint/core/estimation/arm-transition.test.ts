@@ -89,7 +89,7 @@ const turned = (by: number, { upperArm, forearm, hinge }: ArmDirections): ArmDir
 };
 
 describe('an arm whose hand has jumped', () => {
-  test('sets out from where it was drawn, and is where it is wanted exactly when the transition ends', () => {
+  test('sets out from where it was drawn, and is at its goal when the transition ends', () => {
     fc.assert(
       fc.property(arm, arm, (from, wanted) => {
         const transition = makeArmTransition();
@@ -106,7 +106,7 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
-  test('takes a fifth of a second at least, 0.9 s at most, and elbow and wrist stay below 2.25 m/s where that lets them', {
+  test('takes 0.2 to 0.9 s, with elbow and wrist below 2.25 m/s where that suffices', {
     tags: ['full'],
   }, () => {
     fc.assert(
@@ -142,7 +142,7 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
-  test('is in the same place at 60, 72, 90 and 120 Hz, to what it goes in a frame', () => {
+  test('is in one place at 60, 72, 90 and 120 Hz, to a frame’s motion', () => {
     fc.assert(
       fc.property(arm, arm, (from, wanted) => {
         // Until it is there a frame's length of its way, at its speed, is between one rate and another.

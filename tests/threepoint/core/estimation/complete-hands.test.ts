@@ -180,7 +180,7 @@ describe('a hand that is lost', () => {
     }
   });
 
-  test('never strays further from its shoulder on its way to rest than where it was lost and where it rests', () => {
+  test('strays no further from its shoulder on its way to rest than at either end', () => {
     const where = fc.record({ x: evenly(-0.4, 0.5), y: evenly(0.7, 1.9), z: evenly(-0.5, 0.4) });
     const shoulder = vec3(0.18, 1.33, 0.08);
     fc.assert(
@@ -204,7 +204,7 @@ describe('a hand that is lost', () => {
     for (let i = 1; i < confidence.length; i++) expect(confidence[i]).toBeLessThanOrEqual(confidence[i - 1]!);
   });
 
-  test('belongs where it was held at first, then beside the hip: that is a jump of its goal, and the only one', () => {
+  test('belongs where it was held, then beside the hip: its goal jumps once only', () => {
     const hands = follow(lost, 1).map(({ rightHand }) => rightHand);
     expect(hands.slice(0, 6).every(({ source }) => source === 'held')).toBe(true);
     expect(distance(hands[5]!.goal.position, reach)).toBeLessThan(1e-3);
@@ -286,7 +286,7 @@ describe('a hand that returns', () => {
     expect(distance(arms.at(-1)!.wrist, add(reach, vec3(0, 0, -0.05 * Math.sin(6))))).toBeLessThan(1e-6);
   });
 
-  test('lost again while its arm is on the way, it goes on and sinks without a jump', () => {
+  test('goes on and sinks without a jump when lost again while its arm moves', () => {
     const twice = (time: number) => frame(time, time > 0.5 && time < 0.6 ? tracked(returned) : null);
     expect(largestDrawnStep(drawn(twice, 1.5))).toBeLessThan(0.05);
   });
@@ -323,7 +323,7 @@ describe('a hand that comes back far from where it rests', () => {
     distance(now, before) -
     Math.abs(turning / 60) * (0.2 + Math.max(Math.hypot(now.x, now.z), Math.hypot(before.x, before.z)));
 
-  test('takes no step of its own over 5 cm while it is lost, however the person turns', () => {
+  test('takes no step of its own over 5 cm while lost, however the person turns', () => {
     fc.assert(
       fc.property(where, evenly(-Math.PI, Math.PI), evenly(-6, 6), (from, yaw, turning) => {
         const at = turningPerson(yaw, turning);
@@ -339,7 +339,7 @@ describe('a hand that comes back far from where it rests', () => {
     );
   });
 
-  test('is drawn without a step of its own over 5 cm, wherever in reach it comes back, turning up to 86° a second', {
+  test('takes no own step over 5 cm anywhere in reach, turning up to 86° a second', {
     tags: ['full'],
   }, () => {
     fc.assert(

@@ -67,7 +67,7 @@ describe('the device’s body', () => {
     );
   });
 
-  test('gives way to the other source within 0.3 s where it is lost, and comes back as slowly, without a leap', () => {
+  test('gives way to another source within 0.3 s of its loss, and returns as slowly, smoothly', () => {
     const seen = seenPerson();
     const estimator = device();
     let before: JointPositions | null = null;
@@ -83,7 +83,7 @@ describe('the device’s body', () => {
     }
   });
 
-  test('that is elsewhere than the head is another’s, and an arm elsewhere than its hand is not followed', () => {
+  test('is another’s where it is far from the head, and no distant arm is followed', () => {
     const drawn = (stray: string, by: Vec3) => {
       const { frame, guessed, truth, body, place } = seenPerson()(10);
       const at = 3 * deviceJointNames.indexOf(names[stray] ?? '');
@@ -103,7 +103,7 @@ describe('the device’s body', () => {
     expect(drawn('leftHand', vec3(0, 0.04, 0)).followed).toEqual(all);
   });
 
-  test('of an arm whose hand the trackers have lost is followed as long as both say the same', () => {
+  test('keeps an arm whose hand the trackers lost as long as both agree', () => {
     const estimator = device();
     const seen = seenPerson();
     jointsAfter(estimator, { ...seen(10).frame, deviceBody: seen(10).body });

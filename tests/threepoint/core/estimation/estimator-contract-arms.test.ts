@@ -42,7 +42,7 @@ function reachOf(calibration: Calibration): number {
 describe.each(bodies)('$label', (subject) => {
   const { create, runs } = openSubject(subject);
 
-  test('the hands land on the wrists wherever they can be reached, else a straight arm points at them', async () => {
+  test('the hands land on the wrists within reach, else a straight arm points at them', async () => {
     await fc.assert(
       fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const estimator = create(calibration);
@@ -93,7 +93,7 @@ describe.each(bodies)('$label', (subject) => {
     );
   });
 
-  test('an elbow goes steadily and never jumps to the other side of its arm, wherever hands and hand turns go', async () => {
+  test('an elbow goes steadily and never jumps to its arm’s other side, whatever hands do', async () => {
     const jolt = fc.record({ x: evenly(-0.5, 0.5), y: evenly(-0.4, 0.5), z: evenly(-0.6, 0.3) });
     let bentSteps = 0;
     await fc.assert(

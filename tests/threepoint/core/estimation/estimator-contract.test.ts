@@ -171,7 +171,7 @@ describe.each(subjects)('$label', (subject) => {
     );
   });
 
-  test('reset forgets the motion, a calibration the wearer: the next frame is drawn as by a new estimator', async () => {
+  test('reset forgets the motion and a calibration the wearer: a frame equals a new estimator’s', async () => {
     await fc.assert(
       fc.asyncProperty(person, person, async (first, second) => {
         const used = create(second.calibration);

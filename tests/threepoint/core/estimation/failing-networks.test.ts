@@ -59,7 +59,7 @@ const ways: [string, (output: Float32Array) => Promise<Float32Array>, RegExp][] 
 ];
 
 describe.each(['paper', 'learned'] as const)('%s with a failing network', (name) => {
-  test.each(ways)('that %s: the body is IK’s, and a sentence names the network', async (_, way, sentence) => {
+  test.each(ways)('draws IK’s body and names the network in a sentence when it %s', async (_, way, sentence) => {
     const estimator = createWithNetwork(name, calibration, breaking(await openShippedModel(name), 0, way));
     const pose = await showAll(estimator, frames.slice(0, 5));
     expect(apart(pose, ikPose(5))).toBeLessThan(1e-9);
@@ -68,7 +68,7 @@ describe.each(['paper', 'learned'] as const)('%s with a failing network', (name)
     expect(answerOf(estimator)).toBeNull();
   });
 
-  test.each(ways)('that works for a while and then %s: the body goes over to IK', async (_, way) => {
+  test.each(ways)('goes over to IK when the network works for a while and then %s', async (_, way) => {
     const estimator = createWithNetwork(name, calibration, breaking(await openShippedModel(name), 30, way));
     let pose: AvatarPose | null = null;
     for (const [i, frame] of frames.entries()) {
@@ -79,7 +79,7 @@ describe.each(['paper', 'learned'] as const)('%s with a failing network', (name)
     expect(apart(pose!, ikPose(frames.length))).toBeLessThan(1e-3);
   });
 
-  test('that recovers: the fault is forgotten', async () => {
+  test('forgets the fault when the network recovers', async () => {
     let run = 0;
     const shipped = await openShippedModel(name);
     const estimator = createWithNetwork(name, calibration, {

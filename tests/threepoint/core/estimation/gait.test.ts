@@ -29,7 +29,7 @@ function feetAfter(person: Person, seconds: number, rateHz = 60) {
 }
 
 describe('expected feet', () => {
-  test('of a person who stands are beside the hips, on their own sides, and stand', () => {
+  test('stand beside the hips on their own sides when a person stands', () => {
     const { left, right } = feetAfter(standing, 3);
     expect(left.x).toBeLessThan(-0.04);
     expect(right.x).toBeGreaterThan(0.04);
@@ -40,7 +40,7 @@ describe('expected feet', () => {
     }
   });
 
-  test('of a walker stand in turn', () => {
+  test('stand in turn when a person walks', () => {
     const gait = new Gait();
     let onlyLeft = 0;
     let onlyRight = 0;
@@ -55,7 +55,7 @@ describe('expected feet', () => {
     expect(onlyRight).toBeGreaterThan(80);
   });
 
-  test.each([1.4, 2.1, 3.3])('of a mirrored person are mirrored, after %s s', (seconds) => {
+  test.each([1.4, 2.1, 3.3])('are mirrored for a mirrored person, after %s s', (seconds) => {
     const plain = feetAfter(walking, seconds);
     const mirror = feetAfter(mirrorOf(walking), seconds);
     for (const [side, other] of [
@@ -105,7 +105,7 @@ test('inputs of the mirrored person are those that the page computes of the mirr
   });
 });
 
-test('the network was trained on no one of the lockbox, and on no one whose motion may only measure', () => {
+test('the network was trained on nobody in the lockbox, nor on motion that may only measure', () => {
   const notTrainable = /^(001|009|049|135)$|^9\d\d$|^(bd|bk|dg|mm|tr)$/;
   expect(shippedGait.trainedOn).toHaveLength(31);
   expect(shippedGait.trainedOn.filter((person) => notTrainable.test(person))).toEqual([]);

@@ -68,7 +68,7 @@ function estimatorAfter(seconds: number, frame: TrackingFrame, estimator = creat
 
 describe('a headset that sits above or below its usual place', () => {
   test.each([0.03, -0.03])(
-    'by %f m: most of it is observed within minutes, and the body is nearer to where it is',
+    'by %f m is mostly observed within minutes, and brings the body nearer to the truth',
     (rise) => {
       const estimator = estimatorAfter(240, hanging(rise));
       const observed = estimator.state.headset.rise;
@@ -83,7 +83,7 @@ describe('a headset that sits above or below its usual place', () => {
     },
   );
 
-  test('nothing is observed where it belongs, nor within a moment, nor by hands that do not hang', () => {
+  test('nothing is observed with a headset in place, in a moment, or by raised hands', () => {
     expect(estimatorAfter(240, hanging(0)).state.headset.rise).toBe(0);
     expect(estimatorAfter(4, hanging(0.03)).state.headset.rise).toBe(0);
     const raised = standing(body, vec3(-0.3, 1.2, -0.4), vec3(0.3, 1.2, -0.4));
@@ -108,7 +108,7 @@ describe('a headset that sits above or below its usual place', () => {
     expect(before).toBeGreaterThan(0.005);
   });
 
-  test('the head is lower by it along its own up, and the hands are where they are tracked', () => {
+  test('lowers the head by it along its own up, and leaves hands where tracked', () => {
     const estimator = estimatorAfter(60, hanging(0.03));
     const observed = estimator.state.headset.rise;
     const frame = { ...movingPerson(4, body, { x: 0, z: 0, yaw: 0 })(0.5), time: 70 };

@@ -49,7 +49,7 @@ describe('the learned network without a runtime', () => {
     );
   });
 
-  test('answers in the frame that asks: nothing is left to ask, and the body is not the one of inverse kinematics', () => {
+  test('answers within its frame, leaving no question, and draws another body than inverse kinematics', () => {
     const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
     const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
     const [estimator, ik] = [createEstimator('learned', calibration, plain), createEstimator('ik', calibration)];
@@ -68,7 +68,7 @@ describe('the learned network without a runtime', () => {
   test.each([
     ['later', false],
     ['in the frame', true],
-  ])('that answers %s is asked about every frame', async (_, inFrame) => {
+  ])('is asked about every frame when it answers %s', async (_, inFrame) => {
     const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
     const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
     let runs = 0;

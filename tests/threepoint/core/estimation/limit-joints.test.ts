@@ -59,7 +59,7 @@ test('the first frame, and the first after a reset, passes unchanged whatever th
   ).toBeLessThan(1e-12);
 });
 
-test('after a hand that is seen elsewhere the trunk moves at most 1 cm in a frame, faster as confidence returns', () => {
+test('the trunk moves 1 cm a frame at most after a displaced hand, faster with confidence', () => {
   const limited = stage();
   let before = limited.follow(around(head), 0);
   const goal = turnedAbout(around(head));

@@ -30,7 +30,7 @@ describe('a hand that is lost', () => {
     head: { position: vec3(0, height, -ahead), orientation: fromEulerYxz(vec3(-down, 0, 0)), tracking: 'tracked' },
   });
 
-  test('does not pull the trunk after it when a person crouches, bows or sits on the floor', () => {
+  test('does not pull the trunk when a person crouches, bows or sits on the floor', () => {
     const posture = fc.record({ height: evenly(0.5, 1.6), ahead: evenly(0, 0.5), down: evenly(0, 1.4) });
     fc.assert(
       fc.property(posture, ({ height, ahead, down }) => {
@@ -90,7 +90,7 @@ describe('a hand that is lost', () => {
     seconds: evenly(0.12, 1.5),
   });
 
-  test('comes back without a snap of its elbow wherever that is, all but out of reach or close to the shoulder', () => {
+  test('comes back without a snap of its elbow, even barely in reach or at the shoulder', () => {
     fc.assert(
       fc.property(reachFromShoulder, ({ yaw, pitch, share, seconds }) => {
         const estimator = createEstimator('ik', calibration);
@@ -117,7 +117,7 @@ describe('a hand that is lost', () => {
     );
   });
 
-  test('is back for good once it is back: then a body that whirls about leaves it on its controller', () => {
+  test('is back for good once it is back: a whirling body leaves it on its controller', () => {
     const whirl = fc.record({
       metres: evenly(0.05, 0.12),
       rate: evenly(8, 16),
@@ -146,7 +146,7 @@ describe('a hand that is lost', () => {
     );
   });
 
-  test('is on its controller 0.9 s after it is seen again, however wildly its elbow and the trunk are estimated', () => {
+  test('is on its controller 0.9 s after its return, however wildly elbow and trunk are estimated', () => {
     const upright = bodyOf(standing(calibration, hip.left, ahead.right));
     const { upper, lower } = armBones(skeleton);
     const place = fc.record({ x: evenly(-0.1, 0.35), y: evenly(1.1, 1.5), z: evenly(-0.35, -0.15) });

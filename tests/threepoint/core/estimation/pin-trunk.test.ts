@@ -173,7 +173,7 @@ describe('a pinned trunk', () => {
     );
   });
 
-  test('ignores a tracker without an offset, one that is only guessed or no number, and one beside another person', () => {
+  test('ignores a tracker without offset, a guessed or invalid one, and one beside another person', () => {
     const frame = movingPerson(4, calibration, { x: 1, z: 2, yaw: 0.4 })(3);
     const free = poseOf(createEstimator('ik', calibration), frame);
     const hips = jointsOf(free, calibration).hips;
@@ -191,7 +191,7 @@ describe('a pinned trunk', () => {
     expect(drawn(withOffsets(calibration), { hips: null })).toEqual(free.body);
   });
 
-  test('moves no joint by a jump when its trackers are lost and found, in any motion meanwhile', () => {
+  test('moves no joint by a jump when trackers are lost and found, in any motion', () => {
     fc.assert(
       fc.property(
         fc.integer(),

@@ -62,7 +62,7 @@ describe('an elbow whose estimate jumps', () => {
     expect(angle(poles.at(-1)!, poles[0]!)).toBeGreaterThan(1);
   });
 
-  test('goes slowly, a fifth of the way in a tenth of a second, after an estimate near the arm’s line', () => {
+  test('goes slowly, a fifth of the way in 0.1 s, after estimates near the arm’s line', () => {
     fc.assert(
       fc.property(number(0, 0.004), (aside) => {
         const middle = vec3(0.215, 1.35 + aside, -0.175);

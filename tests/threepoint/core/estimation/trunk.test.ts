@@ -92,7 +92,7 @@ describe('the trunk', () => {
     expect(at(joints, 'hips').y).toBeLessThan(1);
   });
 
-  test('an estimate that turns about at once under a head on its side turns no person about at once', () => {
+  test('an estimate that turns about under a head on its side turns no person about', () => {
     const upright = bodyOf(standing(calibration, ahead.left, ahead.right));
     const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
     const bowed = { ...joints, hips: add(joints.hips, vec3(0, 0, 0.3)), chest: add(joints.chest, vec3(0, 0, 0.15)) };
@@ -115,7 +115,7 @@ describe('the trunk', () => {
     expect(longestStep(-Math.PI / 2)).toBeLessThan(0.02);
   });
 
-  test('crouching lowers the hips, and they stay above the floor even when the head is on it', () => {
+  test('crouching lowers the hips, which stay above the floor even with the head on it', () => {
     let aboveTheFloor = 0;
     fc.assert(
       fc.property(evenly(-0.2, 1.62), evenly(-1.5, 1), (height, pitch) => {
@@ -144,7 +144,7 @@ describe('the trunk', () => {
     expect(at(joints, 'rightUpperArm').z).toBeLessThan(at(joints, 'leftUpperArm').z - 0.02);
   });
 
-  test('both hands pulled to opposite sides beyond the arms turn the chest, and at last stay behind by what is missing', () => {
+  test('both hands pulled apart beyond the arms turn the chest, and finally lag by the rest', () => {
     const joints = bodyOf(standing(calibration, vec3(-0.2, 1.35, 1.2), vec3(0.2, 1.35, -1.2)));
     const line = subtract(at(joints, 'rightUpperArm'), at(joints, 'leftUpperArm'));
     expect(line.z).toBeLessThan(-0.1);
@@ -154,7 +154,7 @@ describe('the trunk', () => {
     expect(missing).toBeLessThan(0.9);
   });
 
-  test('with the arms out the body is near its T-pose: no rotation, but for how far the elbows turn', () => {
+  test('the body with arms out is near its T-pose: no rotation but the elbows’ turn', () => {
     const joints = bodyOf(standing(calibration, vec3(-0.76, 1.42, 0.08), vec3(0.76, 1.42, 0.08)));
     for (const joint of ['hips', 'spine', 'chest', 'upperChest', 'leftShoulder', 'rightShoulder'] as const) {
       expect(angleBetween(joints[joint].orientation, identity)).toBeLessThan(30 * degrees);

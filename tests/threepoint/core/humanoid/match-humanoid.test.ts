@@ -209,7 +209,7 @@ describe('what is no humanoid is refused with what was found and what is missing
     expect(match.confidence).toBe(0);
   });
 
-  test('an animal on four legs, though it has two pairs of limbs, a spine and a head', () => {
+  test('an animal on four legs, despite two pairs of limbs, a spine and a head', () => {
     const joints: SkeletonJoint[] = [
       { name: 'a', parent: -1, position: { x: 0, y: 60, z: 0 } },
       { name: 'b', parent: 0, position: { x: 0, y: 60, z: 25 } },

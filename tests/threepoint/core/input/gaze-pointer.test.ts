@@ -31,15 +31,15 @@ function look(...path: readonly (readonly [target: PointerTarget | null, seconds
 }
 
 describe('a gaze', () => {
-  test('that rests on a button presses it once, after 1.2 s', () => {
+  test('presses a button that it rests on once, after 1.2 s', () => {
     expect(look([exit, 4]).happened).toEqual(['held', 'pressed at 1.2 s']);
   });
 
-  test('that passes over buttons presses none, and holds none', () => {
+  test('presses no button that it passes over, and holds none', () => {
     expect(look([exit, 0.2], [recentre, 0.2], [null, 0.5], [exit, 0.2]).happened).toEqual([]);
   });
 
-  test('that moves on cancels what it held, and starts over', () => {
+  test('cancels what it held when it moves on, and starts over', () => {
     expect(look([exit, 0.8], [recentre, 2]).happened).toEqual(['held', 'cancelled', 'held', 'pressed at 2.0 s']);
   });
 

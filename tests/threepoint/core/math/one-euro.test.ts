@@ -62,7 +62,7 @@ test('a wave of 2 Hz keeps the filter open: it is less than 12 mm behind', () =>
   expect(Math.max(...points.map((point, i) => distance(point, path(1 + i / 72))))).toBeLessThan(0.012);
 });
 
-test('the same motion gives the same points at 60, 72, 90 and 120 Hz, to 3 mm', () => {
+test('a motion gives alike points at 60, 72, 90 and 120 Hz, to 3 mm', () => {
   const path = (time: number) => vec3(0.3 * Math.sin(4 * time), 0.2 * Math.cos(3 * time), 0);
   const reference = filtered(path, 2, 360).at(-1)!;
   for (const rateHz of [60, 72, 90, 120])

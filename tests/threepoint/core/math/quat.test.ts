@@ -115,7 +115,7 @@ describe('rotations', () => {
     );
   });
 
-  test('swing and twist make the rotation again; the twist keeps the axis, the swing turns about none of it', () => {
+  test('swing and twist recompose a rotation; the twist keeps the axis, the swing avoids it', () => {
     fc.assert(
       fc.property(rotation, direction, (q, axis) => {
         const twist = twistOf(q, axis);
@@ -161,7 +161,7 @@ describe('rotations', () => {
     );
   });
 
-  test('what has no length is no rotation', () => {
+  test('a quaternion without length is no rotation', () => {
     expect(normaliseQuat({ x: 0, y: 0, z: 0, w: 0 })).toEqual(identity);
   });
 });

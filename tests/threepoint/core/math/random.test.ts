@@ -13,7 +13,7 @@ function draw(seed: number, count: number): number[] {
 }
 
 describe('the generator', () => {
-  test('the same seed gives the same numbers, another seed others', () => {
+  test('equal seeds give equal numbers, another seed others', () => {
     expect(draw(7, 20)).toEqual(draw(7, 20));
     expect(draw(7, 20)).not.toEqual(draw(8, 20));
   });

@@ -48,7 +48,7 @@ describe('vectors', () => {
     );
   });
 
-  test('what has no direction gets the stated fallback', () => {
+  test('a vector without direction gets the stated fallback', () => {
     expect(normalise(zero)).toEqual(up);
     expect(normalise(vec3(1e-12, 0, 0), forward)).toEqual(forward);
   });

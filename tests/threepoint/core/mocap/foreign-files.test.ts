@@ -85,7 +85,7 @@ describe('a BVH is read alike with', () => {
     expect(prepare(madeBvh({ unit: 0.01 })).notes).toEqual([]);
   });
 
-  test('a unit that fits no person: the body gets an average height, or average arms if it has no legs', () => {
+  test('a unit that fits no person: the body gets average height, or average arms without legs', () => {
     const { clips, notes } = prepare(madeBvh({ unit: 4.2 }));
     const { eyeHeight, armSpan } = clips[0]!.calibration;
     expect(notes.join()).toMatch(/its unit is unknown: its body was scaled to a height of 1\.70 m/);
@@ -223,7 +223,7 @@ describe('what cannot be right is said', () => {
   const doubts = (options: MadeOptions) =>
     finishWork(prepareMocap({ format: 'bvh', name: 'wave.bvh', text: madeBvh(options) })).doubts.join();
 
-  test('of a pelvis that is not over the feet', () => {
+  test('a pelvis that is not over the feet is doubted', () => {
     expect(doubts({})).toBe('');
     const aside = (name: string) => /UpLeg$/.test(name);
     expect(doubts({ offsetOf: ([x, y, z], name) => (aside(name) ? [x, y, z + 60] : [x, y, z]) })).toMatch(
@@ -231,13 +231,13 @@ describe('what cannot be right is said', () => {
     );
   });
 
-  test('of a person who lies on the floor, and stays there', () => {
+  test('a person who lies on the floor throughout is doubted', () => {
     const lying: MadeOptions = { rootZUp: true, rootPlace: [0, 12, 0] };
     expect(doubts(lying)).toMatch(/the trunk lies in most frames/);
     expect(prepare(madeBvh(lying)).notes).toEqual([]);
   });
 
-  test('of elbows that stay behind the back', () => {
+  test('elbows that stay behind the back are doubted', () => {
     const back = (degrees: number): MadeOptions => ({
       anglesOf: { LeftArm: [0, 0, degrees], RightArm: [0, 0, -degrees] },
     });
@@ -246,7 +246,7 @@ describe('what cannot be right is said', () => {
     expect(doubts(back(10))).toBe('');
   });
 
-  test('of methods that all err', () => {
+  test('errors over 12 cm by every method are doubted', () => {
     expect(doubtOfErrors([13, 20])).toMatch(/the error of every method is over 12 cm/);
     expect(doubtOfErrors([13, 9])).toBeNull();
     expect(doubtOfErrors([])).toBeNull();

@@ -82,7 +82,7 @@ test('the user’s map decides where the file’s own bones were found, sides in
   expect(read.bones.matched).toEqual(swapped);
 });
 
-test('the joints of a folded rest are those of the first frame, where they can be told apart', () => {
+test('the joints of a folded rest are the first frame’s, where they can be separated', () => {
   const golden = goldenMocap.find(({ motion }) => motion === 'folded_1.bvh')!;
   const { joints } = prepare(sourceOf(golden)).bones;
   const at = (name: string) => joints.find((joint) => joint.name === `bip_${name}`)!.position;

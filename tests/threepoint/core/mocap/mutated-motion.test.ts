@@ -44,7 +44,7 @@ async function readAll(format: string, count: number, spoil: () => MocapSource &
   expect(counts.read).toBeGreaterThan(count / 20);
 }
 
-test('BVH files, spoiled, are refused in a sentence or read as finite numbers, each in a moment', {
+test('spoiled BVH files are refused in a sentence or read as finite numbers, in a moment', {
   timeout: 3_600_000,
 }, () => {
   const frames = { frames: 36 };
@@ -98,7 +98,7 @@ test('BVH files, spoiled, are refused in a sentence or read as finite numbers, e
   });
 });
 
-test('VRM Animations, spoiled, are refused in a sentence or read as finite numbers, each in a moment', {
+test('spoiled VRM Animations are refused in a sentence or read as finite numbers, in a moment', {
   timeout: 3_600_000,
 }, () => {
   const { motion } = actingPerson(1);

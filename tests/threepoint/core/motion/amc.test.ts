@@ -50,7 +50,7 @@ describe('angles of an AMC file', () => {
     expect(distance(endOf(asf, amc), turned)).toBeLessThan(1e-9);
   });
 
-  test('of another unit are refused', () => {
+  test('are refused in another unit', () => {
     expect(() => readAsf(skeleton('grad', 30))).toThrow(/^line 3, column 9: angles are in deg or rad, not in “grad”$/);
     expect(() => readAsf(skeleton('', 30))).toThrow(/^line 3, column 3: angle should have a unit, deg or rad$/);
   });

@@ -128,7 +128,7 @@ describe('a BVH file', () => {
     ['no rate', changed(motionAt + 2, ''), /“Frame Time: seconds” is needed/],
     ['a rate of nothing', changed(motionAt + 2, 'Frame Time: 0'), /Frame Time should be seconds, is “0”/],
     ['no frames', lines.slice(0, frame).join('\n'), /ends without a frame/],
-  ])('of %s is refused with line and column', (_, nonsense, sentence) => {
+  ])('is refused for %s, with line and column', (_, nonsense, sentence) => {
     expect(() => read(nonsense)).toThrow(sentence);
   });
 

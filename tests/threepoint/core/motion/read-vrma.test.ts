@@ -49,18 +49,21 @@ test('between keys a bone is where straight lines and shorter arcs have it', () 
   }
 });
 
-test.each([2, 60, 300, 601, 20_000])('of %d frames at 60 Hz none is lost, though glTF rounds their times', (frames) => {
-  // The actor's first two frames, the second of them moved to the end.
-  const duration = (frames - 1) / 60;
-  const { measured, hips, rotations, seen } = motion;
-  const short = {
-    ...motion,
-    ...{ times: Float64Array.of(0, duration), hips: hips.slice(0, 6), rotations: rotations.slice(0, 8 * measured) },
-    seen: seen.slice(0, 2),
-  };
-  const chunks = readGlbChunks(bytesOf(writeVrma(short)))!;
-  expect(readVrma(JSON.parse(chunks.json), chunks.binary).frameCount).toBe(frames);
-});
+test.each([2, 60, 300, 601, 20_000])(
+  'the reader loses none of %d frames at 60 Hz, though glTF rounds their times',
+  (frames) => {
+    // The actor's first two frames, the second of them moved to the end.
+    const duration = (frames - 1) / 60;
+    const { measured, hips, rotations, seen } = motion;
+    const short = {
+      ...motion,
+      ...{ times: Float64Array.of(0, duration), hips: hips.slice(0, 6), rotations: rotations.slice(0, 8 * measured) },
+      seen: seen.slice(0, 2),
+    };
+    const chunks = readGlbChunks(bytesOf(writeVrma(short)))!;
+    expect(readVrma(JSON.parse(chunks.json), chunks.binary).frameCount).toBe(frames);
+  },
+);
 
 describe('what is no VRM Animation is refused in a sentence', () => {
   test.each([

@@ -56,7 +56,7 @@ describe('a body as WebXR has it', () => {
     expect(listed.length).toBe(83);
   });
 
-  test('in T-pose has −Z along its bones, +Y out of the back of trunk, hands and feet', () => {
+  test('in T-pose has −Z along bones, +Y out of the back of trunk, hands, feet', () => {
     const joints = toXRBody(standing, defaultCalibration, { left: flatHand, right: flatHand });
     const of = (name: string) => joints.get(name)!.orientation;
     for (const name of ['hips', 'spine-middle', 'chest', 'head']) {
@@ -78,7 +78,7 @@ describe('a body as WebXR has it', () => {
     }
   });
 
-  test('has its joints where kinematics has them, and wrists as they are tracked, wherever the wearer stands', () => {
+  test('has joints as in kinematics and wrists as tracked, wherever the wearer stands', () => {
     const turn = fromAxisAngle(up, -2.1);
     const estimator = createIk(defaultCalibration);
     for (let i = 0; i < 200; i++) {

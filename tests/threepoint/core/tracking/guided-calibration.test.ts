@@ -191,7 +191,7 @@ describe('the guided calibration', () => {
     expect(refused(guide(at))).toMatch(sentence);
   });
 
-  test.each([0.45, 0.55, 0.7])('who sits, or whose floor is %d m too high, is as tall as their arms say', (lower) => {
+  test.each([0.45, 0.55, 0.7])('a person who sits, or stands %d m low, is as tall as their arms say', (lower) => {
     const still = stretched(person, 'forward');
     const sunk = (p: TrackedPose | null) => p && pose(add(p.position, vec3(0, -lower, 0)));
     const state = guide(() => ({
@@ -330,7 +330,7 @@ describe('the guided calibration', () => {
       expect(() => stepGuidedCalibration(initialGuidedCalibration, frame)).toThrow(/pinning.*threepoint\/trackers/);
     });
 
-    test('of a tracker that moves, is lost or belongs elsewhere stay unknown', () => {
+    test('remain unknown for a tracker that moves, is lost or belongs elsewhere', () => {
       const offsets = offsetsOf(
         guide((seconds) => ({
           ...moved,
@@ -345,7 +345,7 @@ describe('the guided calibration', () => {
       expect(Object.keys(offsets!)).toEqual(['leftFoot']);
     });
 
-    test('of feet stay unknown where the person sits', () => {
+    test('remain unknown for the feet where the person sits', () => {
       const sunk = (p: TrackedPose) => pose(add(p.position, vec3(0, -0.5, 0)), p.orientation);
       const sitting = { head: sunk(moved.head), leftHand: sunk(moved.leftHand), rightHand: sunk(moved.rightHand) };
       const hipsTracker = sunk(placed.hips!);

@@ -51,7 +51,7 @@ function wear(
 }
 
 describe('a person who stands taller than was calibrated', () => {
-  test('is as tall as they stand within two seconds, at any rate, with the eyes on anything', () => {
+  test('gains their full height within two seconds, at any rate, with eyes on anything', () => {
     fc.assert(
       fc.property(
         evenly(1.2, 1.9),

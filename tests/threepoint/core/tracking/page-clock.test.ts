@@ -18,7 +18,7 @@ function timesOf(
 }
 
 describe('the page’s clock', () => {
-  test('with any time stamps it goes on with every frame, and by half a second at most', () => {
+  test('advances with every frame, by half a second at most, whatever the time stamps', () => {
     const steps = fc.oneof(
       { weight: 8, arbitrary: fc.double({ min: 5, max: 40, noNaN: true }) },
       fc.double({ min: -1e7, max: 1e7, noNaN: true }),
@@ -45,13 +45,13 @@ describe('the page’s clock', () => {
     expect(timesOf(stamps)).toEqual(stamps.map((stamp) => expect.closeTo(stamp / 1000, 9)));
   });
 
-  test('with a time stamp that is no finite number, be it the first, it goes on all the same', () => {
+  test('advances after a time stamp that is no finite number, even the first', () => {
     const stamps = [Number.NaN, 1014, 1028, Number.POSITIVE_INFINITY, 1056, Number.NaN, 1084];
     const read = (_: number, index: number) => 1000 + 14 * index;
     expect(timesOf(stamps, read)).toEqual(stamps.map((_, index) => expect.closeTo(1 + 0.014 * index, 9)));
   });
 
-  test('one for two bodies is at one time in a frame, however late in it the second asks', () => {
+  test('one for two bodies has one time a frame, however late the second asks', () => {
     let read = 0;
     const clock = createPageClock(() => read);
     const stamps = Array.from({ length: 91 }, (_, frame) => 1000 + frame * frameMs);
@@ -92,7 +92,7 @@ describe('the page’s clock', () => {
     expect(passed).toEqual([frame, frame, frame, maxStepSeconds].map((seconds) => expect.closeTo(seconds, 6)));
   });
 
-  test('what is left out of a pause is reported, of a step back nothing', () => {
+  test('time left out of a pause is reported, of a step back none', () => {
     let read = 0;
     const clock = createPageClock(() => read);
     for (const stamp of [0, 16, 20_016]) {
@@ -104,7 +104,7 @@ describe('the page’s clock', () => {
     expect([clock.paused, clock.skippedSeconds]).toEqual([false, expect.closeTo(20 - maxStepSeconds, 9)]);
   });
 
-  test('between frames it goes on with the browser’s, for as long as a frame may take, and no frame is before it', () => {
+  test('advances between frames with the browser’s, within a frame’s length, and no frame precedes it', () => {
     let read = 5000;
     const clock = createPageClock(() => read);
     const first = clock.tick(4990);
@@ -118,7 +118,7 @@ describe('the page’s clock', () => {
   });
 });
 
-test('the time of day of a study goes on when the system’s is set back, and stays in order', () => {
+test('the time of day of a study stays in order when the system’s is set back', () => {
   let read = 1_000_000;
   const now = monotonic(() => read);
   const heard = [1_000_010, 996_410, 996_412, 1_000_012].map((at) => {

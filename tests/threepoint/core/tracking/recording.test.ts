@@ -131,7 +131,7 @@ describe('a recording', () => {
     expect(text.trimEnd().split('\n').length).toBe(some.frames.length + 2);
   });
 
-  test('that is cut begins as the whole does, in no more bytes than are allowed but for its first frame', () => {
+  test('keeps its beginning when cut, in the allowed bytes plus a first frame at most', () => {
     fc.assert(
       fc.property(recording, fc.integer({ min: 0, max: 8000 }), (whole, maxBytes) => {
         const { text, frames } = writeRecordingWithin(whole, maxBytes);
@@ -142,7 +142,7 @@ describe('a recording', () => {
     );
   });
 
-  test('of version 1, which knew no fingers, and of version 2, which knew no bodies, still open', () => {
+  test('still opens in version 1, without fingers, and version 2, without bodies', () => {
     expect(parseRecording(writeRecording(some).replace('"version":3', '"version":1'))).toEqual(some);
     expect(parseRecording(withFingers.replace('"version":3', '"version":2'))).toEqual(parseRecording(withFingers));
   });

@@ -21,7 +21,7 @@ function gateOf(assumesTracked: boolean) {
   return { validate, reset: () => points.reset(), events };
 }
 
-test('a hand that a device only guesses counts as tracked until the device has reported it as tracked', () => {
+test('a hand that a device only guesses counts as tracked until the device reports it tracked', () => {
   const { validate } = gateOf(true);
   expect(validate(guessed)).toMatchObject({ leftHand: { tracking: 'tracked' } });
   expect(validate(frame)).toBe(frame);
