@@ -96,6 +96,10 @@ async function range() {
   return { ...opened, archery, layout: () => archery().play.targets };
 }
 
+test('the activities of the page are archery and the ball game', () => {
+  expect(registered.map(({ name }) => name)).toEqual(['archery', 'ball']);
+});
+
 describe('going to a game', () => {
   test('going to archery twice while it loads opens one range', async () => {
     const { activities, places } = page();
@@ -444,7 +448,7 @@ describe('a third activity', () => {
   test('is played as a task of a study, at the place that the study gives', async () => {
     const { activities, settings, writer, study, done } = dartsPage();
     const runners = await createRunners({ activities, settings, writer });
-    expect(Object.keys(runners)).toEqual(['archery', 'ball', 'darts']);
+    expect(Object.keys(runners)).toEqual([...registered.map(({ name }) => name), 'darts']);
     Object.assign(study, { run: studyRun(), runners });
     const { darts } = runners;
     await darts?.prepare({
