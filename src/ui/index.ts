@@ -4,7 +4,7 @@ export { calibrationHeadline, calibrationInstruction, createCalibrationDialog } 
 export type { CalibrationGuide } from './calibration-guide';
 export { createCalibrationGuide } from './calibration-guide';
 export { offerDownload } from './downloads';
-export { button, element, pageElement } from './element';
+export { button, element, pageElement, sentenceList } from './element';
 export type { EnterButton } from './enter-button';
 export { createEnterButton } from './enter-button';
 export type { Choice } from './fields';
@@ -12,7 +12,6 @@ export { chooser, fileField, labelled } from './fields';
 export { fileButton } from './file-button';
 export type { FrameReport } from './frame-times-overlay';
 export { createFrameTimesOverlay, differenceLines, milliseconds, missedFrames } from './frame-times-overlay';
-export { archeryRulesText, ballRulesText, rulesList } from './game-rules-text';
 export type { Invitation, RoomLink } from './invitation';
 export { createInvitation, createRoomLink, linkTo } from './invitation';
 export type { FileKind } from './limited-files';

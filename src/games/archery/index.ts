@@ -5,6 +5,7 @@ export { arrowLength, braceHeight, maximumDraw } from './bow';
 export type { BowCue } from './gestures';
 export { ArcheryGestures } from './gestures';
 export { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft, walls, zone } from './rules';
+export { archeryRulesText } from './rules-text';
 export type { SimulatedArcher } from './simulated-archer';
 export { createSimulatedArcher } from './simulated-archer';
 export type { SteeredArcher } from './steered-archer';

@@ -15,6 +15,7 @@ export type { BallCue, BallGestureFrame } from './gestures';
 export { BallGestures } from './gestures';
 export type { PlayerBody } from './player-postures';
 export { ballRules, defaultBallOptions } from './rules';
+export { ballRulesText } from './rules-text';
 export { createSimulatedHolder } from './simulated-holder';
 export { createSimulatedThrower } from './simulated-thrower';
 export { ballPosition, ballSecondsLeft, ballsLeft, catchesOf, displayedSeconds } from './state-selectors';

@@ -1,4 +1,5 @@
-import { archeryRulesText, button, element, isTouchFirst, rulesList, toggle } from 'threepoint-ui';
+import { archeryRulesText } from 'threepoint-games/archery';
+import { button, element, isTouchFirst, sentenceList, toggle } from 'threepoint-ui';
 import type { ActivityPanel } from '../activity/activity';
 import type { ActivityContext, StoredActivitySettings } from '../activity/activity-context';
 import type { roundOf } from './archery-play';
@@ -36,7 +37,7 @@ function createRules(archery: ArcheryControls, context: PanelContext) {
       'details',
       {},
       element('summary', {}, 'Rules and hands'),
-      rulesList(archeryRulesText),
+      sentenceList(archeryRulesText),
       ...[rightBow, oneHanded, everyHit, sound].map(({ node }) => node),
     ),
     show() {

@@ -26,8 +26,6 @@ export interface PassthroughOptions {
   isCovered(): boolean;
 }
 
-/** The names of a place's objects that represent the world around it. They are hidden in the user's own room. */
-export const scenery = ['sky', 'ground', 'landscape', 'backstop', 'tufts'];
 /** The start of the fog in passthrough, beyond any room [m]. */
 const fogStart = 1e5;
 const shadowSize = 12;
@@ -120,16 +118,16 @@ export class PassthroughRoom {
     this.#showsRoom = current === null || (needs !== undefined && this.#hasFloor(needs, frame, floor));
     if (current && needs && !this.#showsRoom) notices.show('info', tooSmall(current, needs));
     if (!this.#showsRoom) return;
-    if (current) this.#hideScenery(studio.surroundings.object);
+    if (current) this.#hide(studio.surroundings.scenery);
     const { fog } = studio.scene;
     if (fog instanceof Fog) Object.assign(fog, { near: fogStart, far: 2 * fogStart });
   }
 
-  #hideScenery(place: Object3D): void {
-    for (const child of place.children) {
-      if (!scenery.includes(child.name) || !child.visible) continue;
-      child.visible = false;
-      this.#hidden.add(child);
+  #hide(scenery: readonly Object3D[]): void {
+    for (const node of scenery) {
+      if (!node.visible) continue;
+      node.visible = false;
+      this.#hidden.add(node);
     }
   }
 

@@ -49,6 +49,8 @@ export interface Lighting {
 export interface Surroundings {
   /** Floor frame. */
   readonly object: Object3D;
+  /** The children of `object` that represent the world around it. They are hidden in the user's own room. */
+  readonly scenery: readonly Object3D[];
   readonly lighting: Lighting;
 }
 

@@ -155,7 +155,7 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
   const mark = createMark();
   const studio = new Group();
   studio.add(createSky(), createFloor(), createGrid(), mark);
-  const studioPlace: Surroundings = { object: studio, lighting: studioLighting(quality) };
+  const studioPlace: Surroundings = { object: studio, scenery: [], lighting: studioLighting(quality) };
   scene.add(studio);
   lights.set(studioPlace.lighting);
   let place = studioPlace;

@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from '../../../src/study/model/plan/plan';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { resumed } from '../../../src/study/model/progress/progress';
+import { questionKindNames } from '../../../src/study/model/questionnaires/question-kinds';
 import { checkedRecord, type StudyRecord } from '../../../src/study/model/records/study-record';
 import { answersIn, scalesIn, studyTables } from '../../../src/study/model/tables/study-tables';
 import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
@@ -9,6 +10,9 @@ import { statedPerformanceModel } from '../../../src/study/simulation/performanc
 import { simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { compareAnswers } from './answered';
 import { examplePlan, paperPlan, planWith, session } from './studies';
+
+/** The registered kinds of questions as the messages list them. */
+const kinds = new Intl.ListFormat('en-GB', { type: 'disjunction' }).format(questionKindNames());
 
 const plan = examplePlan();
 const given = {
@@ -186,7 +190,7 @@ describe('a plan with a mistake in its questionnaires', () => {
       'an unknown kind of answer',
       'questionnaires.0.answer.kind',
       'stars',
-      'questionnaires[0].answer.kind: expected likert, slider, choice, number or text',
+      `questionnaires[0].answer.kind: expected ${kinds}`,
     ],
     ['a language that is none', 'languages.1', 'Deutsch!', 'languages[1]: expected a language, as "en"'],
     [

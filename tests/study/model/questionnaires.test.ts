@@ -1,6 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
+import { questionKindNames } from '../../../src/study/model/questionnaires/question-kinds';
 import type { QuestionnaireFile } from '../../../src/study/model/questionnaires/questionnaire-schema';
 import { scaleRange, scaleScore } from '../../../src/study/model/questionnaires/questionnaire-scores';
 import {
@@ -151,6 +152,10 @@ describe('scores of the shipped questionnaires', () => {
   test('each names its source', () => {
     for (const { source } of Object.values(shippedQuestionnaires)) expect(source?.length).toBeGreaterThan(40);
   });
+});
+
+test('the shipped kinds of questions are likert, slider, choice, number and text', () => {
+  expect(questionKindNames()).toEqual(['likert', 'slider', 'choice', 'number', 'text']);
 });
 
 const file = (change: Partial<QuestionnaireFile> = {}): QuestionnaireFile => ({

@@ -1,4 +1,4 @@
-import { Group, Vector3 } from 'three';
+import { Group, type Object3D, Vector3 } from 'three';
 import { makeTransform } from 'threepoint/math';
 import { mergeMeshes } from '../../scene/merge-meshes';
 import { daylight } from '../../scene/outdoors/daylight';
@@ -25,21 +25,15 @@ export function createRange(quality: Quality, distances: readonly number[]) {
   object.name = 'archery range';
   const noise = createNoiseTexture(quality);
   const zone = createZone();
-  // Passthrough hides this group: the user's own room takes its place.
   const around = new Group();
-  around.name = 'landscape';
   around.add(createLandscape(quality), createBackstop(quality));
   mergeMeshes(around);
-  object.add(
-    createSky(noise, towardsSun, quality),
-    createGround(noise, distances),
-    around,
-    createDistanceSigns(distances, quality),
-    zone.object,
-  );
-  if (quality === 'high') object.add(createTufts());
+  const scenery: Object3D[] = [createSky(noise, towardsSun, quality), createGround(noise, distances), around];
+  if (quality === 'high') scenery.push(createTufts());
+  object.add(...scenery, createDistanceSigns(distances, quality), zone.object);
   return {
     object,
+    scenery,
     lighting: daylight(
       {
         quality,

@@ -23,7 +23,8 @@ export function createCourt(quality: Quality, balls: number) {
   const noise = createNoiseTexture(quality);
   const furniture = createCourtFurniture(balls);
   mergeMeshes(furniture);
-  object.add(createSky(noise, towardsSun, quality), createCourtGround(noise), createLandscape(quality), furniture);
+  const scenery = [createSky(noise, towardsSun, quality), createCourtGround(noise), createLandscape(quality)];
+  object.add(...scenery, furniture);
   return {
     object,
     /** Returns the court for a user's floor frame. */
@@ -32,6 +33,7 @@ export function createCourt(quality: Quality, balls: number) {
       object.quaternion.copy(floorFromArena.orientation);
       return {
         object,
+        scenery,
         lighting: daylight(
           {
             quality,

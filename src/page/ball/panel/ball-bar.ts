@@ -1,13 +1,5 @@
-import {
-  ballRulesText,
-  button,
-  createRoomLink,
-  element,
-  isTouchFirst,
-  rulesList,
-  type ServerState,
-  toggle,
-} from 'threepoint-ui';
+import { ballRulesText } from 'threepoint-games/ball';
+import { button, createRoomLink, element, isTouchFirst, type ServerState, sentenceList, toggle } from 'threepoint-ui';
 import type { BallRound } from './ball-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
@@ -113,7 +105,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
       const sentences = ballRulesText(round?.of ?? 20, round?.seconds ?? 90);
       if (sentences.join() !== rulesShown) {
         rulesShown = sentences.join();
-        rules.replaceChildren(rulesList(sentences));
+        rules.replaceChildren(sentenceList(sentences));
       }
       bots.input.checked = botsOn;
       rotate.input.checked = round?.rotate ?? false;

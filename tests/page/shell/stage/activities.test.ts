@@ -1,5 +1,6 @@
 import { allReleased, nothingPressed, type TrackingFrame, unknownFingers } from 'threepoint/core';
 import { type Side, vec3 } from 'threepoint/math';
+import { gameNames } from 'threepoint-study';
 import { describe, expect, test, vi } from 'vitest';
 import type { Activity } from '../../../../src/page/activity/activity';
 import { type ArcheryActivity, rangeScene } from '../../../../src/page/archery/archery-activity';
@@ -92,6 +93,16 @@ async function range() {
   const archery = () => opened.activities.openedOf('archery') as ArcheryActivity;
   return { ...opened, archery, layout: () => archery().play.targets };
 }
+
+test('the activities of the page are archery and the ball game', () => {
+  expect(registered.map(({ name }) => name)).toEqual(['archery', 'ball']);
+});
+
+test('every game of studies has a runner on this page', async () => {
+  const { activities, settings, writer } = page();
+  const runners = await createRunners(fake<StageParts>({ activities, settings, writer }));
+  expect(Object.keys(runners)).toEqual(expect.arrayContaining([...gameNames]));
+});
 
 describe('going to a game', () => {
   test('going to archery twice while it loads opens one range', async () => {
@@ -445,7 +456,7 @@ describe('a third activity', () => {
   test('is played as a task of a study, at the place that the study gives', async () => {
     const { activities, settings, writer, study, done } = dartsPage();
     const runners = await createRunners(fake<StageParts>({ activities, settings, writer }));
-    expect(Object.keys(runners)).toEqual(['archery', 'ball', 'darts']);
+    expect(Object.keys(runners)).toEqual([...registered.map(({ name }) => name), 'darts']);
     Object.assign(study, { run: studyRun(), runners });
     const { darts } = runners;
     await darts?.prepare({

@@ -1,11 +1,12 @@
 import { expect, test } from 'vitest';
+import smoothing from '../../../../src/threepoint/core/estimation/smoothing.json' with { type: 'json' };
 import { filterPose, halfLifeOfCutoff, makeFilteredPose } from '../../../../src/threepoint/core/math/one-euro';
 import type { Pose } from '../../../../src/threepoint/core/math/pose';
 import { angleBetween, fromAxisAngle, type Quat } from '../../../../src/threepoint/core/math/quat';
 import { createRandom } from '../../../../src/threepoint/core/math/random';
 import { copyVec3, distance, normalise, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 
-const tuning = { restCutoff: 1, cutoffPerSpeed: 15 };
+const { trackers: tuning } = smoothing;
 const axis = normalise(vec3(1, 2, -1));
 const pose = (position: Vec3, angle = 0): Pose<'floor'> => ({ position, orientation: fromAxisAngle(axis, angle) });
 

@@ -1,5 +1,3 @@
-import { element } from './element';
-
 /** How the ball game is played, a sentence a line; `balls` and `seconds` of a match. */
 export const ballRulesText = (balls: number, seconds: number): readonly string[] => [
   'Two players throw, the third holds the basket, 5 m away. Bots take free places.',
@@ -9,14 +7,3 @@ export const ballRulesText = (balls: number, seconds: number): readonly string[]
   'Stay within 1.2 m of your mark: only throws from there count.',
   'A match starts when every player has pressed Ready.',
 ];
-
-/** How archery is played, a sentence a line. */
-export const archeryRulesText: readonly string[] = [
-  'Five arrows, four targets from 4.5 to 10.5 m: 5, 10, 15 and 20 points, each target once. 70 seconds from the first arrow.',
-  'Hold the bow in one hand. With the other hand press the trigger (or pinch) at the string, draw, and release.',
-  'Stay on the deck: only arrows from there count.',
-];
-
-/** Rules as a list. */
-export const rulesList = (sentences: readonly string[]): HTMLUListElement =>
-  element('ul', { class: 'rules' }, ...sentences.map((sentence) => element('li', {}, sentence)));
