@@ -60,7 +60,8 @@ export function drawPlayer(model: PerformanceModel, random: RandomSource): Playe
   return { skill: model.skillDeviation * random.normal(), eyeHeight, armSpan: 0.945 * eyeHeight };
 }
 
-interface Circumstances {
+/** The terms of a trial that a result depends on. */
+export interface Circumstances {
   readonly estimator: string;
   /** null: a tutorial. */
   readonly condition: string | null;

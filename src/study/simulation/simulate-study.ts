@@ -3,6 +3,7 @@ import type { LocalizedText } from '../model/phrases/localized-text';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';
 import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
+import type { GameName } from '../model/plan/studied-games';
 import { applyEvent, type ProgressEvent } from '../model/progress/apply-event';
 import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
 import type { Demographics } from '../model/records/demographics';
@@ -10,6 +11,7 @@ import type { StudyRecord } from '../model/records/study-record';
 import type { TrialOutcome } from '../model/records/trial-log';
 import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
 import {
+  type Circumstances,
   drawArchery,
   drawBall,
   drawPlayer,
@@ -118,6 +120,25 @@ export const simulateStudy = (...study: Parameters<typeof simulatedParticipants>
   ...simulatedParticipants(...study),
 ];
 
+/** A trial of a participant, whose `place` is that among the players of the group. */
+interface SimulatedTrial {
+  readonly performance: PerformanceModel;
+  readonly circumstances: Circumstances;
+  readonly players: readonly Player[];
+  readonly place: number;
+  readonly ownRandom: RandomSource;
+  /** The source that draws the same round for every player. */
+  readonly sharedRandom: RandomSource;
+}
+
+/** Draws the result of a trial of each game. */
+const simulatedGames: Readonly<Record<GameName, (trial: SimulatedTrial) => TrialOutcome>> = {
+  archery: ({ performance, circumstances, players, place, ownRandom }) =>
+    drawArchery(performance, players[place] as Player, circumstances, ownRandom),
+  ball: ({ performance, circumstances, players, place, sharedRandom }) =>
+    drawBall(performance, players, circumstances, sharedRandom)[place] as TrialOutcome,
+};
+
 /** Draws the players of a study and the results of their trials. */
 class SimulatedRounds {
   readonly plan: StudyPlan;
@@ -152,7 +173,6 @@ class SimulatedRounds {
     const task = this.plan.tasks.find(({ id }) => id === step.task);
     const group = groups[step.task];
     if (!task || !group) throw new Error(`the plan has no task "${step.task}"`);
-    const { performance } = this.models;
     const circumstances = {
       estimator: step.embodiment.estimator,
       condition: step.kind === 'trial' ? step.condition : null,
@@ -160,14 +180,15 @@ class SimulatedRounds {
       block: step.block,
       seconds: step.seconds,
     };
-    if (task.game === 'archery') {
-      const random = randomSource(this.seed, `${participant} ${step.id} ${run} ${attempt}`);
-      return drawArchery(performance, this.playerOf(participant), circumstances, random);
-    }
     const { members } = group;
-    const playing = members.map((member) => this.playerOf(member));
-    const random = randomSource(this.seed, `${members.join(' ')} ${step.id}`);
-    return drawBall(performance, playing, circumstances, random)[members.indexOf(participant)] as TrialOutcome;
+    return simulatedGames[task.game]({
+      performance: this.models.performance,
+      circumstances,
+      players: members.map((member) => this.playerOf(member)),
+      place: members.indexOf(participant),
+      ownRandom: randomSource(this.seed, `${participant} ${step.id} ${run} ${attempt}`),
+      sharedRandom: randomSource(this.seed, `${members.join(' ')} ${step.id}`),
+    });
   }
 }
 

@@ -15,6 +15,7 @@ import { createRunners } from '../../../src/page/shell/study/join-study';
 import { menuButtons, type VrMenuActions } from '../../../src/page/shell/vr-menu/menu-buttons';
 import { menuStateOf } from '../../../src/page/shell/vr-menu/menu-state';
 import { Recorder } from '../../../src/page/studio/recorder';
+import { gameNames } from '../../../src/study/model/plan/studied-games';
 import { posed } from '../../games/archery/bowman';
 import { activityServices, noPointers, studyRun } from '../activity-services';
 import { drawNowhere } from './drawing-in-node';
@@ -98,6 +99,12 @@ async function range() {
 
 test('the activities of the page are archery and the ball game', () => {
   expect(registered.map(({ name }) => name)).toEqual(['archery', 'ball']);
+});
+
+test('every game of studies has a runner on this page', async () => {
+  const { activities, settings, writer } = page();
+  const runners = await createRunners({ activities, settings, writer });
+  expect(Object.keys(runners)).toEqual(expect.arrayContaining([...gameNames]));
 });
 
 describe('going to a game', () => {

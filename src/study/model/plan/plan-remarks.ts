@@ -3,6 +3,7 @@ import { isNumeric, questionnaireNamed } from '../questionnaires/questionnaires'
 import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './allocation';
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
 import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
+import { studiedGames } from './studied-games';
 
 /** Returns the number of participants in each cohort, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
@@ -108,13 +109,16 @@ const untestedRemarks = (plan: StudyPlan): readonly string[] =>
 export function remarksOn(plan: StudyPlan): readonly string[] {
   const { conditions, cohorts = [], tasks } = plan;
   const mirrored = [...conditions, ...cohorts].some(({ mirror }) => mirror);
-  const unmirrored = tasks.filter(({ game }) => mirrored && game === 'ball');
+  const unmirroredRemarks = tasks.flatMap((task) => {
+    const { unmirrored } = studiedGames[task.game];
+    return mirrored && unmirrored !== null ? [`${taskTitle(plan, task.id)}: ${unmirrored}.`] : [];
+  });
   return [
     ...balanceRemarks(plan),
     ...sameBodyRemarks('Conditions', conditions),
     ...sameBodyRemarks('Cohorts', cohorts),
     ...untranslatedRemarks(plan),
     ...untestedRemarks(plan),
-    ...unmirrored.map(({ id }) => `${taskTitle(plan, id)}: the ball game has no mirror.`),
+    ...unmirroredRemarks,
   ];
 }

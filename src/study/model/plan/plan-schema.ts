@@ -6,6 +6,7 @@ import { questionnaireSchema } from '../questionnaires/questionnaire-schema';
 import { stoppingRuleSchema } from '../questionnaires/stopping-rule';
 import { embodimentFields, estimatorSchema } from './embodiment';
 import { remoteSchema } from './remote-setup';
+import { gameNames } from './studied-games';
 
 export const planFormat = 'threepoint-study';
 export const planVersion = 1;
@@ -23,7 +24,7 @@ const taskSchema = v.strictObject({
   id: identifier,
   /** The title that participants read above each sheet. */
   title: words(60),
-  game: v.picklist(['archery', 'ball'], 'expected archery or ball'),
+  game: v.picklist(gameNames),
   /** The number of participants who play together; they share the order of conditions. */
   groupSize: integerBetween(1, 6),
   /** The number of trials in a block, all under its condition. */

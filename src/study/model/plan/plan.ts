@@ -12,6 +12,7 @@ import {
 import { checkStoppingRules } from '../questionnaires/stopping-rule';
 import { embodimentFieldsOf } from './embodiment';
 import { planSchema } from './plan-schema';
+import { studiedGames } from './studied-games';
 
 /** A study as its file has it. */
 export type StudyPlan = v.InferOutput<typeof planSchema>;
@@ -22,15 +23,6 @@ export type StudyCohort = NonNullable<StudyPlan['cohorts']>[number];
 const maxOrdersListed = 4;
 /** The properties that all conditions set if one does, because the default of the page depends on the headset. */
 const setByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
-
-/**
- * The number of participants in each game. A score of archery would count for all of a group, and a ball game of a
- * study waits for every seat.
- */
-const groupsOfGame: Record<StudyTask['game'], { readonly size: number; readonly because: string }> = {
-  archery: { size: 1, because: 'archery is played alone' },
-  ball: { size: 3, because: 'the ball game is played by three' },
-};
 
 /** Returns the size of the largest group. */
 export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
@@ -211,8 +203,10 @@ export function checkedPlan(value: unknown): StudyPlan {
   refusePhrases(plan.phrases ?? {}, languagesOf(plan));
   refuseUnknownMeasures(plan);
   plan.tasks.forEach(({ game, groupSize }, index) => {
-    const { size, because } = groupsOfGame[game];
-    if (groupSize !== size) throw new ValidationError(`tasks[${index}].groupSize`, `${because}: expected ${size}`);
+    const { players, because } = studiedGames[game];
+    if (groupSize !== players) {
+      throw new ValidationError(`tasks[${index}].groupSize`, `${because}: expected ${players}`);
+    }
     if (plan.participants % groupSize !== 0) {
       throw new ValidationError(
         `tasks[${index}].groupSize`,

@@ -1,6 +1,7 @@
 import { element } from 'threepoint-ui';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { languagesOf } from '../../model/plan/plan';
+import { studiedGames } from '../../model/plan/studied-games';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
@@ -95,6 +96,7 @@ export const scoreCharts = ({ results, percent }: ShownComparison): readonly Cha
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);
+    const figure = task && studiedGames[task.game].paperFigure;
     return {
       comparisons: [comparison],
       title: `${name}: scores`,
@@ -102,7 +104,7 @@ export const scoreCharts = ({ results, percent }: ShownComparison): readonly Cha
       axis: 'score in per cent of the maximum',
       domain: [0, 100],
       nameOf: () => name,
-      note: ` (the paper’s figure ${task?.game === 'ball' ? 14 : 12})`,
+      note: figure ? ` (the paper’s figure ${figure})` : '',
       each: (task?.groupSize ?? 1) === 1 ? 'participant' : 'group',
     };
   });

@@ -1,4 +1,5 @@
 import type { PlayedStep } from '../../model/plan/schedule';
+import { studiedGames } from '../../model/plan/studied-games';
 import type { StudyScreen } from '../questions/study-screen';
 import { enterButton, pauseButton, type ScreenParts } from './screen-parts';
 import type { StudySituation } from './study-situation';
@@ -53,7 +54,7 @@ function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }
   const { progress, plan } = session;
   const practice = step.kind === 'tutorial';
   const ready = prepared?.state === 'ready' && !progress.running;
-  const game = plan.tasks.find(({ id }) => id === step.task)?.game;
+  const task = plan.tasks.find(({ id }) => id === step.task);
   const count = Math.round(step.seconds);
   return {
     ...base,
@@ -61,7 +62,7 @@ function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }
     title: practice ? text('practice') : text('ready.title'),
     text: [
       ...(progress.attempt > 1 ? [text('ready.again')] : []),
-      game === 'ball' ? text('ready.ball') : text('ready.archery'),
+      ...(task ? [text(studiedGames[task.game].ready)] : []),
       practice ? text('ready.practice', { count }) : text('ready.seconds', { count }),
       text('ready.raise'),
     ],
