@@ -83,7 +83,6 @@ export class Court {
       time: 0,
       attendants: [null, null, null],
       me: null,
-      rotate: false,
       opening: null,
       aim: null,
       secondsLeft: 90,

@@ -16,7 +16,6 @@ test('a catch is told for a moment, and not once more at the same second of the 
     time,
     attendants: [null, null, null],
     me: null,
-    rotate: false,
     opening: null,
     aim: null,
     paused: false,

@@ -42,7 +42,6 @@ export interface BallFrame {
   readonly secondsLeft: number;
   readonly me: number | null;
   readonly role: BallRole | null;
-  readonly rotate: boolean;
   readonly spectators: number;
   /** A player has paused the match's clock. */
   readonly paused: boolean;
