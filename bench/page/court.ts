@@ -114,8 +114,8 @@ export class Court {
   /** Poses the other bodies by their received packets. */
   showOthers(time: number): void {
     this.#people.length = 0;
-    for (const { seat, pose, fingers, opacity } of this.#players.follow(time)) {
-      const person = this.#seen[seat]!;
+    for (const { id, pose, fingers, opacity } of this.#players.follow(time)) {
+      const person = this.#seen[id]!;
       person.pose = pose;
       person.fingers = fingers;
       person.opacity = opacity;
