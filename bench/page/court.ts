@@ -83,7 +83,6 @@ export class Court {
       time: 0,
       attendants: [null, null, null],
       me: null,
-      rotate: false,
       opening: null,
       aim: null,
       secondsLeft: 90,
@@ -115,8 +114,8 @@ export class Court {
   /** Poses the other bodies by their received packets. */
   showOthers(time: number): void {
     this.#people.length = 0;
-    for (const { seat, pose, fingers, opacity } of this.#players.follow(time)) {
-      const person = this.#seen[seat]!;
+    for (const { id, pose, fingers, opacity } of this.#players.follow(time)) {
+      const person = this.#seen[id]!;
       person.pose = pose;
       person.fingers = fingers;
       person.opacity = opacity;

@@ -170,7 +170,6 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
   join: { gives: 'a free seat; in a trial the own one', outcome: all('taken') },
   pose: { gives: 'the own body to the others; spectators show none', outcome: all('taken') },
   ready: { gives: 'the start of the match', outcome: seated },
-  rotate: { gives: 'other roles with the next match', outcome: seated },
   away: { gives: 'that the player is away', outcome: all('taken') },
   sit: {
     gives: 'another seat that is free',
@@ -186,7 +185,7 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
   pause: { gives: 'a paused clock', outcome: { ...seated, player: 'not-pausable' } },
   ping: { gives: 'the room’s time', outcome: all('taken') },
   leave: { gives: 'the own seat back', outcome: all('taken') },
-  action: { gives: 'what the hands do, judged by the rules', outcome: seated },
+  action: { gives: 'what the hands do, and other roles with the next match, judged by the rules', outcome: seated },
   unknown: { gives: 'nothing', outcome: all('ends') },
 };
 

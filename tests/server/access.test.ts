@@ -278,7 +278,6 @@ describe('a message to a room', () => {
 
   const messages: Readonly<Record<string, unknown>> = {
     ready: { type: 'ready', ready: true },
-    rotate: { type: 'rotate', rotate: true },
     away: { type: 'away', away: true },
     sit: { type: 'sit', seat: 2 },
     calibration: { type: 'calibration', calibration: defaultCalibration },

@@ -37,6 +37,7 @@ export function recordSequence(
 
 /** Applies an action. Returns the step, or why the action is refused. */
 export function applyAction(state: BallState, index: number, action: BallAction): Step | Refusal {
+  if (action.type === 'rotate') return setRotate(state, index, action.rotate);
   if (state.phase !== 'running' || state.startedAt === null) return 'phase';
   if (state.players[index]!.role !== 'thrower') return 'role';
   if (action.type === 'grab') return grab(state, index, action, state.startedAt);
@@ -45,6 +46,11 @@ export function applyAction(state: BallState, index: number, action: BallAction)
   if (action.type === 'drop') return putBack(state, index, ball);
   return ball === action.ball ? throwBall(state, index, action, state.startedAt) : 'not-held';
 }
+
+const setRotate = (state: BallState, player: number, rotate: boolean): Step => ({
+  state: { ...state, rotate },
+  events: [{ type: 'rotate', player, rotate }],
+});
 
 const putBack = (state: BallState, player: number, ball: number): Step => ({
   state: withBall(state, ball, { on: 'rack' }),

@@ -34,6 +34,7 @@ const ballAction = v.variant('type', [
     position: vector(1000),
     velocity: vector(1000),
   }),
+  v.strictObject({ type: v.literal('rotate'), sequence, rotate: v.boolean() }),
 ]);
 
 /** Returns the validated action; null for anything else. */
@@ -46,6 +47,7 @@ const launch = v.strictObject({ time: seconds, position: vector(1e6), velocity: 
 const ballEvent = v.variant('type', [
   v.strictObject({ type: v.picklist(['joined', 'left']), player }),
   v.strictObject({ type: v.literal('ready'), player, ready: v.boolean() }),
+  v.strictObject({ type: v.literal('rotate'), player, rotate: v.boolean() }),
   v.strictObject({ type: v.literal('started'), at: seconds }),
   v.strictObject({ type: v.literal('grabbed'), ball, player, side }),
   v.strictObject({ type: v.literal('returned'), ball, player }),

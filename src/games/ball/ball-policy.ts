@@ -17,6 +17,8 @@ export interface BallPolicyOptions extends Partial<BallOptions> {
   readonly seed?: number;
 }
 
+const seatNames = stations.map((_, seat) => `seat ${seat}`);
+
 /** The match policy of the ball game: three seats, for two throwers and the basket holder. */
 export class BallPolicy implements MatchPolicy<BallGame> {
   readonly kind = ballKind;
@@ -30,15 +32,19 @@ export class BallPolicy implements MatchPolicy<BallGame> {
     this.#seed = seed;
   }
 
-  start(rotation: number, onTick: (actions: readonly BallInput[]) => void): HostedMatch<BallGame> {
-    const players = stations.map((_, seat) => `seat ${seat}`);
-    const options = { ...this.#options, rotation: (this.#options.rotation ?? 0) + rotation };
-    return createMatch(ballRules, ballRules.start(players, this.#seed, options), { onTick });
+  start(onTick: (actions: readonly BallInput[]) => void): HostedMatch<BallGame> {
+    return createMatch(ballRules, ballRules.start(seatNames, this.#seed, this.#options), { onTick });
   }
 
-  nextRoles({ players }: BallState, rotate: boolean): number | null {
+  next(
+    { options, players, rotate }: BallState,
+    onTick: (actions: readonly BallInput[]) => void,
+  ): HostedMatch<BallGame> | null {
     const taken = players.filter(({ present }) => present).map(({ station }) => station);
-    return rotationForRound(taken, rotate);
+    const movedOn = rotationForRound(taken, rotate);
+    if (movedOn === null) return null;
+    const start = ballRules.start(seatNames, this.#seed, { ...options, rotation: options.rotation + movedOn });
+    return createMatch(ballRules, { ...start, rotate }, { onTick });
   }
 
   snapshot(state: BallState): PackedBall {

@@ -33,6 +33,7 @@ export const packedBallSchema = v.strictObject({
   start: v.nullable(finite),
   end: v.nullable(v.picklist(ends)),
   score: whole,
+  rotate: v.boolean(),
   /** Flags of each player: present (1) and ready (2). */
   p: v.array(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(3))),
   balls: v.array(place),
@@ -94,6 +95,7 @@ export const packBall = (state: BallState): PackedBall => ({
   start: state.startedAt,
   end: state.end,
   score: state.score,
+  rotate: state.rotate,
   p: state.players.map(({ present, ready }) => (present ? 1 : 0) + (ready ? 2 : 0)),
   balls: state.balls.map(packPlace),
   basket: packLaunch({ time: state.basket.at, position: state.basket.position, velocity: state.basket.normal }),
@@ -116,6 +118,7 @@ export function unpackBall(packed: PackedBall): BallState | null {
     startedAt: packed.start,
     end: packed.end,
     score: packed.score,
+    rotate: packed.rotate,
     players: start.players.map((fresh, index): BallPlayer => {
       const flags = packed.p[index] ?? 0;
       return { ...fresh, present: (flags & 1) !== 0, ready: (flags & 2) !== 0 };

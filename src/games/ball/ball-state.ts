@@ -75,6 +75,8 @@ export interface BallState {
   readonly startedAt: number | null;
   readonly end: BallEnd | null;
   readonly score: number;
+  /** Whether roles move on with the next match. */
+  readonly rotate: boolean;
   readonly players: readonly BallPlayer[];
   /** The balls by number; the first half belongs in the first thrower's rack. */
   readonly balls: readonly BallPlace[];
@@ -85,8 +87,8 @@ export interface BallState {
 export type BallInput = SeatAction | (BallAction & { readonly player: number });
 
 /**
- * An action of a player with a ball. The player's page numbers them from 1; a number counts once, even if it arrives
- * twice or out of order.
+ * An action of a player. The player's page numbers them from 1; a number counts once, even if it arrives twice or out
+ * of order.
  */
 export type BallAction =
   | { readonly type: 'grab'; readonly sequence: number; readonly side: Side; readonly ball: number }
@@ -102,7 +104,9 @@ export type BallAction =
       readonly position: Vec3;
       /** Velocity [m/s]. */
       readonly velocity: Vec3;
-    };
+    }
+  /** Sets whether roles move on with the next match. */
+  | { readonly type: 'rotate'; readonly sequence: number; readonly rotate: boolean };
 
 /** Why the rules refuse an action. */
 export const refusals = [
@@ -124,6 +128,7 @@ export type Refusal = (typeof refusals)[number];
 export type BallEvent =
   | { readonly type: 'joined' | 'left'; readonly player: number }
   | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
+  | { readonly type: 'rotate'; readonly player: number; readonly rotate: boolean }
   | { readonly type: 'started'; readonly at: number }
   | { readonly type: 'grabbed'; readonly ball: number; readonly player: number; readonly side: Side }
   | { readonly type: 'returned'; readonly ball: number; readonly player: number }

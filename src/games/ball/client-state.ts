@@ -6,8 +6,9 @@ const throwerOf = (place: BallPlace | undefined): number =>
   place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
 
 /**
- * Returns the state after an event of the Room: balls, score, phase and presence. The tick, heads, hands and the basket
- * do not follow from events; a page has the clock and poses for them. An event that arrives twice changes nothing.
+ * Returns the state after an event of the Room: balls, score, phase, `rotate` and presence. The tick, heads, hands and
+ * the basket do not follow from events; a page has the clock and poses for them. An event that arrives twice changes
+ * nothing.
  */
 export function applyBallEvent(state: BallState, event: BallEvent): BallState {
   switch (event.type) {
@@ -17,6 +18,8 @@ export function applyBallEvent(state: BallState, event: BallEvent): BallState {
       return withPlayer(state, event.player, { present: false, ready: false });
     case 'ready':
       return withPlayer(state, event.player, { ready: event.ready });
+    case 'rotate':
+      return { ...state, rotate: event.rotate };
     case 'started':
       return { ...state, phase: 'running', startedAt: event.at };
     case 'grabbed':
@@ -57,6 +60,7 @@ export function applyBallEvent(state: BallState, event: BallEvent): BallState {
 
 /** Returns the predicted state after the player's own action, if the rules allow it. */
 export function predictBallAction(state: BallState, player: number, action: BallAction): BallState {
+  if (action.type === 'rotate') return { ...state, rotate: action.rotate };
   if (state.phase !== 'running') return state;
   const inHand = ballInHand(state, player, action.side);
   switch (action.type) {
@@ -88,6 +92,8 @@ export function answersBallAction(event: BallEvent, player: number, action: Ball
       return (
         action.type === 'grab' && event.player === player && event.ball === action.ball && event.side === action.side
       );
+    case 'rotate':
+      return action.type === 'rotate' && event.player === player && event.rotate === action.rotate;
     case 'thrown':
       return action.type === 'throw' && event.player === player && event.ball === action.ball;
     case 'returned':

@@ -151,6 +151,12 @@ export class BallGestures {
     this.pose = { type: 'pose', player: 0, at: 0, head: this.head, left: null, right: null };
   }
 
+  /** Returns the number of another action of the same player. */
+  nextSequence(): number {
+    this.sequence += 1;
+    return this.sequence;
+  }
+
   /** Processes a frame; times must rise, at any interval. */
   follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
     this.begin(frame);
@@ -167,7 +173,7 @@ export class BallGestures {
     this.findStrays(state, player);
     for (const side of sides) {
       const hand = this.hands[side];
-      if (hand.unthrown) this.act({ type: 'drop', sequence: this.number(), side });
+      if (hand.unthrown) this.act({ type: 'drop', sequence: this.nextSequence(), side });
       hand.unthrown = false;
     }
     this.followHand('left', left, buttons, playing, paused);
@@ -267,11 +273,6 @@ export class BallGestures {
     this.actions.push({ ...action, player: this.now.player });
   }
 
-  private number(): number {
-    this.sequence += 1;
-    return this.sequence;
-  }
-
   private followHand(side: Side, wrist: TrackedPose | null, buttons: Buttons, playing: boolean, paused: boolean): void {
     const { speed, fist, palm, holding } = this.hands[side];
     const pressed = this.presses.follow(side, buttons[side] ?? allReleased, wrist !== null);
@@ -291,7 +292,7 @@ export class BallGestures {
 
   private drop(side: Side, { ball }: Holding): void {
     this.hands[side].holding = null;
-    this.act({ type: 'drop', sequence: this.number(), side });
+    this.act({ type: 'drop', sequence: this.nextSequence(), side });
     this.cues.push({ type: 'dropped', side, ball });
   }
 
@@ -304,7 +305,7 @@ export class BallGestures {
     }
     this.near[side] = ball;
     if (ball === null || !button) return;
-    const sequence = this.number();
+    const sequence = this.nextSequence();
     this.hands[side].holding = { ball, button, sequence, lostAt: null, opened: null };
     this.near[side] = null;
     this.act({ type: 'grab', sequence, side, ball });
@@ -343,7 +344,7 @@ export class BallGestures {
       return;
     }
     const hand = this.hands[side];
-    const sequence = this.number();
+    const sequence = this.nextSequence();
     hand.holding = null;
     hand.thrown = { sequence, ball };
     this.act({ type: 'throw', sequence, side, ball, at: time + this.now.matchAhead, position, velocity });

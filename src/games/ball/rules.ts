@@ -166,7 +166,8 @@ function act(state: BallState, action: BallInput): Step {
       return pose(state, action);
     case 'grab':
     case 'drop':
-    case 'throw': {
+    case 'throw':
+    case 'rotate': {
       const refused = (after: BallState, reason: Refusal): Step => ({
         state: after,
         events: [{ type: 'refused', player: action.player, sequence: action.sequence, reason }],
@@ -214,6 +215,7 @@ export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> 
       startedAt: null,
       end: null,
       score: 0,
+      rotate: false,
       players: players.map((_, index): BallPlayer => {
         const count = stations.length;
         const station = (((index + checked.rotation) % count) + count) % count;

@@ -296,7 +296,7 @@ export class BallActivity implements OpenActivity {
     const seat = seatOfButton(id);
     const newest = this.play.newest;
     if (seat !== null) this.play.sit(seat);
-    else if (id === 'rotate') this.play.rotate(!(newest?.rotate ?? false));
+    else if (id === 'rotate') this.play.rotate(!(newest?.state.rotate ?? false));
     else this.play.ready(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
   }
 }

@@ -25,7 +25,7 @@ export type DrawnPlayer = DisplayedPlayer & Pick<PlayerFrame, 'head' | 'palms' |
 
 /** One frame of a match as it is drawn. */
 export interface BallScene
-  extends Pick<BallFrame, 'state' | 'time' | 'secondsLeft' | 'me' | 'rotate' | 'opening' | 'aim' | 'paused'> {
+  extends Pick<BallFrame, 'state' | 'time' | 'secondsLeft' | 'me' | 'opening' | 'aim' | 'paused'> {
   /** By player; null: the seat is free. */
   readonly attendants: readonly (DrawnPlayer | null)[];
   /** The page's time [s], and whether it is still in the room. */
@@ -116,13 +116,13 @@ export class BallView {
 
   show(scene: BallScene): void {
     this.#shown = scene;
-    const { state, attendants, me, rotate, head, acting, pageTime } = scene;
+    const { state, attendants, me, head, acting, pageTime } = scene;
     const eyes = transformPoint(invertTransform(this.#floorFromArena), head.position);
     this.#sounds.setListener(head, this.#floorFromArena);
     this.#showBalls(scene);
     this.#pops.show(pageTime, eyes);
     const players = attendants.map(writtenOf);
-    const standing: DisplayedMatch = { state, seconds: Math.ceil(scene.secondsLeft), players, me, rotate, acting };
+    const standing: DisplayedMatch = { state, seconds: Math.ceil(scene.secondsLeft), players, me, acting };
     this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
     this.lobby.show(standing, head.position.y, pageTime, scene.inRoom);
     this.#showNames(scene, players);

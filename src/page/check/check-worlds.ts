@@ -72,7 +72,6 @@ export class CheckWorlds {
       state: ballRules.start(['a', 'b', 'c'], 1),
       attendants: [null, null, null],
       me: null,
-      rotate: false,
       opening: null,
       aim: null,
       secondsLeft: defaultBallOptions.seconds,

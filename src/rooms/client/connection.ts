@@ -34,8 +34,6 @@ export interface RoomView<Game extends HostedGame> {
   /** This page's seat, which is also the player's index in the match; null: a spectator. */
   readonly mySeat: number | null;
   readonly spectators: number;
-  /** Whether roles move on with every rematch. */
-  readonly rotate: boolean;
   /**
    * The match, with the player's own actions predicted; null before the first welcome. It has no poses: RemotePlayers
    * has them.
@@ -111,7 +109,6 @@ export interface Connection<Game extends HostedGame> {
   /** Sends an action of the game. It is predicted at once; the Room decides. */
   sendAction(action: Game['action']): void;
   setReady(ready: boolean): void;
-  setRotation(rotate: boolean): void;
   /** Pauses or resumes the match clock; refused unless the room is pausable. Sent again after every reconnection. */
   setPaused(pause: boolean): void;
   setAway(away: boolean): void;

@@ -1,34 +1,52 @@
-import type { AvatarPose } from 'threepoint/core';
-import type { PosePacket } from '../protocol/pose-packet';
+import {
+  type AvatarPose,
+  type AvatarRef,
+  type Calibration,
+  defaultAvatar,
+  defaultCalibration,
+  type Fingers,
+  type Mutable,
+} from 'threepoint/core';
+import { type MutableTransform, makeTransform, type Transform } from 'threepoint/math';
 import type { ReceivedPose } from './connection';
 import { Playback, type PlaybackReport } from './playback';
 
-/** Another player as drawn in this frame. The same object in every frame: copy what you keep. */
-export interface RemotePlayer {
-  readonly seat: number;
-  /** The pose in the floor frame of the seat. */
+/** Another person of the room as drawn in this frame. The same object in every frame: copy what you keep. */
+export interface RemotePerson {
+  /** The number of the person's seat. */
+  readonly id: number;
+  readonly calibration: Calibration;
+  readonly avatar: AvatarRef;
+  /** The palette of a built-in body; null: its own colours. */
+  readonly palette: string | null;
+  /** The pose in the frame of the person's own floor. */
   readonly pose: AvatarPose;
-  readonly fingers: PosePacket['fingers'];
+  readonly fingers: Fingers;
+  /** The person's floor in the floor frame of this page. */
+  readonly placement: Transform<'floor', 'floor'>;
   /** 1: live. Less: a ghost, because no packet has arrived for a while. */
   readonly opacity: number;
 }
 
+type PersonBuffer = Mutable<RemotePerson> & { readonly placement: MutableTransform<'floor', 'floor'> };
+
 interface Seated {
   readonly playback: Playback;
   /** The entry in the list that `follow` returns. */
-  readonly remote: RemotePlayer & { opacity: number };
+  readonly remote: PersonBuffer;
 }
 
-function seated(seat: number): Seated {
+function seated(id: number): Seated {
   const playback = new Playback();
   const { pose, fingers } = playback.shown;
-  return { playback, remote: { seat, pose, fingers, opacity: 1 } };
+  const looks = { calibration: defaultCalibration, avatar: defaultAvatar, palette: null };
+  return { playback, remote: { id, ...looks, pose, fingers, placement: makeTransform(), opacity: 1 } };
 }
 
 /** Plays the packets of the other players with a jitter buffer for each. */
 export class RemotePlayers {
   readonly #players = new Map<number, Seated>();
-  readonly #drawn: RemotePlayer[] = [];
+  readonly #drawn: PersonBuffer[] = [];
   #followedAt = 0;
 
   receive({ seat, packet, arrivedAt }: ReceivedPose): void {
@@ -39,9 +57,9 @@ export class RemotePlayers {
 
   /**
    * Returns the players to draw at this time of the page's clock [s], without those silent for 3 s. The same list in
-   * every frame.
+   * every frame. The caller sets looks and placement, which no packet contains.
    */
-  follow(time: number): readonly RemotePlayer[] {
+  follow(time: number): readonly PersonBuffer[] {
     this.#drawn.length = 0;
     this.#followedAt = time;
     this.#players.forEach(this.#draw);

@@ -1,36 +1,9 @@
-import type { AvatarPose, AvatarRef, Calibration, Fingers, Mutable } from 'threepoint/core';
-import {
-  composeTransforms,
-  identity,
-  invertTransform,
-  type MutableTransform,
-  makeTransform,
-  type Transform,
-  zero,
-} from 'threepoint/math';
+import type { AvatarPose, Fingers } from 'threepoint/core';
+import { composeTransforms, identity, invertTransform, type Transform, zero } from 'threepoint/math';
 import type { SeatInfo } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from './connection';
-import { type RemotePlayer, RemotePlayers } from './remote-players';
-
-/** Another person of the room as drawn in this frame. The same object in every frame: copy what you keep. */
-export interface RemotePerson {
-  /** The number of the person's seat. */
-  readonly id: number;
-  readonly calibration: Calibration;
-  readonly avatar: AvatarRef;
-  /** The palette of a built-in body; null: its own colours. */
-  readonly palette: string | null;
-  /** The pose in the frame of the person's own floor. */
-  readonly pose: AvatarPose;
-  readonly fingers: Fingers;
-  /** The person's floor in the floor frame of this page. */
-  readonly placement: Transform<'floor', 'floor'>;
-  /** 1: live. Less: a ghost, because no packet has arrived for a while. */
-  readonly opacity: number;
-}
-
-type PersonBuffer = Mutable<RemotePerson> & { readonly placement: MutableTransform<'floor', 'floor'> };
+import { type RemotePerson, RemotePlayers } from './remote-players';
 
 const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
 const noSeats: readonly never[] = [];
@@ -50,7 +23,6 @@ export class RoomClient<Game extends HostedGame> {
   readonly #connect: (time: number) => Connection<Game>;
   #connection: Connection<Game> | null;
   readonly #players = new RemotePlayers();
-  readonly #buffers: PersonBuffer[] = [];
   readonly #people: RemotePerson[] = [];
   /** The seats at the last update. */
   #seats: readonly (SeatInfo | null)[] = noSeats;
@@ -107,7 +79,7 @@ export class RoomClient<Game extends HostedGame> {
     if (update.changes.includes('resumed')) this.#players.resume();
     for (const pose of update.poses) this.#players.receive(pose);
     this.#followSeats();
-    this.#place(this.#connection, this.#players.follow(time));
+    this.#place(this.#connection, time);
     return update;
   }
 
@@ -134,31 +106,17 @@ export class RoomClient<Game extends HostedGame> {
     this.#seats = seats;
   }
 
-  #place(connection: Connection<Game>, players: readonly RemotePlayer[]): void {
+  #place(connection: Connection<Game>, time: number): void {
     this.#people.length = 0;
     const { floorFromArena } = this;
     const mySeat = connection.room?.mySeat;
-    for (let i = 0; i < players.length; i++) {
-      const player = players[i]!;
-      const info = this.#seats[player.seat];
-      if (!info || player.seat === mySeat) continue;
-      const person = this.#bufferFor(player, info);
-      composeTransforms(floorFromArena, connection.arenaFromFloor(player.seat), person.placement);
+    for (const person of this.#players.follow(time)) {
+      const info = this.#seats[person.id];
+      if (!info || person.id === mySeat) continue;
+      person.calibration = info.calibration;
+      person.avatar = info.avatar;
+      composeTransforms(floorFromArena, connection.arenaFromFloor(person.id), person.placement);
       this.#people.push(person);
     }
-  }
-
-  #bufferFor({ seat, pose, fingers, opacity }: RemotePlayer, { calibration, avatar }: SeatInfo): PersonBuffer {
-    let person = this.#buffers[seat];
-    if (!person) {
-      person = { id: seat, palette: null, calibration, avatar, pose, fingers, opacity, placement: makeTransform() };
-      this.#buffers[seat] = person;
-    }
-    person.calibration = calibration;
-    person.avatar = avatar;
-    person.pose = pose;
-    person.fingers = fingers;
-    person.opacity = opacity;
-    return person;
   }
 }

@@ -46,7 +46,7 @@ const longestSlowFrame = 3;
 
 /** The state of the Room, as its messages report it. */
 interface KnownRoom
-  extends Pick<Welcome<HostedGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
+  extends Pick<Welcome<HostedGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'matchStart' | 'paused'> {
   readonly seats: readonly (SeatInfo | null)[];
 }
 
@@ -117,7 +117,6 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       seats: known.seats,
       mySeat: known.seat,
       spectators: known.spectators,
-      rotate: known.rotate,
       match: this.#match.at(this.#now + this.#matchAhead, known.seat),
       responseTime: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
       matchClockOffset: this.#matchAhead,
@@ -145,10 +144,6 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   setReady(ready: boolean): void {
     this.#sendOrQueue({ type: 'ready', ready });
-  }
-
-  setRotation(rotate: boolean): void {
-    this.#sendOrQueue({ type: 'rotate', rotate });
   }
 
   setPaused(pause: boolean): void {
@@ -257,14 +252,14 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   /** Applies the whole state, after joining or reconnecting. */
   #onWelcome(message: Welcome<Game>): void {
-    const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
+    const { room, epoch, seat, spectators, matchStart, paused } = message;
     // The server was restarted, and has lost a running round.
     if (this.#known && this.#known.epoch !== epoch && this.#match.confirmed?.phase === 'running') {
       this.#voidedRounds += 1;
       this.#addChange('voided');
     }
     const seats = message.seats.map(unpackSeatInfo);
-    this.#known = { room, epoch, seat, spectators, rotate, seats, matchStart, paused };
+    this.#known = { room, epoch, seat, spectators, seats, matchStart, paused };
     this.#skeletons = seats.map(skeletonOf);
     this.#match.restart(message.match);
     this.#addChange('welcome');
@@ -295,7 +290,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         this.#voiceListener?.onSeatsChanged();
         return;
       case 'about':
-        this.#known = { ...known, spectators: message.spectators, rotate: message.rotate };
+        this.#known = { ...known, spectators: message.spectators };
         return;
       case 'paused':
         this.#known = { ...known, matchStart: message.matchStart, paused: message.at };

@@ -1,8 +1,9 @@
 // "threepoint-rooms/three": the bodies of other people in a three.js scene.
 export type { ClientPolicy } from '../client/client-policy';
 export type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from '../client/connection';
+export type { RemotePerson } from '../client/remote-players';
 export { RoomAddress, type RoomAddressOptions } from '../client/room-address';
-export { type RemotePerson, RoomClient } from '../client/room-client';
+export { RoomClient } from '../client/room-client';
 export type { PassStorage } from '../client/room-pass';
 export type { AvatarLoader } from './drawn-bodies';
 export type { JoinedRoom, JoinRoomOptions, RoomBody, RoomPerson } from './join-room';

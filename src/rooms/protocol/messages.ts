@@ -13,7 +13,7 @@ import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, 
  * Rises with every incompatible change of messages, pose packets (which also have `poseVersion`) or frames of poses.
  * The server disconnects a client with another version.
  */
-export const protocolVersion = 10;
+export const protocolVersion = 11;
 
 /** The longest control message [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const maxMessageBytes = 4096;
@@ -58,8 +58,6 @@ const clientMessage = v.variant('type', [
   join,
   /** Whether the player is ready for the match, or after its end for another. */
   v.strictObject({ type: v.literal('ready'), ready: v.boolean() }),
-  /** Whether roles move on with every rematch. */
-  v.strictObject({ type: v.literal('rotate'), rotate: v.boolean() }),
   /** The page is hidden, or the headset is off. */
   v.strictObject({ type: v.literal('away'), away: v.boolean() }),
   /** Requests a free seat; null: become a spectator. */
@@ -171,7 +169,7 @@ const controlMessage = v.variant('type', [
   v.strictObject({ type: v.literal('seat'), seat, info: packedSeatInfo }),
   /** The receiver's new seat; null: a spectator. */
   v.strictObject({ type: v.literal('seated'), seat: v.nullable(seat) }),
-  v.strictObject({ type: v.literal('about'), spectators: integerWithin(0, 10_000), rotate: v.boolean() }),
+  v.strictObject({ type: v.literal('about'), spectators: integerWithin(0, 10_000) }),
   /** The second at which the match clock is paused; null: it runs again, with another start. */
   v.strictObject({ type: v.literal('paused'), at: v.nullable(seconds), matchStart: seconds }),
   /** The match has another start, because its host was suspended. */
@@ -194,7 +192,6 @@ const welcome = v.strictObject({
   seat: v.nullable(seat),
   seats: v.pipe(v.array(packedSeatInfo), v.maxLength(maxSeats)),
   spectators: integerWithin(0, 10_000),
-  rotate: v.boolean(),
   /** Room time at which the match clock is 0 [s]. */
   matchStart: seconds,
   /** The second at which the match clock is paused; null: it runs. */

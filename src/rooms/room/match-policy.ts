@@ -42,16 +42,10 @@ export interface MatchPolicy<Game extends HostedGame> {
   readonly seats: number;
   /** Length of a tick [s]. */
   readonly tickSeconds: number;
-  /**
-   * Creates a match that waits for its players. `rotation`: seats by which roles have moved on. `onTick` is called
-   * before each tick with its actions.
-   */
-  start(rotation: number, onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game>;
-  /**
-   * Returns by how many seats roles move on for another match of the players present: 0, or with `rotate` as few as
-   * permit a match. null: they cannot play one.
-   */
-  nextRoles(state: Game['state'], rotate: boolean): number | null;
+  /** Creates a match that waits for its players. `onTick` is called before each tick with its actions. */
+  start(onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game>;
+  /** Creates another match after one that is over; null: the players present cannot play one. */
+  next(state: Game['state'], onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game> | null;
   snapshot(state: Game['state']): Game['snapshot'];
   /** Returns the validated action that a page sent; null: it is not one of this game. */
   readAction(value: unknown): Game['action'] | null;

@@ -36,7 +36,7 @@ export const peoplePolicy = (seats: number = maxSeats): MatchPolicy<People> => (
   seats,
   tickSeconds: 1,
   start: () => new NoMatch(),
-  nextRoles: () => null,
+  next: () => null,
   snapshot: () => null,
   readAction: () => null,
   refusalInPause: () => {

@@ -15,6 +15,7 @@ export class RoomMatch<Game extends HostedGame> {
   readonly #policy: MatchPolicy<Game>;
   readonly #seats: Seats;
   readonly #host: RoomHost<Game>;
+  readonly #onTick = (actions: readonly MatchAction<Game>[]): void => this.#host.stepped?.(actions);
   #match: HostedMatch<Game>;
   /** Actions for the next step. */
   #queued: MatchAction<Game>[] = [];
@@ -24,15 +25,12 @@ export class RoomMatch<Game extends HostedGame> {
   #pausedSeconds = 0;
   /** Room time at which the clock was paused; null: it runs. */
   #stoppedAt: number | null = null;
-  #rotation = 0;
-  /** Whether roles move on with every match. */
-  rotate = false;
 
   constructor(policy: MatchPolicy<Game>, seats: Seats, host: RoomHost<Game>) {
     this.#policy = policy;
     this.#seats = seats;
     this.#host = host;
-    this.#match = this.#newMatch();
+    this.#match = policy.start(this.#onTick);
   }
 
   get state(): Game['state'] {
@@ -138,10 +136,6 @@ export class RoomMatch<Game extends HostedGame> {
     if (this.state.tick !== tick) this.#restartIfWanted(time);
   }
 
-  #newMatch(): HostedMatch<Game> {
-    return this.#policy.start(this.#rotation, (actions) => this.#host.stepped?.(actions));
-  }
-
   /** Returns room time without pauses [s]. */
   #runningTime(time: number): number {
     return time - this.#pausedSeconds;
@@ -172,16 +166,15 @@ export class RoomMatch<Game extends HostedGame> {
     this.#host.broadcast({ type: 'match-start', matchStart: start });
   }
 
-  /** Starts another match once all present players are ready and their roles permit it. */
+  /** Starts another match once all present players are ready, if the game permits it. */
   #restartIfWanted(time: number): void {
     const before = this.state;
     if (before.phase !== 'over') return;
     const present = before.players.filter((player) => player.present);
     if (present.length === 0 || !present.every(({ ready }) => ready)) return;
-    const movedOn = this.#policy.nextRoles(before, this.rotate);
-    if (movedOn === null) return;
-    this.#rotation += movedOn;
-    this.#match = this.#newMatch();
+    const next = this.#policy.next(before, this.#onTick);
+    if (!next) return;
+    this.#match = next;
     this.#matchStart = time;
     before.players.forEach(({ present }, player) => {
       if (!present) return;

@@ -200,7 +200,6 @@ export class Room<Game extends HostedGame> {
         this.#changeSeat(client, member, index, message.seat);
         return;
       case 'ready':
-      case 'rotate':
       case 'pause':
         this.#onPlayerRequest(client, index, message);
         return;
@@ -212,7 +211,7 @@ export class Room<Game extends HostedGame> {
   }
 
   /** Handles what only a player may request of the match. */
-  #onPlayerRequest(client: ClientId, index: number | null, message: Received<'ready' | 'rotate' | 'pause'>): void {
+  #onPlayerRequest(client: ClientId, index: number | null, message: Received<'ready' | 'pause'>): void {
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) {
       this.#refuse(client, 'message', 'no-seat');
@@ -221,10 +220,6 @@ export class Room<Game extends HostedGame> {
     switch (message.type) {
       case 'ready':
         this.#match.setReady(index, message.ready);
-        return;
-      case 'rotate':
-        this.#match.rotate = message.rotate;
-        this.#broadcastAbout();
         return;
       case 'pause':
         if (this.options.pausable) seat.requestsPause = message.pause;
@@ -262,7 +257,6 @@ export class Room<Game extends HostedGame> {
       seat: this.#seats.indexOf(client),
       seats: Array.from({ length: this.#seats.count }, (_, seat) => packSeatInfo(this.#seats.infoOf(seat))),
       spectators: this.#members.spectators,
-      rotate: this.#match.rotate,
       matchStart: this.#match.matchStart,
       match: this.#match.snapshot,
       paused: this.#match.pausedAt,
@@ -271,7 +265,7 @@ export class Room<Game extends HostedGame> {
   }
 
   #broadcastAbout(): void {
-    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators, rotate: this.#match.rotate });
+    this.#host.broadcast({ type: 'about', spectators: this.#members.spectators });
   }
 
   #broadcastSeat(seat: number): void {

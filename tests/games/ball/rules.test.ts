@@ -70,6 +70,26 @@ describe('a match', () => {
     ]);
   });
 
+  test('takes a request to rotate in every phase, each number once', () => {
+    const match = told({ seconds: 1 }, false);
+    match.step(...[leftThrower, holder].map((player): BallInput => ({ type: 'join', player })));
+    const first = match.action(leftThrower, { type: 'rotate', rotate: true });
+    match.step(first);
+    expect([match.state.phase, match.state.rotate]).toEqual(['ready', true]);
+    match.step(...[leftThrower, holder].map((player): BallInput => ({ type: 'ready', player, ready: true })));
+    match.step(match.action(holder, { type: 'rotate', rotate: false }), first);
+    expect([match.state.phase, match.state.rotate]).toEqual(['running', false]);
+    expect(match.refusals()).toEqual(['seen-before']);
+    match.pass(2);
+    match.step(match.action(holder, { type: 'rotate', rotate: true }));
+    expect([match.state.phase, match.state.rotate]).toEqual(['over', true]);
+    expect(match.happened('rotate').map(({ player, rotate }) => [player, rotate])).toEqual([
+      [leftThrower, true],
+      [holder, false],
+      [holder, true],
+    ]);
+  });
+
   test('gives a point for a ball that comes down in the basket', () => {
     const match = told();
     match.take(leftThrower, 3);

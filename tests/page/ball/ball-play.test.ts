@@ -147,9 +147,11 @@ describe('one person with two bots', () => {
     player.newest?.bodies.forEach(({ pose }, i) => {
       expect(distance(pose.head.position, where?.[i] ?? pose.head.position)).toBeLessThan(0.05);
     });
+    player.rotate(true);
+    frame();
     player.pause(false);
     until(() => player.probe()?.phase === 'over', 110);
-    expect(player.probe()).toMatchObject({ end: 'balls', ballsLeft: 0 });
+    expect(player.probe()).toMatchObject({ end: 'balls', ballsLeft: 0, rotate: true });
     expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
     expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
   });

@@ -16,7 +16,6 @@ test('a catch shows for a moment, and not again at that second of the next match
     time,
     attendants: [null, null, null],
     me: null,
-    rotate: false,
     opening: null,
     aim: null,
     paused: false,

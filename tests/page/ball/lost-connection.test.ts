@@ -118,6 +118,7 @@ function court() {
       self.hold(addScaled(ahead, vec3(0, 3, -4), 15 / 60), 0, 0.2);
     },
     sit: (seat: number) => page.sit(seat),
+    rotate: (on: boolean) => page.rotate(on),
     lose: () => wire.lose(),
     connect: () => wire.connect(),
     /** The page is loaded again; the pass that it finds makes it the same person. */
@@ -177,6 +178,19 @@ describe('a connection that is lost for a moment', () => {
     ann.grab(2);
     expect([ann.held, ann.ball(2)]).toEqual([2, 'hand']);
   });
+});
+
+test('a request to rotate without a connection reaches the room on the next one', () => {
+  const ann = court();
+  ann.lose();
+  ann.rotate(false);
+  ann.rotate(true);
+  ann.hold(ahead, 0, 0.2);
+  expect(ann.told.room.match.rotate).toBe(false);
+  ann.connect();
+  ann.hold(ahead, 0, 0.2);
+  expect(ann.told.room.match.rotate).toBe(true);
+  expect(ann.told.happened('rotate')).toEqual([{ type: 'rotate', player: 0, rotate: true }]);
 });
 
 test('a connection lost for longer than a ball is kept leaves a hand empty and free', () => {

@@ -37,7 +37,6 @@ const standing = (
   seconds: 90,
   players,
   me,
-  rotate: false,
   acting: false,
 });
 
@@ -67,9 +66,9 @@ describe('the board', () => {
     expect(waitingSentence(standing(all, over))).toBe('Waiting for you: press Play again.');
     expect(waitingSentence({ ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
     expect(waitingSentence(standing(all, { ...over, phase: 'running' }))).toBeNull();
-    const throwers = standing([all[0]!, all[1]!, null], over);
-    expect(waitingSentence(throwers)).toBe('Waiting for a basket holder.');
-    expect(waitingSentence({ ...throwers, rotate: true })).toBe('Waiting for you: press Play again.');
+    const throwers = [all[0]!, all[1]!, null];
+    expect(waitingSentence(standing(throwers, over))).toBe('Waiting for a basket holder.');
+    expect(waitingSentence(standing(throwers, { ...over, rotate: true }))).toBe('Waiting for you: press Play again.');
   });
 
   it('speaks to the player of their own throws', () => {

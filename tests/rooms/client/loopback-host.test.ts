@@ -107,7 +107,7 @@ describe('a room in the page', () => {
     begin();
     pass(1.5);
     expect(ann.match.phase).toBe('over');
-    ann.connection.setRotation(true);
+    ann.act({ type: 'rotate', rotate: true });
     for (const { connection } of people) connection.setReady(true);
     pass(0.2);
     for (const { match } of people) {

@@ -124,9 +124,9 @@ test('a change without a connection is part of the first message on the next one
 
 /** What the Room knows of what the person wants. */
 function wanted(client: SlowClient) {
-  const { seats = [], mySeat, match, rotate } = client.room ?? {};
+  const { seats = [], mySeat, match } = client.room ?? {};
   const [seat] = seats;
-  return { seat: mySeat, isReady: match?.players[0]?.ready, presence: seat?.presence, rotate };
+  return { seat: mySeat, isReady: match?.players[0]?.ready, presence: seat?.presence };
 }
 
 test('a press without a connection, or before its welcome, reaches the room', () => {
@@ -134,18 +134,16 @@ test('a press without a connection, or before its welcome, reaches the room', ()
   client.connect();
   client.setReady(true);
   client.setAway(true);
-  client.setRotation(true);
   client.deliver();
-  expect(wanted(client)).toEqual({ seat: 0, isReady: true, presence: 'away', rotate: true });
+  expect(wanted(client)).toEqual({ seat: 0, isReady: true, presence: 'away' });
 
   client.lose();
   client.setReady(true);
   client.setReady(false);
   client.setAway(false);
   client.connect();
-  client.setRotation(false);
   client.deliver();
-  expect(wanted(client)).toEqual({ seat: 0, isReady: false, presence: 'here', rotate: false });
+  expect(wanted(client)).toEqual({ seat: 0, isReady: false, presence: 'here' });
 
   client.lose();
   client.changeSeat(null);

@@ -3,7 +3,13 @@ import { createMatch } from 'threepoint-games';
 import * as v from 'valibot';
 import type { ClientPolicy } from '../../../src/rooms/client/client-policy';
 import { roomMessageReader } from '../../../src/rooms/protocol/messages';
-import type { HostedGame, MatchAction, MatchPolicy, MatchState } from '../../../src/rooms/room/match-policy';
+import type {
+  HostedGame,
+  HostedMatch,
+  MatchAction,
+  MatchPolicy,
+  MatchState,
+} from '../../../src/rooms/room/match-policy';
 import type { RoomKind } from '../../../src/rooms/room/room-kind';
 
 interface CountingState extends MatchState {
@@ -56,21 +62,27 @@ function stepped(goal: number, state: CountingState, actions: readonly MatchActi
   return { state: { tick: state.tick + 1, phase, total, players }, events };
 }
 
+function startMatch(
+  seats: number,
+  goal: number,
+  onTick: (actions: readonly MatchAction<CountingGame>[]) => void,
+): HostedMatch<CountingGame> {
+  const players = Array.from({ length: seats }, () => ({ present: false, ready: false, headHeight: null }));
+  const rules = {
+    tickSeconds,
+    start: (): CountingState => ({ tick: 0, phase: 'ready', total: 0, players }),
+    step: (state: CountingState, actions: readonly MatchAction<CountingGame>[]) => stepped(goal, state, actions),
+  };
+  return createMatch(rules, rules.start(), { onTick });
+}
+
 /** The counting game for a Room with so many seats; `goal`: ends a round. */
 export const countingPolicy = (seats: number, goal = 3): MatchPolicy<CountingGame> => ({
   kind: countingKind,
   seats,
   tickSeconds,
-  start(_rotation, onTick) {
-    const players = Array.from({ length: seats }, () => ({ present: false, ready: false, headHeight: null }));
-    const rules = {
-      tickSeconds,
-      start: (): CountingState => ({ tick: 0, phase: 'ready', total: 0, players }),
-      step: (state: CountingState, actions: readonly MatchAction<CountingGame>[]) => stepped(goal, state, actions),
-    };
-    return createMatch(rules, rules.start(), { onTick });
-  },
-  nextRoles: () => 0,
+  start: (onTick) => startMatch(seats, goal, onTick),
+  next: (_state, onTick) => startMatch(seats, goal, onTick),
   snapshot: ({ total }) => ({ total }),
   readAction(value) {
     const { type, to } = (value ?? {}) as { type?: unknown; to?: unknown };

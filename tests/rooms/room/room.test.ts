@@ -230,7 +230,7 @@ describe('a match in a room', () => {
       const testRoom = createTestRoom({ ball: { balls: 2, seconds: 0.5 } });
       const clients = seats.map((seat) => `player ${seat}`);
       clients.forEach((client, index) => void testRoom.join(client, { seat: seats[index]! }));
-      testRoom.say(clients[0]!, { type: 'rotate', rotate: true });
+      testRoom.act(clients[0]!, { type: 'rotate', sequence: 1, rotate: true });
       const held: (string | undefined)[] = [];
       for (let match = 0; match < 6; match++) {
         readies(testRoom, clients);
@@ -254,7 +254,7 @@ describe('a match in a room', () => {
     testRoom.tick();
     testRoom.tick(1 / 120);
     expect(testRoom.room.match.phase).toBe('over');
-    testRoom.say('ann', { type: 'rotate', rotate: true });
+    testRoom.act('ann', { type: 'rotate', sequence: 1, rotate: true });
     testRoom.join('dot', { seat: 2 });
     testRoom.tick(1 / 600);
     readies(testRoom, ['ann', 'ben', 'dot']);

@@ -18,8 +18,8 @@ async function failingRooms() {
         ...countingRoomKind(4),
         createPolicy: () => ({
           ...policy,
-          start: (rotation: number, onTick: Parameters<typeof policy.start>[1]) =>
-            policy.start(rotation, (...tick) => (failing.ticks ? fail() : onTick(...tick))),
+          start: (onTick: Parameters<typeof policy.start>[0]) =>
+            policy.start((...tick) => (failing.ticks ? fail() : onTick(...tick))),
           readAction: (value: unknown) => ((value as { to?: unknown }).to === 13 ? fail() : policy.readAction(value)),
         }),
       },

@@ -24,6 +24,7 @@ const place = fc.record({ x: fc.double(), y: fc.double(), z: fc.double() });
 const action = fc.oneof(
   fc.record({ type: fc.constant('grab'), sequence: fc.nat(), side, ball: fc.nat(25) }),
   fc.record({ type: fc.constant('drop'), sequence: fc.nat(), side }),
+  fc.record({ type: fc.constant('rotate'), sequence: fc.nat(), rotate: fc.boolean() }),
   fc.record({
     type: fc.constant('throw'),
     ...{ sequence: fc.nat(), side, ball: fc.nat(25) },
@@ -44,7 +45,6 @@ const candidate = fc.record({
 const message = fc.oneof(
   fc.record({ type: fc.constant('action'), action }),
   fc.record({ type: fc.constant('ready'), ready: fc.boolean() }),
-  fc.record({ type: fc.constant('rotate'), rotate: fc.boolean() }),
   fc.record({ type: fc.constant('away'), away: fc.boolean() }),
   fc.record({ type: fc.constant('pause'), pause: fc.boolean() }),
   fc.record({ type: fc.constant('sit'), seat: fc.option(fc.nat(20)) }),

@@ -24,11 +24,6 @@ export interface PlayerFrame {
   readonly opacity: number;
 }
 
-/** A body to draw, with its floor in the user's floor frame. */
-export interface BodyFrame extends RemotePerson {
-  readonly station: number;
-}
-
 /** The result of one frame of the match, for view, sound and haptics. */
 export interface BallFrame {
   readonly state: BallState;
@@ -42,12 +37,11 @@ export interface BallFrame {
   readonly secondsLeft: number;
   readonly me: number | null;
   readonly role: BallRole | null;
-  readonly rotate: boolean;
   readonly spectators: number;
   /** A player has paused the match's clock. */
   readonly paused: boolean;
   readonly players: readonly (PlayerFrame | null)[];
-  readonly bodies: readonly BodyFrame[];
+  readonly bodies: readonly RemotePerson[];
   /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
   readonly opening: Opening | null;
   readonly events: readonly BallEvent[];

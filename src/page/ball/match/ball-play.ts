@@ -56,6 +56,8 @@ export class BallPlay {
   /** Since when the match has been waiting in this phase for a player to be ready [s]. */
   private waitingSince: { readonly phase: string; readonly at: number } | null = null;
   private begunAt: number | null = null;
+  /** Whether roles are to move on, until the request is sent; null: none waits. */
+  private rotateRequest: boolean | null = null;
 
   constructor(private readonly options: BallPlayOptions) {
     this.client = new RoomClient((time) => options.connect(options.visitor, time));
@@ -97,7 +99,10 @@ export class BallPlay {
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
     if (update.changes.length > 0) this.gestures?.resume();
     this.gestures?.onEvents(update.events);
-    if (this.connection) this.bots.seat(this.connection, time);
+    if (this.connection) {
+      this.bots.seat(this.connection, time);
+      this.sendRotateRequest(this.connection);
+    }
     this.bots.move(time);
     this.readyByItself(time);
   }
@@ -141,7 +146,6 @@ export class BallPlay {
       secondsLeft: this.secondsLeft,
       me,
       role: me === null ? null : (state.players[me]?.role ?? null),
-      rotate: before.rotate,
       spectators: before.spectators,
       paused: before.paused,
       players,
@@ -178,7 +182,7 @@ export class BallPlay {
   }
 
   rotate(on: boolean): void {
-    this.connection?.setRotation(on);
+    this.rotateRequest = on;
   }
 
   sit(seat: number | null): void {
@@ -218,6 +222,15 @@ export class BallPlay {
   private get othersPlay(): boolean {
     const { seats = none, mySeat = null } = this.room ?? {};
     return seats.some((row, seat) => seat !== mySeat && row !== null && !row.bot && row.presence !== 'gone');
+  }
+
+  /** Sends the request once the room takes actions: it is connected and not paused. */
+  private sendRotateRequest(connection: BallConnection): void {
+    if (this.rotateRequest === null || connection.status.phase !== 'joined' || connection.room?.paused) return;
+    this.gestures ??= createGestures(connection);
+    const sequence = this.gestures.nextSequence();
+    connection.sendAction({ type: 'rotate', sequence, rotate: this.rotateRequest });
+    this.rotateRequest = null;
   }
 
   /** Reports a simulated player as ready. */

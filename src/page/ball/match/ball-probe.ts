@@ -7,7 +7,7 @@ import type { BallFrame } from './ball-frame';
 
 /** Returns the state of a match as plain data, for tests and tools. */
 export function probeOf(
-  { state, secondsLeft, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
+  { state, secondsLeft, me, role, spectators, paused, held, aim, players, opening }: BallFrame,
   connection: BallConnection,
 ) {
   const count = (on: BallPlace['on']) => state.balls.filter((place) => place.on === on).length;
@@ -23,7 +23,7 @@ export function probeOf(
     seat: me,
     role,
     ready: me !== null && (state.players[me]?.ready ?? false),
-    rotate,
+    rotate: state.rotate,
     spectators,
     paused,
     held,

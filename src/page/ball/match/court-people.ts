@@ -1,8 +1,7 @@
-import { defaultAvatar, type Mutable, type TrackingFrame, unknownFingers } from 'threepoint/core';
+import type { Mutable, TrackingFrame } from 'threepoint/core';
 import {
   type MutableVec3,
   makePose,
-  makeTransform,
   type Side,
   type TrackedPose,
   type Transform,
@@ -23,13 +22,14 @@ import {
 } from 'threepoint-games/ball';
 import type { RemotePerson } from 'threepoint-rooms';
 import { seatLooks } from '../seat-looks';
-import type { BodyFrame, PlayerFrame } from './ball-frame';
+import type { PlayerFrame } from './ball-frame';
 import { proximityFade } from './proximity-fade';
 
 /** The frame of one seat, with the buffers that it overwrites. */
 interface SeatView {
   readonly player: Mutable<Omit<PlayerFrame, 'palms'>> & { readonly palms: Record<Side, Vec3 | null> };
-  readonly body: Mutable<BodyFrame>;
+  /** null: the person has not been seen yet. */
+  body: Mutable<RemotePerson> | null;
   readonly head: MutableVec3;
   readonly palms: Readonly<Record<Side, MutableVec3>>;
 }
@@ -44,7 +44,7 @@ interface Place {
 /** The people of a room in one frame, for those parts that draw them. The next frame overwrites all objects. */
 export class CourtPeople {
   readonly players: (PlayerFrame | null)[] = [];
-  readonly bodies: BodyFrame[] = [];
+  readonly bodies: RemotePerson[] = [];
   /**
    * The opening of the basket at the last tracked pose of its holder's hands, arena frame; null: not tracked since the
    * room last moved the basket.
@@ -84,14 +84,9 @@ export class CourtPeople {
       if (!row) continue;
       const view = this.viewOf(seat);
       if (there) {
-        const { body } = view;
-        body.calibration = there.calibration;
-        body.avatar = there.avatar;
-        body.station = player?.station ?? seat;
-        body.palette = seatLooks[body.station]?.palette ?? 'porcelain';
-        body.pose = there.pose;
-        body.fingers = there.fingers;
-        body.placement = there.placement;
+        view.body ??= { ...there };
+        const body: Mutable<RemotePerson> = Object.assign(view.body, there);
+        body.palette = seatLooks[player?.station ?? seat]?.palette ?? 'porcelain';
         body.opacity = there.opacity * (frame ? proximityFade(frame.head.position, there.pose, body.placement) : 1);
         this.bodies.push(body);
       }
@@ -147,17 +142,7 @@ const makeSeatView = (seat: number): SeatView => ({
     palms: { left: null, right: null },
     opacity: 0,
   },
-  body: {
-    id: seat,
-    calibration: { eyeHeight: Number.NaN, armSpan: Number.NaN },
-    station: seat,
-    avatar: defaultAvatar,
-    palette: '',
-    pose: { head: { ...makePose<'floor'>(), tracking: 'emulated' }, leftHand: null, rightHand: null, body: null },
-    placement: makeTransform(),
-    fingers: unknownFingers,
-    opacity: 0,
-  },
+  body: null,
   head: vec3(0, 0, 0),
   palms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });

@@ -54,10 +54,10 @@ const roleOf = (state: BallState, player: number): string => roleTexts[stationOf
 
 /** Summarises a frame of a match. */
 export function ballRound({ play, frame, players, acting, voices }: BallRoundParts): BallRound {
-  const { state, secondsLeft, me, rotate, spectators, paused } = frame;
+  const { state, secondsLeft, me, spectators, paused } = frame;
   const ended = play.status.phase === 'ended';
   const own = me === null ? null : state.players[me];
-  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, rotate, acting };
+  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, acting };
   const delay = play.room?.responseTime ?? null;
   return {
     phase: state.phase,
@@ -74,7 +74,7 @@ export function ballRound({ play, frame, players, acting, voices }: BallRoundPar
     role: me === null ? 'Watching' : roleOf(state, me),
     seat: me,
     ready: own?.ready ?? false,
-    rotate,
+    rotate: state.rotate,
     spectators,
     people: players.map((player, seat) => ({
       seat,

@@ -13,8 +13,6 @@ export interface DisplayedMatch {
   readonly players: readonly (DisplayedPlayer | null)[];
   /** The user's player; null: a spectator. */
   readonly me: number | null;
-  /** Roles move on with every match. */
-  readonly rotate: boolean;
   /** A simulated player has the user's seat, and is ready without being asked. */
   readonly acting: boolean;
 }

@@ -42,7 +42,7 @@ export function lobbyButtons(match: DisplayedMatch): readonly SheetButton<LobbyB
 
 /** Paints the sheet before and after a match: players, who is ready, the result. */
 function paintLobby(context: CanvasRenderingContext2D, match: DisplayedMatch, hovered: LobbyButton | null): void {
-  const { state, players, me, rotate } = match;
+  const { state, players, me } = match;
   const { width, height } = lobbySize;
   paintCard(context, width, height);
   const over = state.phase === 'over';
@@ -77,7 +77,7 @@ function paintLobby(context: CanvasRenderingContext2D, match: DisplayedMatch, ho
       const label = isReady ? 'Wait for me' : over ? 'Play again' : 'Ready';
       paintButton(context, button, label, { primary: !isReady, hovered: lit, font: '800 54px' });
     } else if (button.id === 'rotate') {
-      const label = `Swap roles: ${rotate ? 'on' : 'off'}`;
+      const label = `Swap roles: ${state.rotate ? 'on' : 'off'}`;
       paintButton(context, button, label, { hovered: lit, font: '700 42px' });
     } else paintButton(context, button, 'Play here', { hovered: lit, font: '700 38px' });
   }
@@ -133,13 +133,13 @@ export function createLobbySheet(quality: Quality) {
      * eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false.
      */
     show(match: DisplayedMatch, eyeHeight: number, time: number, inRoom: boolean): void {
-      const { state, players, me, rotate, acting } = match;
+      const { state, players, me, acting } = match;
       object.position.y = Math.max(0.75, eyeHeight - 0.16);
       if (state.phase === 'running' || !inRoom) {
         sheet.show(null, time);
         return;
       }
-      const { phase, end, score, options } = state;
+      const { phase, end, score, rotate, options } = state;
       sheet.show(
         {
           key: JSON.stringify([

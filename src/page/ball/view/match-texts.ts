@@ -40,12 +40,12 @@ const listed = (names: readonly string[]): string =>
 
 /** Describes what a match waits for; null: it is running. */
 export function waitingSentence(match: DisplayedMatch): string | null {
-  const { state, players, me, rotate, acting } = match;
+  const { state, players, me, acting } = match;
   if (state.phase === 'running') return null;
   const there = players.flatMap((person, player) => (person ? [player] : []));
   const taken = there.flatMap((player) => state.players[player]?.station ?? []);
   // Roles move on between two matches alone.
-  const canPlay = rotationForRound(taken, rotate && state.phase === 'over') !== null;
+  const canPlay = rotationForRound(taken, state.rotate && state.phase === 'over') !== null;
   if (!canPlay) return `${waitingLine({ ...match, state: { ...state, phase: 'ready' } })}.`;
   const idle = there.filter((player) => !state.players[player]?.ready);
   const names = idle.flatMap((player) => (player !== me && players[player] ? [markedName(players[player])] : []));

@@ -1,6 +1,6 @@
 import { smoothstep, transformPoint, vec3 } from 'threepoint/math';
 import type { BallRoomView } from 'threepoint-games/ball';
-import type { BodyFrame } from '../match/ball-frame';
+import type { RemotePerson } from 'threepoint-rooms';
 import type { BlockList } from './block-list';
 import type { VoiceCall } from './voice-call';
 import type { PersonVoice } from './voices-state';
@@ -54,7 +54,7 @@ export class SeatVoices {
   }
 
   /** Once per frame: reads levels, and places each voice at the head of its body. */
-  locate(bodies: readonly BodyFrame[]): void {
+  locate(bodies: readonly RemotePerson[]): void {
     this.#readLevels();
     if (!this.#call) return;
     for (let i = 0; i < bodies.length; i++) {
