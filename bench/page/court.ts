@@ -2,6 +2,7 @@ import {
   defaultAvatar,
   defaultCalibration,
   type Mutable,
+  type RemotePerson,
   type Skeleton,
   skeletonFromCalibration,
   unknownFingers,
@@ -23,7 +24,6 @@ import type { Studio } from '../../src/page/studio/studio';
 import { RemotePlayers } from '../../src/rooms/client/remote-players';
 import { packetMs } from '../../src/rooms/protocol/packet-time';
 import { decodePose } from '../../src/rooms/protocol/pose-codec';
-import type { SeenPerson } from '../../src/threepoint/avatar/remote-avatars';
 
 /** What arrived of one seat. */
 export interface ArrivedBytes {
@@ -49,8 +49,8 @@ export class Court {
   readonly #view: BallView;
   readonly #others: RemoteAvatars;
   readonly #skeleton: Skeleton = skeletonFromCalibration(defaultCalibration);
-  readonly #seen: readonly Mutable<SeenPerson>[];
-  readonly #people: SeenPerson[] = [];
+  readonly #seen: readonly Mutable<RemotePerson>[];
+  readonly #people: RemotePerson[] = [];
   readonly #shown: Mutable<Parameters<BallView['show']>[0]>;
   #players = new RemotePlayers();
 

@@ -3,7 +3,6 @@
 export type { AvatarExchange } from './client/avatar-exchange';
 export { bannerText, connectionText } from './client/connection-text';
 export type { PlaybackReport } from './client/playback';
-export type { RemotePerson } from './client/remote-players';
 export { RoomClient } from './client/room-client';
 export type { OwnAvatar } from './client/shared-avatar';
 export { maxAvatarReferenceLength, maxPeerPacketBytes, peerPacketVersion } from './peers/peer-packet';

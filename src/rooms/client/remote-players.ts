@@ -1,32 +1,7 @@
-import {
-  type AvatarPose,
-  type AvatarRef,
-  type Calibration,
-  defaultAvatar,
-  defaultCalibration,
-  type Fingers,
-  type Mutable,
-} from 'threepoint/core';
-import { type MutableTransform, makeTransform, type Transform } from 'threepoint/math';
+import { defaultAvatar, defaultCalibration, type Mutable, type RemotePerson } from 'threepoint/core';
+import { type MutableTransform, makeTransform } from 'threepoint/math';
 import type { ReceivedPose } from './connection';
 import { Playback, type PlaybackReport } from './playback';
-
-/** Another person of the room as drawn in this frame. The same object in every frame: copy what you keep. */
-export interface RemotePerson {
-  /** The number of the person's seat. */
-  readonly id: number;
-  readonly calibration: Calibration;
-  readonly avatar: AvatarRef;
-  /** The palette of a built-in body; null: its own colours. */
-  readonly palette: string | null;
-  /** The pose in the frame of the person's own floor. */
-  readonly pose: AvatarPose;
-  readonly fingers: Fingers;
-  /** The person's floor in the floor frame of this page. */
-  readonly placement: Transform<'floor', 'floor'>;
-  /** 1: live. Less: a ghost, because no packet has arrived for a while. */
-  readonly opacity: number;
-}
 
 type PersonBuffer = Mutable<RemotePerson> & { readonly placement: MutableTransform<'floor', 'floor'> };
 

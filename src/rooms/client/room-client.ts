@@ -1,9 +1,9 @@
-import type { AvatarPose, Fingers } from 'threepoint/core';
+import type { AvatarPose, Fingers, RemotePerson } from 'threepoint/core';
 import { composeTransforms, identity, invertTransform, type Transform, zero } from 'threepoint/math';
 import type { SeatInfo } from '../protocol/messages';
 import type { HostedGame } from '../room/match-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from './connection';
-import { type RemotePerson, RemotePlayers } from './remote-players';
+import { RemotePlayers } from './remote-players';
 
 const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
 const noSeats: readonly never[] = [];

@@ -1,7 +1,7 @@
 // "threepoint-rooms/three": the bodies of other people in a three.js scene.
+export type { RemotePerson } from 'threepoint/core';
 export type { ClientPolicy } from '../client/client-policy';
 export type { Connection, ConnectionStatus, ConnectionUpdate, RoomView } from '../client/connection';
-export type { RemotePerson } from '../client/remote-players';
 export { RoomAddress, type RoomAddressOptions } from '../client/room-address';
 export { RoomClient } from '../client/room-client';
 export type { PassStorage } from '../client/room-pass';

@@ -1,9 +1,8 @@
 import type { Object3D } from 'three';
-import { type AvatarRef, firstLine, reasonOf } from 'threepoint/core';
+import { type AvatarRef, firstLine, type RemotePerson, reasonOf } from 'threepoint/core';
 import type { Vec3 } from 'threepoint/math';
 import { type Avatar, RemoteAvatars } from 'threepoint/three';
 import type { RoomView } from '../client/connection';
-import type { RemotePerson } from '../client/remote-players';
 import { type OwnAvatar, SharedAvatar } from '../client/shared-avatar';
 import type { HostedGame } from '../room/match-policy';
 import { RoomAvatarLoader, type RoomAvatarLoaderOptions } from './room-avatar-loader';

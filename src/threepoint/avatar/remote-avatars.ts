@@ -1,33 +1,15 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
-import type { AvatarPose } from '../core/body/avatar-pose';
 import { type AvatarRef, isAvatarHash } from '../core/body/avatar-ref';
 import { bodyOf, defaultAvatar, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
-import type { Fingers } from '../core/body/hand-shape';
+import type { RemotePerson } from '../core/body/remote-person';
 import { TransientError } from '../core/errors/transient-error';
-import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
+import { type MutableTransform, makeTransform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
 import { meshesOf } from './scene-meshes';
-
-/** Another person to draw in this frame. */
-export interface SeenPerson {
-  /** The number of the person; the same number is the same body. */
-  readonly id: number;
-  readonly calibration: Calibration;
-  readonly avatar: AvatarRef;
-  /** The palette of a built-in body; null: its own colours. */
-  readonly palette: string | null;
-  /** The pose in the frame of the person's own floor. */
-  readonly pose: AvatarPose;
-  /** The person's floor in this room. */
-  readonly placement: Transform<'floor', 'floor'>;
-  readonly fingers: Fingers;
-  /** The opacity. 1: live. Less: a ghost. */
-  readonly opacity: number;
-}
 
 export interface RemoteAvatarsOptions {
   /**
@@ -90,7 +72,7 @@ function shareGeometry(from: Object3D, to: Object3D): void {
   }
 }
 
-function isAmong(people: readonly SeenPerson[], id: number): boolean {
+function isAmong(people: readonly RemotePerson[], id: number): boolean {
   for (const person of people) if (person.id === id) return true;
   return false;
 }
@@ -120,7 +102,7 @@ export class RemoteAvatars {
   }
 
   /** Draws these people and no others, at a time [s] on the clock of the frames. */
-  show(people: readonly SeenPerson[], time: number): void {
+  show(people: readonly RemotePerson[], time: number): void {
     this.#now = time;
     const plain = this.#options.plain();
     for (const person of people) {
@@ -165,7 +147,7 @@ export class RemoteAvatars {
   }
 
   /** Returns the body of a person with this avatar, or the plain one; null while that is being made. */
-  #bodyFor({ id }: SeenPerson, avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
+  #bodyFor({ id }: RemotePerson, avatar: AvatarRef, people: readonly RemotePerson[]): Body | null {
     const own = this.#bodyOf(id);
     const wanted = own?.of === avatar ? own : this.#freeBody(avatar, people);
     if (!wanted && avatar !== defaultAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
@@ -183,7 +165,7 @@ export class RemoteAvatars {
     return body;
   }
 
-  #freeBody(avatar: AvatarRef, people: readonly SeenPerson[]): Body | null {
+  #freeBody(avatar: AvatarRef, people: readonly RemotePerson[]): Body | null {
     for (const body of this.#bodies) {
       if (body.of === avatar && (body.id === null || !isAmong(people, body.id))) return body;
     }
@@ -253,7 +235,7 @@ export class RemoteAvatars {
   }
 }
 
-function draw(body: Body, person: SeenPerson, time: number): void {
+function draw(body: Body, person: RemotePerson, time: number): void {
   const { avatar, place, shadow } = body;
   const { calibration, palette, pose, placement, fingers, opacity } = person;
   if (!body.fitted || !sameMeasures(body.fitted, calibration)) {

@@ -46,6 +46,7 @@ export { headJointOf } from './body/head-joint';
 export type { EstimatedJoint } from './body/joints';
 export { estimatedJoints, jointNames } from './body/joints';
 export { writeLocalRotations } from './body/local-rotations';
+export type { RemotePerson } from './body/remote-person';
 export type { Skeleton } from './body/skeleton';
 export {
   armBonesOf,

@@ -3,7 +3,7 @@ import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { createAvatarBetweenFrames } from '../../../src/threepoint/avatar/avatar';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
-import { RemoteAvatars, type SeenPerson } from '../../../src/threepoint/avatar/remote-avatars';
+import { RemoteAvatars } from '../../../src/threepoint/avatar/remote-avatars';
 import { FlatPartsMaterial } from '../../../src/threepoint/avatar/rig/flat-parts';
 import type { AvatarHash, AvatarRef } from '../../../src/threepoint/core/body/avatar-ref';
 import {
@@ -16,6 +16,7 @@ import {
 import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
 import { unknownFingers } from '../../../src/threepoint/core/body/hand-shape';
+import type { RemotePerson } from '../../../src/threepoint/core/body/remote-person';
 import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
 import { TransientError } from '../../../src/threepoint/core/errors/transient-error';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
@@ -32,7 +33,7 @@ function bytesOf(body: BuiltInBody): ArrayBuffer {
 const load = async (body: BuiltInBody) => createAvatarBetweenFrames(await parseAvatar(bytesOf(body), body));
 const estimator = createIk(defaultCalibration);
 
-const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
+const person = (id: number, more: Partial<RemotePerson> = {}): RemotePerson => ({
   id,
   calibration: defaultCalibration,
   avatar: defaultAvatar,
@@ -45,7 +46,7 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
 });
 
 /** Draws these people until each of them has a body. */
-async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
+async function gathered(people: readonly RemotePerson[]): Promise<RemoteAvatars> {
   const others = new RemoteAvatars({
     load: (avatar) => (isBuiltInAvatar(avatar) ? load(bodyOf(avatar)) : Promise.reject(avatar)),
     plain: () => false,
@@ -75,7 +76,7 @@ describe('bodies of others', () => {
     others.dispose();
   });
 
-  const unlike: Record<string, readonly [Partial<SeenPerson>, Partial<SeenPerson>]> = {
+  const unlike: Record<string, readonly [Partial<RemotePerson>, Partial<RemotePerson>]> = {
     palettes: [{ palette: 'ember' }, { palette: 'moss' }],
     'tones of skin': [{ avatar: builtInAvatarOf('woman', 'fair') }, { avatar: builtInAvatarOf('woman', 'dark') }],
   };

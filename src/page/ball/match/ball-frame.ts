@@ -1,8 +1,7 @@
-import type { HapticPulse } from 'threepoint/core';
+import type { HapticPulse, RemotePerson } from 'threepoint/core';
 import type { Side, Vec3 } from 'threepoint/math';
 import type { Launch } from 'threepoint-games';
 import type { BallCue, BallEvent, BallRole, BallState, Opening } from 'threepoint-games/ball';
-import type { RemotePerson } from 'threepoint-rooms';
 import type { ConnectionStatus } from 'threepoint-rooms/room';
 
 /**

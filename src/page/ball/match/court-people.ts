@@ -1,4 +1,4 @@
-import type { Mutable, TrackingFrame } from 'threepoint/core';
+import type { Mutable, RemotePerson, TrackingFrame } from 'threepoint/core';
 import {
   type MutableVec3,
   makePose,
@@ -20,7 +20,6 @@ import {
   isInZone,
   type Opening,
 } from 'threepoint-games/ball';
-import type { RemotePerson } from 'threepoint-rooms';
 import { seatLooks } from '../seat-looks';
 import type { PlayerFrame } from './ball-frame';
 import { proximityFade } from './proximity-fade';

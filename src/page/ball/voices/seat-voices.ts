@@ -1,6 +1,6 @@
+import type { RemotePerson } from 'threepoint/core';
 import { smoothstep, transformPoint, vec3 } from 'threepoint/math';
 import type { BallRoomView } from 'threepoint-games/ball';
-import type { RemotePerson } from 'threepoint-rooms';
 import type { BlockList } from './block-list';
 import type { VoiceCall } from './voice-call';
 import type { PersonVoice } from './voices-state';
