@@ -170,7 +170,7 @@ export default {
       severity: 'error',
       from: {
         path: '^src/threepoint/api/',
-        pathNot: '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill|webxr)\\.ts$',
+        pathNot: '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill|webxr|files)\\.ts$',
       },
       to: {
         path: '^src/threepoint/(xr|avatar|onnx|api/(three|body-tracker|avatar-source|react|onnx|onnx-worker))',

@@ -1,7 +1,7 @@
 // Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the
 // models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of
 // each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
-import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, posix, relative } from 'node:path';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
@@ -182,10 +182,12 @@ export async function writeDeclarations(config, types) {
   for (const file of readdirSync(types, { recursive: true })) {
     const path = join(types, file);
     if (!file.endsWith('.d.ts')) continue;
-    writeFileSync(
-      path,
-      readFileSync(path, 'utf8').replace(/(\b(?:from|import)\s*\(?\s*['"])(\.{1,2}\/[^'"]+?)(?=['"])/g, '$1$2.js'),
+    const fullName = (module) => (existsSync(join(dirname(path), module)) ? `${module}/index.js` : `${module}.js`);
+    const declarations = readFileSync(path, 'utf8').replace(
+      /(\b(?:from|import)\s*\(?\s*['"])(\.{1,2}\/[^'"]+?)(?=['"])/g,
+      (_, before, module) => before + fullName(module),
     );
+    writeFileSync(path, declarations);
   }
 }
 

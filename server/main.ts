@@ -1,7 +1,7 @@
 import { resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { ConfigurationError } from 'threepoint-http';
-import { loadOrCreateSecret, relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/server';
+import { loadOrCreateSecret, relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/settings';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';

@@ -1,6 +1,6 @@
 import { ballKind, ballRoomKind } from 'threepoint-games/ball';
 import type { RoomKinds } from 'threepoint-rooms/room';
-import { type Environment, numberFrom } from 'threepoint-rooms/server';
+import { type Environment, numberFrom } from 'threepoint-rooms/settings';
 
 /** Returns the games of this project. Throws a ConfigurationError. */
 export const shippedRoomKinds = (environment: Environment): RoomKinds =>

@@ -7,7 +7,8 @@ import {
   readSoftwareVersion,
 } from 'threepoint-http';
 import type { RoomKinds } from 'threepoint-rooms/room';
-import { attachRooms, type RelayConfiguration } from 'threepoint-rooms/server';
+import { attachRooms } from 'threepoint-rooms/server';
+import type { RelayConfiguration } from 'threepoint-rooms/settings';
 import { openStudyService } from 'threepoint-study/server';
 import { createPageHandler } from './page-handler';
 

@@ -7,6 +7,7 @@ import {
   skeletonFromCalibration,
   unknownFingers,
 } from 'threepoint/core';
+import { parseAvatar } from 'threepoint/files';
 import {
   composeTransforms,
   fromAxisAngle,
@@ -16,7 +17,7 @@ import {
   up,
   vec3,
 } from 'threepoint/math';
-import { createAvatarBetweenFrames, parseAvatar, RemoteAvatars } from 'threepoint/three';
+import { createAvatarBetweenFrames, RemoteAvatars } from 'threepoint/three';
 import { ballRules } from 'threepoint-games/ball';
 import { BallView } from '../../src/page/ball/ball-view';
 import type { Quality } from '../../src/page/scene/renderer';

@@ -1,7 +1,8 @@
 import { PerspectiveCamera, type Scene } from 'three';
 import { createEstimator, defaultCalibration, type EstimatorName, estimatorNames, recordOf } from 'threepoint/core';
+import { parseAvatar } from 'threepoint/files';
 import { createInferenceWorker } from 'threepoint/onnx';
-import { Mirror, parseAvatar } from 'threepoint/three';
+import { Mirror } from 'threepoint/three';
 import { createRenderer } from '../../src/page/scene/renderer';
 import { createStudio } from '../../src/page/studio/studio';
 import { createAvatar } from '../../src/threepoint/avatar/avatar';

@@ -1,7 +1,7 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
 import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
 import type { RoomKind } from 'threepoint-rooms/room';
-import { relayConfigurationFrom } from 'threepoint-rooms/server';
+import { relayConfigurationFrom } from 'threepoint-rooms/settings';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { serve } from '../../src/http/web-server';
 import { maxSeats } from '../../src/rooms/protocol/messages';

@@ -1,8 +1,8 @@
 import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { type EstimatorName, estimatorNames, parseRecording, type Replayable, reasonOf } from 'threepoint/core';
+import { isGltfMotion } from 'threepoint/files';
 import { type MotionFormat, type MotionWriter, motionFormats, type WorkOptions } from 'threepoint/motion';
-import { isGltfMotion } from 'threepoint/three';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
 import { writeMotionFile } from '../../src/threepoint/api/write-motion-file';
 import { createAvatarMotionWriter } from '../../src/threepoint/avatar/avatar-motion-writer';

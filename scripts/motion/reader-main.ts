@@ -1,6 +1,6 @@
 import { reasonOf } from 'threepoint/core';
+import { isGltfMotion, readGltfMotion } from 'threepoint/files';
 import { type MocapSource, prepareMocap } from 'threepoint/motion';
-import { isGltfMotion, readGltfMotion } from 'threepoint/three';
 import { checkAvatar } from '../../src/threepoint/avatar/file/check-avatar';
 import { readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
 import { finishWork } from '../../src/threepoint/core/motion/work';

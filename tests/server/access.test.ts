@@ -4,7 +4,7 @@ import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
 import { type BallState, ballKind, ballRoomKind } from 'threepoint-games/ball';
-import { relayConfigurationFrom } from 'threepoint-rooms/server';
+import { relayConfigurationFrom } from 'threepoint-rooms/settings';
 import type * as v from 'valibot';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';

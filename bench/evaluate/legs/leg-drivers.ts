@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { type Calibration, forwardKinematics, jointNames, recordOf, skeletonFromCalibration } from 'threepoint/core';
+import { parseAvatar } from 'threepoint/files';
 import { identity, type Pose } from 'threepoint/math';
-import { parseAvatar } from 'threepoint/three';
 import type { LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
 import { legProportionsOf } from '../../../src/threepoint/avatar/legs/legs';
 import { Rig } from '../../../src/threepoint/avatar/rig/rig';

@@ -1,11 +1,6 @@
 import { type BuiltInBody, defaultAvatar } from 'threepoint/core';
-import {
-  type Avatar,
-  checkInWorker,
-  createAvatarBetweenFrames,
-  loadUntrustedAvatar,
-  parseAvatar,
-} from 'threepoint/three';
+import { checkInWorker, loadUntrustedAvatar, parseAvatar } from 'threepoint/files';
+import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
 import type { AvatarExchange } from 'threepoint-rooms';
 import { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityContext } from '../activity/activity-context';

@@ -7,8 +7,9 @@ import {
   type PoseEstimator,
   type TrackingFrame,
 } from 'threepoint/core';
+import { parseAvatar } from 'threepoint/files';
 import { composeTransforms, invertTransform } from 'threepoint/math';
-import { type Avatar, createAvatarBetweenFrames, Mirror, parseAvatar } from 'threepoint/three';
+import { type Avatar, createAvatarBetweenFrames, Mirror } from 'threepoint/three';
 import { ballRules, defaultBallOptions, stations } from 'threepoint-games/ball';
 import { ArcheryPlay } from '../archery/archery-play';
 import { type ArcheryView, createArcheryView } from '../archery/archery-view';

@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { avatarLimits } from 'threepoint';
-import type { Decoders } from 'threepoint/three';
+import type { Decoders } from 'threepoint/files';
 import type { DracoRequest, DracoResponse } from './draco-worker';
 
 const maxNumbers = avatarLimits.triangles * 3;

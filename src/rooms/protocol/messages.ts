@@ -46,11 +46,11 @@ const join = v.strictObject({
   name,
   calibration,
   spectate: v.boolean(),
-  /** Whether it is a bot, which yields its seat to a person who finds no other. */
+  // Whether it is a bot, which yields its seat to a person who finds no other.
   bot: v.boolean(),
   seat: v.nullable(seat),
   avatar,
-  /** The voice session; null: takes no part in the voices. */
+  // The voice session; null: takes no part in the voices.
   voice: v.nullable(voice),
 });
 

@@ -1,5 +1,5 @@
 import { MeshoptEncoder } from 'meshoptimizer';
-import { parseAvatar } from 'threepoint/three';
+import { parseAvatar } from 'threepoint/files';
 import { describe, expect, test } from 'vitest';
 import { decoders } from '../../../src/page/scene/decoders';
 import { builtRig } from '../../threepoint/avatar/built-rig';

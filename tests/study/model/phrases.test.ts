@@ -43,7 +43,7 @@ describe('a sentence with a name that is filled in', () => {
     const known = [
       'threepoint/core/body/calibration.ts',
       'study/model/questionnaires/kinds/number.ts',
-      'study/pages/results/charts.ts',
+      'study/pages/results/charts.tsx',
     ];
     const sources = new URL('../../../src/', import.meta.url);
     const files = readdirSync(sources, { recursive: true, encoding: 'utf8' }).filter((file) => /\.tsx?$/.test(file));

@@ -1,5 +1,5 @@
 import { io } from 'socket.io-client';
-import { RoomTokens } from 'threepoint-rooms/server';
+import { RoomTokens } from 'threepoint-rooms/settings';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { createRoomPass } from '../../../src/rooms/client/room-pass';
 import { pageParser } from '../../../src/rooms/protocol/socket-parsers';

@@ -1,17 +1,15 @@
 import { avatarLimits, sha256Base64Url } from 'threepoint';
 import { type BoneMap, type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core';
 import {
-  type Avatar,
-  bodyLabelOf,
   type CheckedAvatar,
   checkInWorker,
-  createAvatarBetweenFrames,
   parseAvatar,
   parseChecked,
   type ReadBones,
   readFileBones,
   withNamedBones,
-} from 'threepoint/three';
+} from 'threepoint/files';
+import { type Avatar, bodyLabelOf, createAvatarBetweenFrames } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
 import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
 import { decoders } from '../../scene/decoders';

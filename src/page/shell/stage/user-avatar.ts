@@ -8,7 +8,8 @@ import {
   skinToneOf,
   UnknownBonesError,
 } from 'threepoint/core';
-import { type Avatar, bodyLabelOf, type CheckedAvatar, MotionOnlyError } from 'threepoint/three';
+import { type CheckedAvatar, MotionOnlyError } from 'threepoint/files';
+import { type Avatar, bodyLabelOf } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
 import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
