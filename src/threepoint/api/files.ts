@@ -1,5 +1,5 @@
-// "threepoint/files": reads files of avatars and motions step by step, for pages that check them, correct their bones or
-// decode compressed ones.
+// "threepoint/files": reads files of avatars and motions step by step, for pages that check them, correct their bones
+// or decode compressed ones.
 export type { CheckedAvatar } from '../avatar/file/check-avatar';
 export { checkInWorker } from '../avatar/file/check-in-worker';
 export { MotionOnlyError } from '../avatar/file/motion-only-error';
