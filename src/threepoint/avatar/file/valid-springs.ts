@@ -3,7 +3,8 @@ import * as v from 'valibot';
 
 const number = v.nullish(v.pipe(v.number(), v.finite()));
 const vector = v.nullish(v.pipe(v.array(v.pipe(v.number(), v.finite())), v.minLength(3)));
-const point = v.nullish(v.object({ x: number, y: number, z: number }));
+// Not in the order of a vector's fields: see `Vec3`.
+const point = v.nullish(v.object({ z: number, y: number, x: number }));
 const indices = v.nullish(v.array(v.number()));
 const listOf = (entries: v.ObjectEntries) => v.nullish(v.array(v.object(entries)));
 

@@ -29,7 +29,8 @@ export interface AsfSkeleton {
 
 /** The largest number of bones of a human skeleton. */
 const maxBones = 2000;
-const axes = { x: right, y: up, z: backward };
+// Not in the order of a vector's fields: see `Vec3`.
+const axes = { z: backward, y: up, x: right };
 const turn = quat(0, 0, 0, 1);
 
 /** Writes the rotation by angles [rad] about x, y and z, applied in this order (“xyz”: R = Rz·Ry·Rx). */

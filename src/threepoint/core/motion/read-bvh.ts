@@ -233,7 +233,8 @@ function withoutRepeatedPositions(motion: BvhMotion): BvhMotion {
   return { ...motion, joints, notes };
 }
 
-const axes: Readonly<Record<Axis, Vec3>> = { x: right, y: up, z: backward };
+// Not in the order of a vector's fields: see `Vec3`.
+const axes: Readonly<Record<Axis, Vec3>> = { z: backward, y: up, x: right };
 const turn = quat(0, 0, 0, 1);
 const local = vec3(0, 0, 0);
 
