@@ -116,6 +116,6 @@ test('a participant gets from consent to the second block despite a reload witho
   const zip = test.info().outputPath('short.zip');
   const exported = await experimenter(origin).ask('/short/export');
   await writeFile(zip, Buffer.from(await exported.arrayBuffer()));
-  const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'study:verify', '--', zip]);
+  const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'tool', '--', 'study:verify', zip]);
   expect(stdout).toMatch(/: sound: \d+ files, recomputed from \d+ records\./);
 });
