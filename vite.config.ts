@@ -74,7 +74,7 @@ export default defineConfig({
   server: {
     host: '127.0.0.1',
     port: 5173,
-    // As objects: for a string Vite replaces Host, and the server refuses an Origin of another host.
+    // Vite replaces Host for a proxy given as a string, and the server refuses an Origin of another host.
     proxy: { '/api': { target: server }, '/relay': { target: server, ws: true } },
   },
   preview: { host: '127.0.0.1', port: 4173 },

@@ -41,8 +41,8 @@ interface Description {
 }
 
 /**
- * Removes the springs of a VRM 0.x or 1.0 whose numbers are none: three-vrm computes with whatever stands there, also
- * in later frames.
+ * Removes the springs of a VRM 0.x or 1.0 that have a value which is no finite number. three-vrm would compute with it
+ * in every later frame.
  */
 export const removeInvalidSprings = (parser: GLTFParser): GLTFLoaderPlugin => ({
   name: 'threepoint_springs',

@@ -58,7 +58,7 @@ describe('the memory of the page', () => {
     expect(store.preferences).toEqual({ mirror: false, sound: false, overlay: true });
   });
 
-  test('a damaged entry is written anew from what this visit knows', () => {
+  test('a damaged entry is replaced by what this visit knows', () => {
     const storage = memory();
     const store = createPreferenceStore(storage);
     store.remember({ mirror: false });

@@ -149,7 +149,7 @@ describe('going to a game', () => {
 describe('a round', () => {
   const opened = range();
 
-  test('starts anew with a rule that counts differently, and goes on with another hand', async () => {
+  test('restarts with a rule that counts differently, and continues with another hand', async () => {
     const { archery, layout } = await opened;
     const begun = layout();
     archery().setRules({ bowSide: 'right' });
