@@ -15,11 +15,9 @@ export { parseRequestTarget } from './request-target';
 export { shortageOf } from './resource-shortage';
 export type { HttpResponse } from './response';
 export {
-  errorResponse,
   jsonResponse,
   noContent,
   sendError,
-  sendRawResponse,
   sendResponse,
   textResponse,
 } from './response';

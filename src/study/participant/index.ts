@@ -1,3 +1,3 @@
 // The participant's part of a study on a page, and what a page's tasks implement.
-export { createStudyRun, type StudyProbe, type StudyRun } from './study-run';
+export { createStudyRun, type StudyRun } from './study-run';
 export type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from './trial/task-runner';
