@@ -192,13 +192,13 @@ export async function openWithHeadset(page: Page, query = ''): Promise<EmulatedH
 }
 
 /**
- * Presses the page's button and waits for the session. The page's time is then driven, by default in steps of 25 ms.
+ * Presses the page's button and waits until the page shows the session. The page's time is then driven, by default in steps of 25 ms.
  * `stepMs: null` keeps real time, for tests about time itself or about drawing.
  */
 export async function enterVr(page: Page, { stepMs }: { readonly stepMs?: number | null } = {}): Promise<void> {
   // In a study the button is in the participant's language.
   await page.getByRole('button', { name: /Enter VR|VR starten/ }).click();
-  await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
+  await page.waitForFunction(() => window.threepoint?.probe().activity === 'vr');
   if (stepMs !== null) await driveTime(page, stepMs);
   await frames(page, 5);
 }

@@ -13,7 +13,6 @@ async function enterRoom(page: Page, room: EmulatedRoom, query = '') {
   await headset.place({ head: { position: [0, 1.6, 0] } });
   await installRoom(page, room);
   await page.getByRole('button', { name: 'Enter AR' }).click();
-  await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
   await expect.poll(async () => (await probe(page)).passthrough, { timeout: 90_000 }).not.toBeNull();
   return headset;
 }
