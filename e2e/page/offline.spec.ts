@@ -59,6 +59,16 @@ async function isKept(page: Page): Promise<void> {
   await expect.poll(async () => (await probe(page)).kept, { timeout: 60_000 }).toBe('whole');
 }
 
+/** Waits until the browser has a newer copy beside the one in use. */
+async function newerCopyWaits(page: Page): Promise<void> {
+  const workers = () =>
+    page.evaluate(async () => {
+      const registration = await navigator.serviceWorker.getRegistration();
+      return [registration?.waiting?.state, registration?.active?.state];
+    });
+  await expect.poll(workers, { timeout: 60_000 }).toEqual(['installed', 'activated']);
+}
+
 const storedPaths = (page: Page): Promise<string[]> =>
   page.evaluate(async () => {
     const paths: string[] = [];
@@ -192,12 +202,7 @@ test('a page in use keeps its files; the next visit has the newer version and co
   expect(again.asked).toEqual(expect.arrayContaining(['/avatars/mannequin.vrm', '/models/learned.onnx']));
 
   // It is kept beside the older one, and takes its place when no window has that any more.
-  const workers = () =>
-    page.evaluate(async () => {
-      const registration = await navigator.serviceWorker.getRegistration();
-      return [registration?.waiting?.state, registration?.active?.state];
-    });
-  await expect.poll(workers, { timeout: 60_000 }).toEqual(['installed', 'activated']);
+  await newerCopyWaits(page);
   await page.goto('about:blank');
   const later = await page.context().newPage();
   await page.close();
@@ -208,6 +213,55 @@ test('a page in use keeps its files; the next visit has the newer version and co
   await visit(later);
   await expect(later).toHaveTitle('newer');
   await later.context().close();
+});
+
+test('four open pages outlive an update and the host; later visits have the newer version @full', async ({
+  browser,
+  folder,
+}) => {
+  const served = await serveOurs(folder);
+  const page = await newPage(browser, served.address, true);
+  await page.setViewportSize({ width: 320, height: 200 });
+  const context = page.context();
+  await visit(page);
+  await isKept(page);
+  const pages = [page];
+  for (let more = 0; more < 3; more++) pages.push(await context.newPage());
+  for (const each of pages) await visit(each);
+  await served.close();
+  publishNewer(folder);
+  const again = await serveOurs(folder, served.port);
+  const [reloaded, playing, ...idle] = pages as [Page, Page, Page, Page];
+  await visit(reloaded);
+  await expect(reloaded).toHaveTitle('newer');
+  await newerCopyWaits(reloaded);
+
+  await again.close();
+  await context.setOffline(true);
+  // A page in use loads what it has not yet loaded: the older archery.
+  await playing.getByRole('button', { name: 'Archery' }).click();
+  await playing.waitForFunction(() => window.threepoint?.probe().game, undefined, { timeout: 60_000 });
+  for (const each of [reloaded, ...idle]) {
+    await visit(each);
+    await expect(each).toHaveTitle('threepoint');
+    expect((await probe(each)).estimator).toBe('learned');
+  }
+  // The newer copy takes the place of the older one when no window shows the page.
+  for (const each of pages) await each.goto('about:blank');
+  await expect
+    .poll(
+      async () => {
+        await visit(page);
+        const title = await page.title();
+        await page.goto('about:blank');
+        return title;
+      },
+      { timeout: 60_000 },
+    )
+    .toBe('newer');
+  await visit(page);
+  expect((await probe(page)).estimator).toBe('learned');
+  await context.close();
 });
 
 test('a browser that can store too little shows the page as ever and keeps no half @full', async ({
