@@ -11,7 +11,7 @@ import { experimenterToken } from './started-server';
 
 const atOnce = 60;
 const answersWanted = isNightly ? 1_000_000 : 4000;
-const patienceMs = 20_000;
+const patienceMs = 120_000;
 let connections = 0;
 
 /** Reads one answer from the start of the text: its status, its text and the rest; null: it is not complete. */
