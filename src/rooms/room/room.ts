@@ -55,12 +55,12 @@ export class Room<Game extends HostedGame> {
     this.options = options;
     this.#policy = policy;
     this.#host = host;
-    this.#seats = new Seats(policy.seats, {
+    const { assigned = false, voices = false } = options;
+    this.#seats = new Seats(policy.seats, assigned, {
       changed: (seat) => this.#seatUpdates.changed(seat, this.#time),
       act: (action) => this.#match.add(action),
     });
     this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
-    const { assigned = false, voices = false } = options;
     this.#profiles = new MemberProfiles(this.#seats, host, { assigned, voices });
     this.#members = new RoomMembers(this.#seats, host, assigned);
     this.#match = new RoomMatch(policy, this.#seats, host);
@@ -168,7 +168,7 @@ export class Room<Game extends HostedGame> {
   tick(time: number): void {
     this.#match.begin(time);
     this.#time = time;
-    this.#seats.watch(time);
+    this.#seats.watch(time, this.match.phase === 'running');
     this.#seatUpdates.tick(time);
     this.#match.step(time);
   }
@@ -219,6 +219,7 @@ export class Room<Game extends HostedGame> {
     }
     switch (message.type) {
       case 'ready':
+        this.#seats.markSeen(index, this.#time);
         this.#match.setReady(index, message.ready);
         return;
       case 'pause':
@@ -231,8 +232,8 @@ export class Room<Game extends HostedGame> {
     const seat = this.#seats.at(index);
     if (!seat) return;
     seat.declaredAway = away;
-    if (!away) seat.poses.markSeen(this.#time);
-    this.#seats.setPresence(index, this.#time);
+    if (away) this.#seats.setPresence(index, this.#time);
+    else this.#seats.markSeen(index, this.#time);
   }
 
   #changeSeat(client: ClientId, member: Member, from: number | null, to: number | null): void {

@@ -5,7 +5,7 @@ import { PoseValidator } from './pose-validator';
 import type { ClientId, FreshPose } from './room-host';
 import { TokenBucket } from './token-bucket';
 
-/** A seat is held this long after its connection is lost [s]. */
+/** A seat is held this long after its connection is lost [s]; no match waits longer for a player who is away. */
 export const seatHoldSeconds = 30;
 /** A player who is silent or disconnected for this long [s] is away; a disconnected one also leaves the match. */
 export const awayAfterSeconds = 2.5;
@@ -71,9 +71,12 @@ export interface SeatCensus {
 export class Seats {
   readonly #seats: (Seat | null)[];
   readonly #listener: SeatListener;
+  readonly #assigned: boolean;
 
-  constructor(count: number, listener: SeatListener) {
+  /** `assigned`: every seat belongs to one person, for whom the match waits. */
+  constructor(count: number, assigned: boolean, listener: SeatListener) {
     this.#seats = Array.from({ length: count }, () => null);
+    this.#assigned = assigned;
     this.#listener = listener;
   }
 
@@ -96,11 +99,15 @@ export class Seats {
     return this.#seats.some((seat) => seat?.requestsPause);
   }
 
-  /** Whether time alone changes nothing: no seat is held, no player can fall silent, and no pose is stored. */
+  /**
+   * Whether time alone changes nothing: no seat is held, no player can fall silent or leave the match, and no pose is
+   * stored.
+   */
   get areIdle(): boolean {
     return this.#seats.every((seat) => {
       if (!seat) return true;
-      return seat.disconnectedAt === null && seat.presence !== 'here' && !seat.poses.hasPose;
+      const isGone = seat.presence !== 'here' && (this.#assigned || !seat.playing);
+      return seat.disconnectedAt === null && isGone && !seat.poses.hasPose;
     });
   }
 
@@ -218,7 +225,16 @@ export class Seats {
   }
 
   #leaveMatch(index: number): void {
-    if (this.at(index)?.playing) this.#listener.act({ type: 'leave', player: index });
+    const seat = this.at(index);
+    if (!seat?.playing) return;
+    seat.playing = false;
+    this.#listener.act({ type: 'leave', player: index });
+  }
+
+  /** Records a sign of life other than a pose at this time [s]. */
+  markSeen(index: number, time: number): void {
+    this.at(index)?.poses.markSeen(time);
+    this.setPresence(index, time);
   }
 
   /** Updates the presence of a player at this time [s], and reports a change. */
@@ -229,25 +245,33 @@ export class Seats {
     const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
     if (presence === seat.presence) return;
     seat.presence = presence;
+    if (presence === 'here' && !seat.playing) {
+      seat.playing = true;
+      this.#listener.act({ type: 'join', player: index });
+    }
     this.reportChange(index);
   }
 
-  /** Updates all seats at this time [s]: silent players, expired poses, and seats that are held no longer. */
-  watch(time: number): void {
+  /**
+   * Updates all seats at this time [s]: silent players, expired poses, and seats that are held no longer. `running`:
+   * whether a match runs, which keeps players who are away.
+   */
+  watch(time: number, running: boolean): void {
     for (let index = 0; index < this.#seats.length; index++) {
       const seat = this.#seats[index];
-      if (seat) this.#watchSeat(index, seat, time);
+      if (seat) this.#watchSeat(index, seat, time, running || this.#assigned);
     }
   }
 
-  #watchSeat(index: number, seat: Seat, time: number): void {
+  #watchSeat(index: number, seat: Seat, time: number, keepsAway: boolean): void {
     this.setPresence(index, time);
     if (seat.poses.forgetExpired(time)) this.#listener.act({ type: 'silent', player: index });
-    if (seat.disconnectedAt === null) return;
-    if (time - seat.disconnectedAt > awayAfterSeconds) {
-      this.#leaveMatch(index);
-      seat.playing = false;
+    if (seat.disconnectedAt === null) {
+      const isLongAway = seat.presence === 'away' && time - seat.poses.lastSeenAt > seatHoldSeconds;
+      if (isLongAway && !keepsAway) this.#leaveMatch(index);
+      return;
     }
+    if (time - seat.disconnectedAt > awayAfterSeconds) this.#leaveMatch(index);
     if (time - seat.disconnectedAt > seatHoldSeconds) this.vacate(index);
   }
 

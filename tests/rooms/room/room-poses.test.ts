@@ -43,11 +43,11 @@ describe('poses and stillness of a room', () => {
     expect(testRoom.room.isIdle).toBe(true);
     testRoom.join('ann');
     expect(testRoom.room.isIdle).toBe(false);
-    testRoom.pass(4);
+    testRoom.pass(31);
     expect(testRoom.room.isIdle).toBe(true);
     testRoom.pose('ann', 0, fists(releaseOf(0)));
     expect(testRoom.room.isIdle).toBe(false);
-    testRoom.pass(4);
+    testRoom.pass(31);
     expect(testRoom.room.isIdle).toBe(true);
     testRoom.room.disconnect('ann', testRoom.time);
     expect(testRoom.room.isIdle).toBe(false);

@@ -6,8 +6,8 @@ import { applyBallEvent } from '../../../src/games/ball/client-state';
 import { clientMessageFrom, protocolVersion, unpackSeatInfo } from '../../../src/rooms/protocol/messages';
 import { Room } from '../../../src/rooms/room/room';
 import { seatHoldSeconds } from '../../../src/rooms/room/seats';
-import { atRack, fists, opening, releaseOf, velocityTo } from '../client/people';
-import { createTestRoom, joinRequest } from './test-room';
+import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../client/people';
+import { createTestRoom, joinRequest, trio } from './test-room';
 
 const presence = (testRoom: ReturnType<typeof createTestRoom>, seat: number) => {
   const seen = testRoom.sent.findLast(({ message }) => message.type === 'seat' && message.seat === seat)?.message;
@@ -68,6 +68,46 @@ describe('seats', () => {
     testRoom.tick();
     testRoom.tick();
     expect(testRoom.room.match.phase).toBe('running');
+  });
+
+  test('a match starts without a player away for 30 s, who is in the next one after the return', () => {
+    const testRoom = createTestRoom();
+    testRoom.begin();
+    testRoom.say('ben', { type: 'away', away: true });
+    const seen = () => {
+      testRoom.pose('ann', 0, fists(releaseOf(0)));
+      testRoom.pose('cal', 2, holding(opening));
+    };
+    const play = (clients: readonly string[]) => {
+      testRoom.ready(clients);
+      testRoom.tick();
+      testRoom.tick();
+      return testRoom.room.match.phase;
+    };
+    testRoom.pass(seatHoldSeconds + 1, seen);
+    expect(testRoom.room.match.players.map(({ present }) => present)).toEqual([true, true, true]);
+    while (testRoom.room.match.phase === 'running') testRoom.pass(1, seen);
+    testRoom.pass(1, seen);
+    expect(play(['ann', 'cal'])).toBe('running');
+    expect(presence(testRoom, 1)).toBe('away');
+    testRoom.say('ben', { type: 'away', away: false });
+    testRoom.tick();
+    expect(testRoom.room.match.players[1]?.present).toBe(true);
+    while (testRoom.room.match.phase === 'running') testRoom.pass(1, testRoom.stand);
+    expect(play(['ann', 'cal'])).toBe('over');
+    expect(play(['ben'])).toBe('running');
+  });
+
+  test('a group of a study waits for each of its players, however long one is away', () => {
+    const testRoom = createTestRoom({ assigned: true });
+    for (const [seat, client] of trio.entries()) testRoom.join(client, { seat });
+    testRoom.say('ben', { type: 'away', away: true });
+    for (let second = 0; second < 600; second++) testRoom.tick(1);
+    testRoom.ready(['ann', 'cal']);
+    testRoom.tick();
+    testRoom.tick();
+    expect(testRoom.room.match.phase).toBe('ready');
+    expect(testRoom.room.match.players[1]?.present).toBe(true);
   });
 
   test('a tab disconnected for an hour finds a free seat, or watches where none is', () => {
