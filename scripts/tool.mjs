@@ -20,12 +20,6 @@ const planOf = ({ rest, plan }) => [...rest, ...(plan ? [plan] : [])];
  * check of them.
  */
 const programs = {
-  /** Measures what other people's bodies cost, by the format in which they are sent. */
-  'bench:bodies': {
-    program: 'bench/bodies/main.ts',
-    usage: 'npm run tool -- bench:bodies [--json FILE] [--seconds N]',
-    options: { texts: ['seconds'], paths: ['json'] },
-  },
   /** Measures how many clients a relay process carries, next to a plain socket.io relay. */
   'bench:relay': {
     program: 'bench/relay/main.ts',
