@@ -192,8 +192,8 @@ export async function openWithHeadset(page: Page, query = ''): Promise<EmulatedH
 }
 
 /**
- * Presses the page's button and waits until the page shows the session. The page's time is then driven, by default in steps of 25 ms.
- * `stepMs: null` keeps real time, for tests about time itself or about drawing.
+ * Presses the page's button and waits until the page shows the session. The page's time is then driven, by default in
+ * steps of 25 ms. `stepMs: null` keeps real time, for tests about time itself or about drawing.
  */
 export async function enterVr(page: Page, { stepMs }: { readonly stepMs?: number | null } = {}): Promise<void> {
   // In a study the button is in the participant's language.

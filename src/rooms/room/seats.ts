@@ -73,7 +73,7 @@ export class Seats {
   readonly #listener: SeatListener;
   readonly #assigned: boolean;
 
-  /** `assigned`: every seat belongs to one person, for whom the match waits. */
+  /** `assigned`: every seat belongs to one person, and the match waits for each of them. */
   constructor(count: number, assigned: boolean, listener: SeatListener) {
     this.#seats = Array.from({ length: count }, () => null);
     this.#assigned = assigned;

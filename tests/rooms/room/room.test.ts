@@ -70,7 +70,7 @@ describe('seats', () => {
     expect(testRoom.room.match.phase).toBe('running');
   });
 
-  test('a match starts without a player away for 30 s, who is in the next one after the return', () => {
+  test('a match starts without a player who is away for 30 s, until they return', () => {
     const testRoom = createTestRoom();
     testRoom.begin();
     testRoom.say('ben', { type: 'away', away: true });
