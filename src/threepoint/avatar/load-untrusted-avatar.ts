@@ -21,5 +21,5 @@ export async function loadUntrustedAvatar(
     supportedCompressions: Object.keys(decoders),
     limits: untrustedAvatarLimits,
   });
-  return createAvatarBetweenFrames(await parseChecked(checked, name, { bones, decoders }));
+  return createAvatarBetweenFrames(await parseChecked(checked, { bones, decoders }));
 }
