@@ -4,8 +4,17 @@ export type { ArcheryAction, ArcheryEvent, ArcheryState, Arrow, BowView, Landing
 export { arrowLength, braceHeight, maximumDraw } from './bow';
 export type { BowCue } from './gestures';
 export { ArcheryGestures } from './gestures';
-export { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft, walls, zone } from './rules';
-export { archeryRulesText } from './rules-text';
+export {
+  archeryRules,
+  archeryRulesText,
+  delayed,
+  fullScore,
+  isArmed,
+  matchTime,
+  secondsLeft,
+  walls,
+  zone,
+} from './rules';
 export type { SimulatedArcher } from './simulated-archer';
 export { createSimulatedArcher } from './simulated-archer';
 export type { SteeredArcher } from './steered-archer';

@@ -12,8 +12,8 @@ import type { CalibrationControl } from '../../../../src/page/shell/input/calibr
 import type { InputParts } from '../../../../src/page/shell/input/input-parts';
 import { TrackingSource } from '../../../../src/page/shell/input/tracking-source';
 import type { Controls } from '../../../../src/page/shell/panels/controls';
+import { menuStateOf } from '../../../../src/page/shell/panels/headset-controls';
 import { menuButtons, type VrMenuActions } from '../../../../src/page/shell/panels/vr-menu/menu-buttons';
-import { menuStateOf } from '../../../../src/page/shell/panels/vr-menu/menu-state';
 import { FrameTiming } from '../../../../src/page/shell/session/frame-timing';
 import { SessionChanges } from '../../../../src/page/shell/session-changes';
 import { Activities, type ActivitiesOptions } from '../../../../src/page/shell/stage/activities';

@@ -4,10 +4,10 @@ import { estimatedJoints, type JointName } from '../../../../src/threepoint/core
 import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
 import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { paperFeatures } from '../../../../src/threepoint/core/estimation/methods/paper';
 import { chestFeatureCount, chestFeatures } from '../../../../src/threepoint/core/estimation/networks/chest-features';
 import { FeatureWindow } from '../../../../src/threepoint/core/estimation/networks/feature-window';
 import { featureCount, frameFeatures } from '../../../../src/threepoint/core/estimation/networks/frame-features';
-import { paperFeatures } from '../../../../src/threepoint/core/estimation/networks/paper-features';
 import {
   estimateHandTilts,
   makeHandTiltsState,
