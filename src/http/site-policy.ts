@@ -3,7 +3,7 @@ import { isIP } from 'node:net';
 import { hostname } from 'node:os';
 
 /** The reason for refusing a request. */
-export interface SiteRefusal {
+interface SiteRefusal {
   readonly status: 400 | 403 | 421;
   readonly message: string;
 }

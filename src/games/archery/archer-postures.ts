@@ -56,7 +56,7 @@ const drawnTurn = 1.05;
 const elbowLift = 0.95;
 
 /** A bow and the hand on its string at one moment, relative to the eyes, arena axes. */
-export interface Hold {
+interface Hold {
   /** The arrow rest, at which the arrow passes the bow. */
   readonly arrowRest: Vec3;
   /** Direction of the arrow, unit. */

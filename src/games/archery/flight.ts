@@ -31,7 +31,7 @@ export interface Wall {
 }
 
 /** The end of a flight. */
-export interface Hit {
+interface Hit {
   /** Time after the release [s]. */
   readonly after: number;
   readonly on: 'target' | 'ground' | 'wall';

@@ -41,7 +41,7 @@ export const walls: readonly Wall[] = [
 ];
 
 /** Radius of every target [m]. */
-export const targetRadius = 0.45;
+const targetRadius = 0.45;
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
@@ -72,7 +72,7 @@ const farthestHead = 50;
 export const releaseInterval = 0.5;
 
 /** The paper's game: five arrows, 70 s, every target once. */
-export const defaultArcheryOptions: ArcheryOptions = {
+const defaultArcheryOptions: ArcheryOptions = {
   arrows: 5,
   seconds: 70,
   everyHitCounts: false,
@@ -81,7 +81,7 @@ export const defaultArcheryOptions: ArcheryOptions = {
 };
 
 /** Limits of the eye height by which targets are placed [m]; it is clamped to them. */
-export const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
+const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
 
 function placeTargets(eyeHeight: number, seed: number): Target[] {
   const chance = createRandom(seed);

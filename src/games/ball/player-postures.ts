@@ -39,7 +39,7 @@ export interface PlayerBody {
 }
 
 /** Position and directions of a fist, floor frame. */
-export interface Grasp {
+interface Grasp {
   readonly fist: Vec3;
   readonly knuckles: Vec3;
   readonly thumb: Vec3;

@@ -13,7 +13,7 @@ import { holderStation, isInZone, stations } from './stations';
 export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotation: 0, everySeat: false };
 
 /** The basket waits for the holder's next pose this long [s]; then it counts as unmoved. */
-export const basketPatience = 0.25;
+const basketPatience = 0.25;
 /** A basket faster than this [m/s] has jumped, and catches nothing on its way. */
 const fastestBasket = 12;
 

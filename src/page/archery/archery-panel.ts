@@ -14,7 +14,7 @@ export interface ArcheryRound extends ReturnType<typeof roundOf> {
 }
 
 /** What the panel shows and does. */
-export interface ArcheryControls {
+interface ArcheryControls {
   round(): ArcheryRound | null;
   setRules(rules: ArcheryRules): void;
   chooseShooter(shooter: 'mouse' | 'actor'): void;

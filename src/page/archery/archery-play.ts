@@ -30,10 +30,7 @@ import {
 import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */
-export type ArcherySettings = Pick<
-  ActivitySettings,
-  'bowSide' | 'oneHanded' | 'everyHitCounts' | 'startSignal' | 'seconds'
->;
+type ArcherySettings = Pick<ActivitySettings, 'bowSide' | 'oneHanded' | 'everyHitCounts' | 'startSignal' | 'seconds'>;
 
 /** The result of one frame of play, for view, sound and haptics. */
 export interface ArcheryFrame {

@@ -15,7 +15,7 @@ import { StepSequence } from './step-sequence';
 const emulatedRateHz = 60;
 const usualRateHz = 72;
 
-export interface HeadsetCheckOptions {
+interface HeadsetCheckOptions {
   readonly renderer: WebGLRenderer;
   readonly quality: Quality;
   readonly worlds: CheckWorlds;

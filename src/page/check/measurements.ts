@@ -10,7 +10,7 @@ import { TrackerNoise } from './tracker-noise';
 import { TrackingLosses } from './tracking-losses';
 
 /** The data of one frame of the session. */
-export interface CheckFrame {
+interface CheckFrame {
   readonly time: number;
   readonly tracked: TrackingFrame | null;
   readonly pose: AvatarPose | null;

@@ -29,7 +29,7 @@ export interface OpenRequest {
   readonly requestNumber?: number | undefined;
 }
 
-export interface MotionBonesOptions {
+interface MotionBonesOptions {
   readonly boneMaps: BoneMaps;
   /** Shows the form; null: hides it. */
   show(skeleton: SkeletonToMap | null): void;
@@ -38,7 +38,7 @@ export interface MotionBonesOptions {
 }
 
 /** Bones of a motion, and the files from which they were read. */
-export interface OfferedBones extends FileBones {
+interface OfferedBones extends FileBones {
   readonly name: string;
   readonly request: OpenRequest;
   /** The hash by which the map is stored; null: it is not stored. */

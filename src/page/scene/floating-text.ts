@@ -9,7 +9,7 @@ import type { Quality } from './renderer';
 const apparentSize = 0.055;
 
 /** How a word rises. */
-export interface FloatingTextOptions {
+interface FloatingTextOptions {
   readonly quality: Quality;
   /** How long it is seen [s]. */
   readonly seconds: number;

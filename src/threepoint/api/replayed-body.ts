@@ -21,7 +21,7 @@ const warmUpSeconds = 5;
 const maxWarmUpHz = 60;
 
 /** Yields the last frames of a recording up to the position `seconds` [s], which gets the time `time` [s]. */
-export function* warmUpFrames(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
+function* warmUpFrames(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
   const first = recording.frames.at(0)!.time;
   const rateHz = Math.min(recording.rateHz, maxWarmUpHz);
   for (let left = Math.floor(Math.min(warmUpSeconds, seconds) * rateHz); left >= 0; left--) {

@@ -17,7 +17,7 @@ import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
 
-export interface MirrorOptions {
+interface MirrorOptions {
   /** The distance ahead of the floor's origin, along −Z [m]. */
   readonly distance?: number;
   readonly width?: number;
@@ -272,7 +272,7 @@ export class FramePacer {
 const pixelShare = 0.4;
 
 /** The size of a texture [pixels]. */
-export interface TextureSize {
+interface TextureSize {
   readonly width: number;
   readonly height: number;
 }

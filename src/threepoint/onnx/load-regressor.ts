@@ -12,7 +12,7 @@ import {
 import { SessionRegressor } from './session-regressor';
 import { createWorkerSession } from './worker-session';
 
-export interface LoadOptions {
+interface LoadOptions {
   /** The backend; 'wasm' replaces 'webgpu' where that is unavailable. */
   readonly provider?: ExecutionProvider;
   /**

@@ -14,7 +14,7 @@ const shortestRetry = 60;
 const longestRetry = 960;
 
 /** The part of an XRSession that has rates; browsers without the choice lack all of it. */
-export interface RatedSession {
+interface RatedSession {
   readonly frameRate?: number | undefined;
   readonly supportedFrameRates?: ArrayLike<number> | null | undefined;
   readonly updateTargetFrameRate?: ((rate: number) => Promise<void>) | undefined;

@@ -9,7 +9,7 @@ const turnedBy = (5 * Math.PI) / 180;
 const keptSeconds = 0.5;
 
 /** One input source of a side in one frame. */
-export interface SourceReading {
+interface SourceReading {
   readonly source: XRInputSource;
   readonly pose: TrackedPose;
   /** A bare hand, as opposed to a controller. */

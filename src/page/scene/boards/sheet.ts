@@ -125,7 +125,7 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
 }
 
 /** The look of a button; `primary`: the main action of the sheet. */
-export interface ButtonLook {
+interface ButtonLook {
   readonly primary?: boolean;
   readonly hovered: boolean;
   /** Weight and size of its label. */

@@ -2,7 +2,7 @@ import { BoxGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, Plane
 import { woodColor } from '../outdoors/wood-color';
 import { merged, painted, paintedBox } from '../painted-geometry';
 
-export interface WoodenBoardShape {
+interface WoodenBoardShape {
   /** The width of the lettering [m]. */
   readonly width: number;
   readonly height: number;

@@ -16,7 +16,7 @@ import type { Lighting } from '../surroundings';
 import { hazeColor } from './sky';
 
 /** The daylight of one place; arena frame. */
-export interface Daylight {
+interface Daylight {
   readonly quality: Quality;
   readonly towardsSun: Vector3;
   readonly sunIntensity: number;

@@ -69,7 +69,7 @@ const exportChoices: readonly (readonly [ExportChoice, label: string, title: str
 ];
 
 /** How far a file is, in words. */
-export const exportText = ({ name, method, fraction, secondsLeft }: ExportState): string => {
+const exportText = ({ name, method, fraction, secondsLeft }: ExportState): string => {
   const left = secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`;
   return `${name} as drawn by ${method}: ${Math.floor(100 * fraction)}\u00a0%${left}`;
 };

@@ -30,7 +30,7 @@ const usualRateHz = 72;
 const snapAngle = Math.PI / 6;
 
 /** The kind of session that entering would start, and the reason if it is not a real headset; null: none. */
-export interface Readiness {
+interface Readiness {
   readonly real: boolean;
   readonly sentence: string | null;
   /** A session may show the room around the user. */

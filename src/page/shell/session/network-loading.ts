@@ -8,14 +8,12 @@ const contractAt = (name: string): string => `${pageFolder()}/models/${name}.jso
 /** The share of the download in the time that a network takes to load. */
 const downloadShare = 0.9;
 
-export interface NetworkLoadingOptions {
+/** Loads networks by name. The download of the runtime starts at once. */
+export function createNetworkLoader(options: {
   readonly provider: Switches['executionProvider'];
   readonly notices: Pick<Notices, 'show'>;
   readonly loading: Pick<PageLoading, 'report'>;
-}
-
-/** Loads networks by name. The download of the runtime starts at once. */
-export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverOptions['networks'] {
+}): BodySolverOptions['networks'] {
   const { provider, notices, loading } = options;
   const networksArrive = import('threepoint/onnx').then(({ createInferenceWorker, onnxNetworks }) =>
     onnxNetworks({

@@ -15,7 +15,7 @@ import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-u
 import { decoders } from '../../scene/decoders';
 import type { BoneMapStore } from './bone-map-store';
 
-export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
+const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 
 /** Downloads a built-in avatar. `onProgress` is called with the share [0, 1] that has arrived. */
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>

@@ -10,7 +10,7 @@ import type { SessionParts } from '../session/session-parts';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
 
-export interface LazyMocapOptions extends SessionParts {
+interface LazyMocapOptions extends SessionParts {
   readonly scene: Object3D;
   readonly recorder: Recorder;
   readonly boneMaps: BoneMapStore;

@@ -3,7 +3,7 @@ import { convertToGlb } from './convert-to-glb';
 import { readGlbChunks } from './glb-chunks';
 
 /** The parts of a glTF file with motion. */
-export interface GltfMotion {
+interface GltfMotion {
   readonly format: 'gltf';
   readonly description: unknown;
   readonly binary: Uint8Array;

@@ -9,7 +9,7 @@ import limits from './limb-limits.json' with { type: 'json' };
  * yaw to its left [rad], as the rotation vector (pitch, yaw, 0) that turns −Z to it. People hold controllers, and
  * devices draw hands, in different ways.
  */
-export interface HandTilt {
+interface HandTilt {
   readonly pitch: number;
   readonly yaw: number;
 }

@@ -57,7 +57,7 @@ const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
  * The time [s] in which confidence falls from 1 to 0 or rises again. It is shorter than the motion to rest, so that
  * later stages follow a guess slowly.
  */
-export const confidenceSeconds = 0.3;
+const confidenceSeconds = 0.3;
 /** The distance [m] from the guess at which a reacquired hand has confidence 0; less for smaller distances. */
 const doubtfulReturn = 0.1;
 
@@ -107,7 +107,7 @@ interface HandState {
 }
 
 /** The state of `completeHands` for one user, and the frame it returns. */
-export interface CompleteHandsState {
+interface CompleteHandsState {
   readonly bodyHeading: BodyHeading;
   /** Origin on the floor under the head joint, yaw of the body. */
   readonly floorFromBody: MutableTransform<'floor', 'body'>;

@@ -7,7 +7,7 @@ import smoothing from './smoothing.json' with { type: 'json' };
 
 const { catchUpSpeed, doubtfulSpeed } = smoothing;
 
-export interface LimitJointsState {
+interface LimitJointsState {
   /** False before the first frame, which passes unchanged. */
   known: boolean;
   /** The joints from the headset [m], floor axes. */

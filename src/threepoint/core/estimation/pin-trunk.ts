@@ -69,7 +69,7 @@ interface TrunkPin extends Pin {
   bow: number | null;
 }
 
-export interface PinTrunkState {
+interface PinTrunkState {
   /** False before the first frame. */
   known: boolean;
   readonly hips: TrunkPin;

@@ -68,7 +68,7 @@ function makeEstimatorState({ handTilts }: Calibration) {
   };
 }
 
-export type EstimatorState = ReturnType<typeof makeEstimatorState>;
+type EstimatorState = ReturnType<typeof makeEstimatorState>;
 
 /** The head before the first frame. */
 const noHead: TrackedPose = { ...makePose<'floor'>(), tracking: 'emulated' };

@@ -13,7 +13,7 @@ export interface Limb {
   readonly names: number;
 }
 
-export type LimbKind = 'arm' | 'leg';
+type LimbKind = 'arm' | 'leg';
 
 const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
   arm: ['upperArm', 'lowerArm', 'hand'],
@@ -43,7 +43,7 @@ function isInLine(tree: JointTree, chain: readonly number[], at: number): boolea
 }
 
 /** Returns the three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
-export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
+function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   const chainOfAll = tree.mainChain(first, longestChain);
   const inside = kind === 'arm' ? 'lowerArm' : 'lowerLeg';
   const fan = chainOfAll.findIndex((joint, i) => i >= 2 && tree.vote(joint, inside) < 0.5 && tree.fansOut(joint));

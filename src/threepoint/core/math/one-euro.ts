@@ -7,7 +7,7 @@ import { copyVec3, distance, lerp, type MutableVec3, vec3 } from './vec3';
  * The tuning of a low-pass whose cutoff rises with speed: steady at rest, without lag in motion (Casiez, Roussel and
  * Vogel, “1 € Filter”, CHI 2012).
  */
-export interface OneEuroTuning {
+interface OneEuroTuning {
   /** Cutoff at rest, and of the low-pass on the speed [Hz]. */
   readonly restCutoff: number;
   /** The increase of the cutoff with speed [Hz per m/s]. */

@@ -18,7 +18,7 @@ export const bodyJoints = [
   'rightHand',
 ] as const;
 /** The joints that a file may lack. */
-export const legJoints = [
+const legJoints = [
   'leftUpperLeg',
   'leftLowerLeg',
   'leftFoot',

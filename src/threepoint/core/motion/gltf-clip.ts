@@ -51,7 +51,7 @@ interface Track {
 }
 
 /** A node and its animation tracks. */
-export interface Node {
+interface Node {
   parent: number;
   readonly translation: Vec3;
   readonly rotation: Quat;

@@ -4,7 +4,7 @@ import type { ImportedMotion, SkeletonPose } from './imported-motion';
 import { Lines, Rows, shown, type Word } from './lines';
 
 type Axis = 'x' | 'y' | 'z';
-export interface BvhChannel {
+interface BvhChannel {
   /** `unused`: a position that only repeats the joint's offset, or none at all. */
   readonly kind: 'position' | 'rotation' | 'unused';
   readonly axis: Axis;

@@ -3,7 +3,7 @@ import { type Vec3, vec3, writeVec3 } from '../math/vec3';
 import { addClip, type Clip, type GltfDescription, type NodeTrack, packGlb } from './gltf';
 import { hipsAt, type Motion, rotationAt } from './motion';
 
-export const generator = 'threepoint';
+const generator = 'threepoint';
 const array = ({ x, y, z }: Vec3): number[] => [x, y, z];
 
 /** Returns the clip of a motion without its tracks; it names the bones that are not measured. */

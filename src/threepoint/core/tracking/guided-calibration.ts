@@ -17,7 +17,7 @@ import { assertPinning, type TrackingFrame } from './tracking-frame';
  * The person stands straight, looks ahead and stretches both arms for this long: forward, sideways, or down and out by
  * about 45° (A-pose).
  */
-export const measuringSeconds = 2;
+const measuringSeconds = 2;
 /** The longest measuring time [s], for pages with a low frame rate. */
 const longestMeasuringSeconds = 6;
 

@@ -80,7 +80,7 @@ interface ArmState extends SwivelState {
   forearmTwist: number;
 }
 
-export interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
+interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
 
 const makeArmState = (): ArmState => ({
   known: false,

@@ -73,7 +73,7 @@ export interface TorsoPose {
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
 
-export interface FitTorsoState {
+interface FitTorsoState {
   /** False before the first frame. */
   known: boolean;
   readonly pose: TorsoPose;
