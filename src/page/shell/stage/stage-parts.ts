@@ -8,11 +8,15 @@ import type { Stage } from './stage';
 import type { UserAvatar } from './user-avatar';
 import type { UserCalibration } from './user-calibration';
 
-/** The parts of the page that input and panels change. */
-export interface StageParts extends SessionParts {
+/** The parts of the page that activities and motion capture are built on. */
+export interface DrawingParts extends SessionParts {
   readonly stage: Stage;
   readonly avatar: UserAvatar;
   readonly recorder: Recorder;
+}
+
+/** The parts of the page that input and panels change. */
+export interface StageParts extends DrawingParts {
   readonly activities: Activities;
   readonly mocap: LazyMocap;
   readonly userCalibration: UserCalibration;

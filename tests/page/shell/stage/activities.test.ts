@@ -55,11 +55,13 @@ function page(listed: readonly Activity[] = registered) {
     seed: 5,
     stage: {
       studio: {
+        ...services.stage.studio,
         setMarkVisible(visible) {
           seen.mark = visible;
         },
       },
       view: {
+        ...services.stage.view,
         setScene(scene: CameraScene) {
           seen.scene = scene;
         },
@@ -73,13 +75,14 @@ function page(listed: readonly Activity[] = registered) {
     },
     mouse,
     avatar: {
+      ...services.avatar,
       setSeatPalette(palette: string | null) {
         seen.palette = palette;
       },
     },
     onArrival: () => undefined,
   });
-  const activities = new Activities({ ...options, services, activities: listed, recorder });
+  const activities = new Activities({ ...options, activities: listed, recorder });
   const parts = fake<StageParts>({ settings, headset, ...noSession, recorder, activities, study });
   const source = new TrackingSource(parts, noPointers, createActor());
   const tracked = (time: number) => source.read(time, undefined);
