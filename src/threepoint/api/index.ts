@@ -7,24 +7,18 @@ export { downloadLimited, fileTooLargeError } from '../avatar/file/limited-downl
 export type { AvatarPose, TrackedFeet, UpperBodyPose } from '../core/body/avatar-pose';
 export { copyAvatarPose } from '../core/body/avatar-pose';
 export type { Calibration } from '../core/body/calibration';
-export {
-  armSpanFromFingertipSpan,
-  calibrationFromHeadHeight,
-  calibrationProblem,
-  defaultCalibration,
-  eyeHeightFromStature,
-} from '../core/body/calibration';
+export { defaultCalibration } from '../core/body/calibration';
 export type { JointPoses } from '../core/body/forward-kinematics';
-export { createJointPoses, forwardKinematics } from '../core/body/forward-kinematics';
+export { forwardKinematics } from '../core/body/forward-kinematics';
 export type { FingerBend, FingerName, Fingers, HandShape } from '../core/body/hand-shape';
 export type { JointName } from '../core/body/joints';
-export { jointNames } from '../core/body/joints';
 export type { Skeleton } from '../core/body/skeleton';
+export { skeletonFromCalibration } from '../core/body/skeleton';
 export type { TrackerName, TrackerOffset, TrackerOffsets } from '../core/body/tracker-offsets';
 export type { NetworkName } from '../core/estimation/estimators';
+export { createEstimator } from '../core/estimation/estimators';
 export type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 export type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from '../core/estimation/pose-estimator';
-export { estimatorNames } from '../core/estimation/pose-estimator';
 export type { Pose, TrackedPose } from '../core/math/pose';
 export type { Quat } from '../core/math/quat';
 export type { Side } from '../core/math/side';
@@ -43,7 +37,6 @@ export type { BodyOptions } from './body';
 export { Body } from './body';
 export type { BodyEvents, BodySolverOptions, CalibrationSource } from './body-solver';
 export { BodySolver } from './body-solver';
-export { createEstimator, skeletonFromCalibration } from './checked-calibration';
 export type { InferenceProfiler } from './inference-profiler';
 export type { LoadLearnedOptions } from './load-learned';
 export { loadLearned } from './load-learned';

@@ -50,6 +50,7 @@ export type { RemotePerson } from './body/remote-person';
 export type { Skeleton } from './body/skeleton';
 export {
   armBonesOf,
+  averageSkeleton,
   chestSpaceBody,
   sideSign,
   skeletonFromCalibration,

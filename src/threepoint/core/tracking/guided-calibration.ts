@@ -1,6 +1,6 @@
 import { type Calibration, calibrationProblem, maxGazePitch } from '../body/calibration';
 import { type HandTilts, handTiltOf, isPlausibleTilt } from '../body/hand-tilt';
-import { sideSign, skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton, sideSign } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import { type Pose, transformTracked } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
@@ -286,7 +286,7 @@ function looksAhead(wrists: readonly Vec3[]): boolean {
  */
 function restShoulder(side: Side, eyeHeight: number): Vec3 {
   // The span does not matter for shoulders.
-  const { restOffsets, eyesInHead } = skeletonFromCalibration({ eyeHeight, armSpan: eyeHeight });
+  const { restOffsets, eyesInHead } = averageSkeleton({ eyeHeight, armSpan: eyeHeight });
   const head = subtract(vec3(0, eyeHeight, 0), eyesInHead);
   const upperChest = subtract(subtract(head, restOffsets.head), restOffsets.neck);
   return add(upperChest, add(restOffsets[`${side}Shoulder`], restOffsets[`${side}UpperArm`]));

@@ -5,7 +5,7 @@ import {
   eyeHeightRange,
   withEyeHeight,
 } from '../body/calibration';
-import { skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton } from '../body/skeleton';
 import { isTracked } from '../math/pose';
 import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
@@ -54,7 +54,7 @@ export function createGrowthDetector() {
     measured = calibration.eyeHeight;
     // The height of a user with the default body is unknown if they have been sitting: any height is possible.
     highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + maxGrowth);
-    const { eyesInHead } = skeletonFromCalibration(calibration);
+    const { eyesInHead } = averageSkeleton(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
     levelRise = eyesInHead.y;
     stand = null;

@@ -1,6 +1,6 @@
 import type { Calibration } from '../body/calibration';
 import { legProportions } from '../body/leg-proportions';
-import { skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton } from '../body/skeleton';
 import { isPlausibleOffset, type TrackerName, type TrackerOffset, trackerNames } from '../body/tracker-offsets';
 import {
   invertTransform,
@@ -69,7 +69,7 @@ export type TrackerMeasuring = typeof trackerMeasuring;
 
 /** Returns a function for the joints of a person who stands straight, heading frame; null: unknown. */
 function restJointsOf(calibration: Calibration, headHeight: number): (name: TrackerName, tracker: Vec3) => Vec3 | null {
-  const { restOffsets, eyesInHead } = skeletonFromCalibration(calibration);
+  const { restOffsets, eyesInHead } = averageSkeleton(calibration);
   const head = subtract(vec3(0, headHeight, 0), eyesInHead);
   const neck = subtract(head, restOffsets.head);
   const chest = subtract(subtract(neck, restOffsets.neck), restOffsets.upperChest);
