@@ -23,7 +23,6 @@ export interface LoadAvatarOptions {
   readonly untrusted?: boolean;
 }
 
-/** Options of `avatarMotionWriter`. */
 export interface AvatarMotionOptions extends Pick<LoadAvatarOptions, 'bones'> {
   /** The decoders of compressed meshes and textures. Default: none, so that a compressed file is rejected. */
   readonly decoders?: Decoders;

@@ -7,7 +7,6 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 const settleSeconds = 0.7;
 
 interface HeightEstimatorOptions {
-  /** Returns the measures in force. */
   calibration(): Calibration;
   /** Returns whether the user has calibrated: these measures stay, and a mismatch is reported. */
   isCalibrated(): boolean;

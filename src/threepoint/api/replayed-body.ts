@@ -7,7 +7,6 @@ import type { BodySolver } from './body-solver';
 /** The state of a replay that may move a body. */
 export interface ReplayState {
   readonly mode: 'idle' | 'recording' | 'replaying';
-  /** Whether the replay is paused. */
   readonly paused: boolean;
   /** The position in the recording [s]. */
   readonly seconds: number;
@@ -56,7 +55,6 @@ export class ReplayedBody {
     this.#replay = replay;
   }
 
-  /** Solves one tracking frame; see `solve` of the body. */
   update(frame: TrackingFrame | null, standIn: Calibration | null): AvatarPose | null {
     const { mode, paused } = this.#replay;
     if (!frame || mode !== 'replaying') {

@@ -88,7 +88,6 @@ const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 const longestStep = 0.25;
 const upright = recordOf(jointNames, () => identity);
 
-/** The parts of an avatar that take long to create. */
 interface AvatarParts {
   readonly vrm: VRM;
   readonly object: Group;

@@ -248,7 +248,6 @@ export class FramePacer {
   rateHz: number | null = null;
   #next = Number.NEGATIVE_INFINITY;
 
-  /** Makes the next frame due. */
   restart(): void {
     this.#next = Number.NEGATIVE_INFINITY;
   }

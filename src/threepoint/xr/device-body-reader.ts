@@ -10,7 +10,6 @@ interface DeviceXRBody {
   get(name: string): XRSpace | undefined;
 }
 
-/** The frame of devices with WebXR Body Tracking. */
 interface BodyFrame {
   readonly body?: DeviceXRBody | null;
   fillPoses?(spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean;

@@ -78,7 +78,6 @@ export class FrameRateControl {
     return this.#session.frameRate ?? null;
   }
 
-  /** The savings in use. */
   get savings(): Savings {
     return this.rate === null ? defaultSavings : levels[this.#level]!;
   }

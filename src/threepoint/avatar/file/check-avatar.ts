@@ -5,9 +5,7 @@ import { convertToGlb } from './convert-to-glb';
 import { sha256Base64Url } from './file-hash';
 import { inspectAvatar } from './inspect-avatar';
 
-/** The options of a check. */
 export interface AvatarCheckOptions {
-  /** The name of the file for messages. */
   readonly name: string;
   /** The extensions of compression that can be decoded. */
   readonly supportedCompressions: readonly string[];

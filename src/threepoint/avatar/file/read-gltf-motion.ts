@@ -2,7 +2,6 @@ import { reasonOf } from '../../core/errors/reasons';
 import { convertToGlb } from './convert-to-glb';
 import { readGlbChunks } from './glb-chunks';
 
-/** The parts of a glTF file with motion. */
 interface GltfMotion {
   readonly format: 'gltf';
   readonly description: unknown;

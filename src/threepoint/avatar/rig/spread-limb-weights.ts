@@ -189,7 +189,6 @@ function addWeightAlong(weights: VertexWeights, row: readonly number[], weight: 
   if (after !== undefined) addWeight(weights, after, weight * (step - index));
 }
 
-/** The weights that a vertex has of one limb. */
 interface LimbWeights {
   readonly limb: LimbIndices;
   readonly upper: number;

@@ -34,7 +34,6 @@ export function handTiltOf({ x, y, z }: Vec3): HandTilt {
 /** The largest plausible tilt [rad]; a larger one is a bent wrist. */
 export const { steepestHandTilt } = limits;
 
-/** Returns whether a tilt is plausible. */
 export const isPlausibleTilt = ({ pitch, yaw }: HandTilt): boolean => Math.hypot(pitch, yaw) <= steepestHandTilt;
 
 /** Returns the rotation of a hand in its own frame after which its −Z continues the forearm. */

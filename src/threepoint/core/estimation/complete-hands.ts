@@ -80,7 +80,6 @@ export interface CompletedHand extends MutablePose<'floor'> {
 export interface CompletedFrame {
   readonly head: Pose<'floor'>;
   readonly headJoint: Vec3;
-  /** The heading of the head. */
   readonly heading: Readonly<Heading>;
   /** The rotation of the body about +Y since the previous frame. */
   readonly bodyTurn: Quat;
@@ -198,7 +197,6 @@ const inBody = makePose<'body'>();
 const inverse = quat(0, 0, 0, 1);
 const turn = quat(0, 0, 0, 1);
 
-/** Updates a tracked hand. */
 function followSeen(
   state: HandState,
   tracked: TrackedPose,
@@ -294,7 +292,6 @@ export function completeHands(
   return frame;
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetCompleteHands(state: CompleteHandsState): void {
   state.bodyHeading.yaw = Number.NaN;
   state.left.known = false;

@@ -12,7 +12,6 @@ import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-e
 /** The methods that cannot work without their network. */
 export type NetworkName = 'paper' | 'learned';
 
-/** Returns whether a method needs a network. */
 export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
 
 /**

@@ -61,7 +61,6 @@ export function limitJoints(
   return state.joints;
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetLimitJoints(state: LimitJointsState): void {
   state.known = false;
 }

@@ -150,7 +150,6 @@ export function pinTrunk(
   carryShoulder('right', torso, frame.rightHand, bones);
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetPinTrunk(state: PinTrunkState): void {
   state.known = false;
   for (const pin of [state.hips, state.chest]) {

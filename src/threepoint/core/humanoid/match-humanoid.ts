@@ -19,7 +19,6 @@ import { type Limb, type LimbPair, limbLength, sideByNames } from './limb-pairs'
 import { matchFingers } from './match-fingers';
 import type { Part } from './name-votes';
 
-/** The joint of a bone. */
 export interface BoneMatch {
   /** The index of the joint. */
   readonly joint: number;

@@ -52,7 +52,6 @@ export interface ButtonPresses {
   changedKind(side: Side): boolean;
 }
 
-/** The presses of one hand, and its input source. */
 class HandPresses {
   changed = false;
   #kind: HandButtons['kind'] = undefined;

@@ -17,7 +17,6 @@ interface OneEuroTuning {
 /** Returns the half-life [s] of a first-order low-pass with this cutoff [Hz]. */
 export const halfLifeOfCutoff = (cutoff: number): number => Math.LN2 / (2 * Math.PI * cutoff);
 
-/** The filter's state for one pose. */
 export interface FilteredPose<F extends Frame> {
   /** False before the first sample, which passes unchanged. */
   known: boolean;

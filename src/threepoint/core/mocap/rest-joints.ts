@@ -23,7 +23,6 @@ const soleOfLeg = 0.039 / 0.491;
 
 const between = (rest: RestJoints, a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
 
-/** Returns the length of an arm from shoulder to wrist. */
 export const armAtRest = (rest: RestJoints, side: Side): number =>
   between(rest, `${side}UpperArm`, `${side}LowerArm`) + between(rest, `${side}LowerArm`, `${side}Hand`);
 

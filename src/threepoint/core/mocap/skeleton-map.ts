@@ -30,11 +30,9 @@ const legJoints = [
 ] as const;
 /** All joints of the truth, in the order of its numbers. */
 export const truthJoints = [...bodyJoints, ...legJoints] as const;
-/** See truthJoints. */
 export type TruthJoint = (typeof truthJoints)[number];
 /** The source joint for each tracker's rotation. */
 export const trackedJoints = ['head', 'leftHand', 'rightHand'] as const satisfies readonly TruthJoint[];
-/** See trackedJoints. */
 export type TrackedJoint = (typeof trackedJoints)[number];
 
 /** The mapping from a file's joints to the skeleton's. */

@@ -56,7 +56,6 @@ export interface TruthMotion {
 
 /** The number of values of a frame. */
 export const positionsWidth = 3 * truthJoints.length;
-/** See positionsWidth. */
 export const rotationsWidth = 4 * trackedJoints.length;
 
 /** Positions and rotations as `TruthMotion` has them, in either precision. */

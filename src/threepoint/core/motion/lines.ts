@@ -122,7 +122,6 @@ export class Rows {
     return at;
   }
 
-  /** Removes the last row. */
   drop(): void {
     this.count -= 1;
   }

@@ -64,7 +64,6 @@ function measureTrackers(
 
 /** Measures how trackers are worn, in a guided calibration. */
 export const trackerMeasuring = { sample: sampleTrackers, measure: measureTrackers } as const;
-/** See trackerMeasuring. */
 export type TrackerMeasuring = typeof trackerMeasuring;
 
 /** Returns a function for the joints of a person who stands straight, heading frame; null: unknown. */

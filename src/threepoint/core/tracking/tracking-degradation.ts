@@ -23,7 +23,6 @@ export const maxLatencyMs = 200;
 const kept = 64;
 const handOf = { left: 'leftHand', right: 'rightHand' } as const;
 
-/** A buffered hand of a frame. */
 class BufferedHand {
   readonly pose = makeTrackedPose();
   readonly shape = makeHandShape();
@@ -43,7 +42,6 @@ function keepPose(pose: TrackedPose, target: MutableTrackedPose): void {
   target.tracking = pose.tracking;
 }
 
-/** A buffered frame. */
 class BufferedFrame {
   time = 0;
   readonly head = makeTrackedPose();

@@ -164,7 +164,6 @@ function progressWithin(transition: ArmTransition, drawn: ArmDirections, wanted:
   return share;
 }
 
-/** Starts a transition from the drawn arm to its target. */
 export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
   directionArc(drawn.upperArm, wanted.upperArm, wanted.outside, transition.upperArm);
   directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);

@@ -362,7 +362,6 @@ function hangHips(
   normalise(subtract(hips, chest, towards), down, towards);
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
 }
