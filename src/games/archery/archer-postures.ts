@@ -39,7 +39,6 @@ import type { SimulatedInput } from '../simulated-input';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseDirection } from './flight';
 
-/** The body of an archer. */
 export interface ArcherBody {
   readonly bowSide: Side;
   /** Height of the eyes above the floor [m], standing or seated. */

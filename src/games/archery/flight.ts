@@ -30,7 +30,6 @@ export interface Wall {
   readonly height: number;
 }
 
-/** The end of a flight. */
 interface Hit {
   /** Time after the release [s]. */
   readonly after: number;

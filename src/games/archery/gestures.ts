@@ -141,7 +141,6 @@ export class ArcheryGestures {
     haptics: this.#haptics,
     cues: this.#cues,
   };
-  // Scratch.
   readonly #fist = vec3(0, 0, 0);
   readonly #point = vec3(0, 0, 0);
 

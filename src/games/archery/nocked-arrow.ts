@@ -133,14 +133,12 @@ export class NockedArrow {
     return addScaled(target, this.direction, -braceHeight - this.draw, target);
   }
 
-  /** Returns whether the draw has changed by another haptic notch. */
   passesHapticNotch(): boolean {
     if (!(Math.abs(this.draw - this.#feltDraw) >= hapticNotch)) return false;
     this.#feltDraw = this.draw;
     return true;
   }
 
-  /** Returns whether the draw has grown by another creak notch. */
   passesCreakNotch(): boolean {
     const further = this.draw - this.#creakedDraw >= creakNotch;
     if (further || this.draw < this.#creakedDraw) this.#creakedDraw = this.draw;

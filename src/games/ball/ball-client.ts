@@ -18,7 +18,6 @@ export type BallConnectionUpdate = ConnectionUpdate<BallGame>;
 export type BallRoomView = RoomView<BallGame>;
 type BallLoopbackHost = LoopbackHost<BallGame>;
 
-/** The client policy of the ball game. */
 export const ballClientPolicy: ClientPolicy<BallGame> = {
   kind: ballKind,
   readMessage: ballRoomMessageFrom,

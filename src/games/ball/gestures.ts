@@ -93,7 +93,6 @@ interface Holding {
   opened: Opened | null;
 }
 
-/** The state of one hand. */
 interface HandState {
   readonly speed: HandVelocity;
   holding: Holding | null;

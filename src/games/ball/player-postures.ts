@@ -168,7 +168,6 @@ export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = ar
       const turn = fromAxisAngle(up, yaw, target);
       return multiply(turn, fromAxisAngle(right, pitch, nod), turn);
     },
-    /** Writes a hanging hand. */
     hang(side: Side, eyes: Vec3, target: MutableGrasp): void {
       add(shoulder(side, eyes, target.fist), hanging[side], target.fist);
       copyVec3(hangingKnuckles, target.knuckles);
