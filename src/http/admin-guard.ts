@@ -7,7 +7,6 @@ import { tooManyRequests } from './rate-limit';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 
-/** Settings of an AdminGuard. */
 interface AdminSettings {
   /** Nobody is admitted without one. */
   readonly adminToken: string | null;

@@ -19,7 +19,6 @@ export interface AuthAttempt {
   readonly what: SecretKind;
   readonly address: ClientAddress;
   readonly of: string | null;
-  /** The secret that was sent. */
   readonly secret: string;
 }
 

@@ -1,6 +1,5 @@
 import type { IncomingMessage } from 'node:http';
 
-/** The target of a request. */
 interface RequestTarget {
   /** The path as sent: it begins with one slash; percent signs and dots are not decoded. */
   readonly path: string;

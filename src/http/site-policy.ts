@@ -2,7 +2,6 @@ import type { IncomingMessage } from 'node:http';
 import { isIP } from 'node:net';
 import { hostname } from 'node:os';
 
-/** The reason for refusing a request. */
 interface SiteRefusal {
   readonly status: 400 | 403 | 421;
   readonly message: string;

@@ -23,7 +23,6 @@ export interface Credentials {
   readonly cert: string;
 }
 
-/** A listening server. */
 export interface WebServer {
   readonly port: number;
   /** Stops listening and ends what is open; resolves when all is closed. */
