@@ -1,16 +1,13 @@
 import { button, element } from './element';
 
-/** An entry of a list. */
 export interface Choice {
   readonly id: string;
   readonly label: string;
 }
 
-/** Returns a field with its label. */
 export const labelled = (label: string, field: HTMLElement): HTMLElement =>
   element('label', {}, element('span', {}, label), field);
 
-/** Returns a list to choose one entry from. */
 export function chooser(
   name: string,
   choices: readonly Choice[],
