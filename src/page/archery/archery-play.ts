@@ -85,7 +85,6 @@ function movedTo(place: Vec3, { frame, buttons }: SimulatedInput): SimulatedInpu
 
 /** A round and its player, without the view. */
 export class ArcheryPlay {
-  /** The newest frame; null before the first. */
   newest: ArcheryFrame | null = null;
   readonly #settings: () => ArcherySettings;
   readonly #seed: () => number;
@@ -114,7 +113,6 @@ export class ArcheryPlay {
     this.restart(calibration);
   }
 
-  /** The targets of this round. */
   get targets(): ArcheryState['targets'] {
     return this.#match.state.targets;
   }

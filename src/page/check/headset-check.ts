@@ -22,7 +22,6 @@ interface HeadsetCheckOptions {
   /** Draws the body of the user; `timing` measures its work. */
   readonly tracker: BodyTracker;
   readonly timing: FrameTiming;
-  /** Whether the headset is the emulated one. */
   readonly emulated: boolean;
   /** The factor of all durations. */
   readonly pace: number;

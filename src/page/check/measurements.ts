@@ -9,7 +9,6 @@ import type { HeadsetReport, WorldName } from './headset-report';
 import { TrackerNoise } from './tracker-noise';
 import { TrackingLosses } from './tracking-losses';
 
-/** The data of one frame of the session. */
 interface CheckFrame {
   readonly time: number;
   readonly tracked: TrackingFrame | null;

@@ -3,7 +3,6 @@ import { jointLabels } from '../shell/stage/device-difference';
 import type { HeadsetReport } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './tracking-losses';
 
-/** One part of the card. */
 interface ReportSection {
   readonly title: string;
   readonly lines: readonly { readonly label: string; readonly value: string }[];

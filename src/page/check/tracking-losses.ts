@@ -1,4 +1,3 @@
-/** The losses of one hand. */
 interface HandLosses {
   /** The observed time [s]: from the first frame with the hand on, without system menus. */
   readonly observedSeconds: number;

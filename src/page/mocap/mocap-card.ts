@@ -14,7 +14,6 @@ import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';
 import './mocap.css';
 
-/** The errors of one method. */
 interface MethodErrors {
   readonly estimator: EstimatorName;
   /** The errors of the current frame; null: no body is drawn. */

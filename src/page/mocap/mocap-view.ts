@@ -57,7 +57,6 @@ interface MocapViewOptions {
   onChange(): void;
 }
 
-/** The clip that is shown. */
 interface OpenClip extends ReadMocap {
   readonly name: string;
   readonly sources: readonly MocapFile[];

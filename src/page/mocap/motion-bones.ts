@@ -21,7 +21,6 @@ export interface ClipView {
   readonly truth?: TruthPlace | undefined;
 }
 
-/** Files to open. */
 export interface OpenRequest {
   readonly sources: readonly MocapFile[];
   readonly view: ClipView;
@@ -43,9 +42,7 @@ interface OfferedBones extends FileBones {
   readonly request: OpenRequest;
   /** The hash by which the map is stored; null: it is not stored. */
   readonly hash: string | null;
-  /** Whether the motion is shown. */
   readonly isShown: boolean;
-  /** Whether the bones are the user's map. */
   readonly isOwnMap: boolean;
 }
 

@@ -105,7 +105,6 @@ export class DesktopView {
     this.#project();
   }
 
-  /** The pose of the camera. */
   get pose(): Pose<'floor'> {
     const { position, quaternion } = this.camera;
     return {
@@ -146,7 +145,6 @@ export class DesktopView {
     this.#project();
   }
 
-  /** The window changed its size. */
   resize(): void {
     this.#project();
   }

@@ -8,7 +8,6 @@ import type { Quality } from './renderer';
 /** Height of the letters, as a share of the distance from which they are read. */
 const apparentSize = 0.055;
 
-/** How a word rises. */
 interface FloatingTextOptions {
   readonly quality: Quality;
   /** How long it is seen [s]. */

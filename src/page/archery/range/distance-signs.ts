@@ -36,7 +36,6 @@ interface Place {
   readonly x: number;
   readonly z: number;
   readonly turn: number;
-  /** Row of its label. */
   readonly row: number;
 }
 

@@ -4,7 +4,6 @@ import { button, createStatusLine, element, fileButton, toggle } from 'threepoin
 import { createLazyBonesForm } from '../../bones/lazy-bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 
-/** The colours of a built-in avatar. */
 export interface PaletteChoice {
   readonly name: string;
   readonly label: string;

@@ -24,7 +24,6 @@ export class HeadsetControls {
   readonly #parts: InputParts;
   readonly #measuring: CalibrationControl;
   readonly #actions: PanelActions;
-  /** Draws the pointers. */
   readonly #rays: VrPointers;
   readonly #menu: VrMenu;
   readonly #wrists = new WristButtons();
@@ -45,7 +44,6 @@ export class HeadsetControls {
     rays.objects.visible = false;
   }
 
-  /** For the scene. */
   get objects() {
     return [this.#menu.object, this.#rays.objects, this.#wrists.object, this.#offer.object] as const;
   }
@@ -97,7 +95,6 @@ export class HeadsetControls {
     this.#rays.show(pointers.offersGaze && !offers ? acting : pointers.all);
   }
 
-  /** Writes the pointers of a kind. */
   #only(isOne: (pointer: Pointer) => boolean, out: Pointer[]): readonly Pointer[] {
     out.length = 0;
     for (const pointer of this.#parts.pointers.all) if (isOne(pointer)) out.push(pointer);

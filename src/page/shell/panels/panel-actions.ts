@@ -108,7 +108,6 @@ function recordingActions(parts: StageParts, files: FileOpener, motionExport: Mo
   };
 }
 
-/** Creates the actions of the panel. */
 export function createPanelActions(
   parts: StageParts,
   measuring: CalibrationControl,

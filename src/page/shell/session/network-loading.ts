@@ -3,7 +3,6 @@ import { type Notices, pageFolder } from 'threepoint-ui';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
 
-/** Returns the address of a network of this page. */
 const contractAt = (name: string): string => `${pageFolder()}/models/${name}.json`;
 /** The share of the download in the time that a network takes to load. */
 const downloadShare = 0.9;

@@ -66,7 +66,6 @@ export class Activities {
     return this.#current;
   }
 
-  /** An activity is loading. */
   get arriving(): boolean {
     return this.#arriving;
   }

@@ -21,7 +21,6 @@ const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megaby
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
-/** Builds a built-in avatar from its file. */
 export const buildBuiltIn = async (
   body: BuiltInBody,
   bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),

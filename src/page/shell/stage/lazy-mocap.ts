@@ -49,7 +49,6 @@ export class LazyMocap {
     return this.#view?.aside ?? 0;
   }
 
-  /** Updates the view to a frame of the page. */
   frame(frame: TrackingFrame, pose: AvatarPose): void {
     this.#view?.frame(frame, pose);
   }

@@ -20,7 +20,6 @@ import { type AvatarLoader, fetchBuiltInAvatar, type UserAvatarState } from './a
 interface Request {
   readonly turn: number;
   readonly name: string;
-  /** It is a built-in avatar. */
   readonly isBuiltIn: boolean;
   readonly cancellation: AbortController;
   /** The checked file; null: not loaded yet, or a built-in avatar. */
@@ -42,7 +41,6 @@ export class UserAvatar {
   /** The number of requests, and that of the request that is shown. */
   #requested = 0;
   #shown = 0;
-  /** The file that is loading; null: none. */
   #loading: Request | null = null;
   #waiting: (SkeletonToMap & { readonly checked: CheckedAvatar }) | null = null;
 
