@@ -2,8 +2,7 @@
 export { aimOf } from './aim-point';
 export type { ArcheryAction, ArcheryEvent, ArcheryState, Arrow, BowView, Landing, Target } from './archery-state';
 export { arrowLength, braceHeight, maximumDraw } from './bow';
-export type { BowCue } from './gestures';
-export { ArcheryGestures } from './gestures';
+export { ArcheryGestures, type BowCue } from './gestures';
 export {
   archeryRules,
   archeryRulesText,
@@ -15,7 +14,5 @@ export {
   walls,
   zone,
 } from './rules';
-export type { SimulatedArcher } from './simulated-archer';
-export { createSimulatedArcher } from './simulated-archer';
-export type { SteeredArcher } from './steered-archer';
-export { createSteeredArcher } from './steered-archer';
+export { createSimulatedArcher, type SimulatedArcher } from './simulated-archer';
+export { createSteeredArcher, type SteeredArcher } from './steered-archer';
