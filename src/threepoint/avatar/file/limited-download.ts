@@ -10,7 +10,7 @@ export interface FileKind {
 
 export interface DownloadOptions {
   /** Called with the fraction [0, 1] that has loaded. */
-  readonly onProgress?: (share: number) => void;
+  readonly onProgress?: (fraction: number) => void;
   readonly signal?: AbortSignal;
   readonly headers?: Readonly<Record<string, string>>;
 }

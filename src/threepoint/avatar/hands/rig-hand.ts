@@ -156,11 +156,11 @@ function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | nu
     const { skinIndex, skinWeight, position } = object.geometry.attributes;
     if (!skinIndex || !skinWeight || !position) continue;
     for (let v = 0; v < position.count; v++) {
-      let share = 0;
+      let fraction = 0;
       for (let slot = 0; slot < 4; slot++) {
-        if (skinIndex.getComponent(v, slot) === bone) share += skinWeight.getComponent(v, slot);
+        if (skinIndex.getComponent(v, slot) === bone) fraction += skinWeight.getComponent(v, slot);
       }
-      if (share > 0.5) found.push(object.getVertexPosition(v, new Vector3()).applyMatrix4(object.matrixWorld));
+      if (fraction > 0.5) found.push(object.getVertexPosition(v, new Vector3()).applyMatrix4(object.matrixWorld));
     }
   }
   return found.length >= 4 ? found : null;

@@ -242,12 +242,12 @@ function followLost(
   hand.jumped = state.known && !held && hand.source !== 'sinking';
   hand.source = held ? 'held' : 'sinking';
 
-  const share = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
+  const fraction = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
   directionArc(last.direction, resting.direction, viaDirection[side], arc);
-  rotate(alongArc(arc, share, turn), last.direction, inBody.position);
-  scale(inBody.position, last.distance + (resting.distance - last.distance) * share, inBody.position);
+  rotate(alongArc(arc, fraction, turn), last.direction, inBody.position);
+  scale(inBody.position, last.distance + (resting.distance - last.distance) * fraction, inBody.position);
   addScaled(inBody.position, shoulder, 1, inBody.position);
-  slerp(last.orientation, resting.orientation, share, inBody.orientation);
+  slerp(last.orientation, resting.orientation, fraction, inBody.orientation);
   transformPose(floorFromBody, inBody, hand);
   if (held) copyPose(hand, hand.goal);
   else transformPose(floorFromBody, rest, hand.goal);

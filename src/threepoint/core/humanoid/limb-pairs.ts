@@ -22,7 +22,7 @@ const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
 
 /** The largest number of joints of a chain that is searched for a limb. */
 const longestChain = 16;
-/** The shortest limb as a share of the skeleton's longest chain. */
+/** The shortest limb as a fraction of the skeleton's longest chain. */
 const shortestLimb = 0.12;
 /** The largest number of pairs that are compared. */
 const maxPairs = 24;
@@ -112,7 +112,7 @@ export interface LimbPair {
 export const limbLength = (tree: JointTree, { chain, at }: Limb): number =>
   chain.slice(at[0] + 1, at[2] + 1).reduce((sum, joint) => sum + tree.segments[joint]!, 0);
 
-/** Returns how far the lengths of two chains differ, as a share. */
+/** Returns how far the lengths of two chains differ, as a fraction. */
 export function difference(tree: JointTree, a: readonly number[], b: readonly number[]): number {
   const count = Math.min(a.length, b.length);
   let [apart, total] = [0, 0];

@@ -54,9 +54,9 @@ export function filterPose<F extends Frame>(
     const speed = distance(position, sample) / deltaSeconds;
     state.speed = damp(state.speed, speed, halfLifeOfCutoff(restCutoff), deltaSeconds);
     const cutoff = restCutoff + cutoffPerSpeed * state.speed;
-    const share = smoothingFactor(halfLifeOfCutoff(cutoff), deltaSeconds);
-    lerp(value.position, position, share, value.position);
-    slerp(value.orientation, orientation, share, value.orientation);
+    const fraction = smoothingFactor(halfLifeOfCutoff(cutoff), deltaSeconds);
+    lerp(value.position, position, fraction, value.position);
+    slerp(value.orientation, orientation, fraction, value.orientation);
   }
   copyVec3(position, sample);
 }

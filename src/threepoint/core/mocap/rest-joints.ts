@@ -17,7 +17,7 @@ const trunk = [
 ] as const;
 
 /**
- * The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
+ * The ankle's height above the sole as a fraction of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
  */
 const soleOfLeg = 0.039 / 0.491;
 

@@ -105,10 +105,14 @@ function wristFromRest(side: 'left' | 'right', rest: RestJoints): Quat {
 const assumed = ['neck', 'chest', 'spine'] as const;
 
 /** Writes the position of an assumed joint. */
-function placeBetween({ near, far, share }: BetweenJoints, at: (joint: TruthJoint) => Vec3, target: MutableVec3): Vec3 {
+function placeBetween(
+  { near, far, fraction }: BetweenJoints,
+  at: (joint: TruthJoint) => Vec3,
+  target: MutableVec3,
+): Vec3 {
   const middle = (joints: readonly TruthJoint[]): Vec3 =>
     joints.reduce((sum, joint) => addScaled(sum, at(joint), 1 / joints.length), zero);
-  return lerp(middle(near), middle(far), share, target);
+  return lerp(middle(near), middle(far), fraction, target);
 }
 
 /** Returns the joints at rest [m], floor frame. */
@@ -179,7 +183,7 @@ export function unitOf(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit
 }
 
 /**
- * Converts a file's motion to the joints of the truth; `unit`: its unit [m]. Yields the share [0, 1] that is done.
+ * Converts a file's motion to the joints of the truth; `unit`: its unit [m]. Yields the fraction [0, 1] that is done.
  * Throws a sentence where its skeleton is no person's.
  */
 export function* toTruthMotion(

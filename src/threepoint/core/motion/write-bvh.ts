@@ -66,13 +66,13 @@ function fileOrder(bones: readonly MotionBone[]): readonly number[] {
 }
 
 const framesPerStep = 64;
-/** The share of the work that resampling takes. */
+/** The fraction of the work that resampling takes. */
 const resampling = 0.3;
 
 /**
  * Writes the text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z,
- * an even rate. Bones that are not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence
- * where the rate or the unit is none.
+ * an even rate. Bones that are not measured have no channels. Yields the fraction [0, 1] that is done. Throws a
+ * sentence where the rate or the unit is none.
  */
 export function* writeBvh(
   motion: Motion,

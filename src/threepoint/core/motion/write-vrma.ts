@@ -34,7 +34,7 @@ function next(value: number): number {
 /**
  * Writes the bytes of a VRM Animation 1.0 (.vrma), in parts: T-pose at rest facing +Z, rotations against it,
  * translation of the hips alone. Legs are in it, as the format wants them, at rest: `extras.notMeasured` of the
- * animation names them. Yields the share [0, 1] that is done.
+ * animation names them. Yields the fraction [0, 1] that is done.
  */
 export function* writeVrma(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]> {
   const { bones, times } = motion;

@@ -15,14 +15,14 @@ import type { TrackingFrame } from './tracking-frame';
 const provingSeconds = 1.25;
 /** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
-/** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
+/** The ignored excess as a fraction of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
 /**
  * The ignored excess once the calibration has grown: the measured one was wrong, and a user who straightens up is
  * followed.
  */
 const grownDeadZone = 0.005;
-/** The largest growth as a share of the measured eye height: a user who rises further stands on something. */
+/** The largest growth as a fraction of the measured eye height: a user who rises further stands on something. */
 const maxGrowth = 0.08;
 /** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
