@@ -71,7 +71,7 @@ const matrixSize = 16;
 const placeInMatrix = 12;
 
 /**
- * Reads the device's own body frame by frame into one buffer. Never throws: `complaint` is a sentence about the fault.
+ * Reads the device's own body frame by frame into one buffer. Never throws: `problem` is a sentence about the fault.
  */
 export class DeviceBodyReader {
   readonly #joints: DeviceBody = new Float32Array(deviceBodySize);

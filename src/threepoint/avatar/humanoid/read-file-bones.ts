@@ -1,6 +1,6 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
-import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { type BoneMatch, humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { type FileBones, fileBones } from '../../core/humanoid/unknown-bones-error';
 import type { CheckedAvatar } from '../file/check-avatar';
 import { type Decoders, readScene } from '../load-avatar';
@@ -30,7 +30,7 @@ export async function readFileBones(checked: CheckedAvatar, decoders: Decoders):
     );
     if (!own) {
       const match = matchHumanoid(joints);
-      return { ...fileBones(joints, match.map), accepted: humanoidComplaint(match) === null };
+      return { ...fileBones(joints, match.map), accepted: humanoidProblem(match) === null };
     }
     const matches = stated.map(({ bone, node }): readonly [BoneName, BoneMatch] => [
       bone as BoneName,

@@ -107,8 +107,8 @@ export function assertCalibration(calibration: Calibration): void {
   if (typeof calibration !== 'object' || calibration === null) {
     throw new RangeError('calibration is no object of measures. Pass {eyeHeight, armSpan} in metres, or “auto”.');
   }
-  const complaint = calibrationProblem(calibration);
-  if (complaint) throw new RangeError(complaint);
+  const problem = calibrationProblem(calibration);
+  if (problem) throw new RangeError(problem);
 }
 
 const metres = (value: number): string => `${value.toFixed(2)} m`;
@@ -130,11 +130,11 @@ function numberProblem(name: string, value: unknown, how: string): string | null
 
 /** Returns why the body's measures are implausible; null: they are plausible. */
 function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * FOREARM_PER_ARM_SPAN }: Calibration): string | null {
-  const complaint =
+  const problem =
     numberProblem('eye height', eyeHeight, 'the height of the eyes above the floor') ??
     numberProblem('arm span', armSpan, 'the distance from wrist to wrist') ??
     numberProblem('forearm', forearm, 'the distance from elbow to wrist');
-  if (complaint) return complaint;
+  if (problem) return problem;
   const stature = metres(statureFromEyeHeight(eyeHeight));
   if (eyeHeight < eyeHeightRange.min || eyeHeight > eyeHeightRange.max) {
     return `A height of ${stature} is outside ${metres(statureRange.min)} to ${metres(statureRange.max)}.${unitHint(eyeHeight)}`;

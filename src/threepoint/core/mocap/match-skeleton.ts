@@ -1,5 +1,5 @@
 import { type BoneMap, type BoneName, neededBones } from '../humanoid/bones';
-import { type BoneMatch, type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
+import { type BoneMatch, type HumanoidMatch, humanoidProblem, matchHumanoid } from '../humanoid/match-humanoid';
 import { type FileBones, fileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
 import { type Side, sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
@@ -219,10 +219,10 @@ function mappedJoints({ names }: ImportedMotion, map: BoneMap): Match {
 /** Matches joints, left and right by where the toes point. Throws UnknownBonesError where they do not match. */
 function matchSides(file: ImportedMotion): { readonly match: Match; readonly notes: string[] } {
   const found = matchHumanoid(jointsAt(file, file.rest));
-  const complaint = humanoidComplaint(found);
-  if (complaint)
+  const problem = humanoidProblem(found);
+  if (problem)
     throw new UnknownBonesError(
-      `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
+      `${problem}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
       fileBones(jointsToDraw(file), found.map),
     );
   const hands = Object.entries(handsOfCmuconvert(file.names)).map(([bone, name]): readonly [string, BoneMatch] => [

@@ -208,8 +208,8 @@ function* clipsOf(name: string, { motion, notes, doubts, bones }: ReadMocap): Ge
   const { cuts, pieces } = splitAtJumps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);
-  const complaint = calibrationProblem(calibration);
-  if (complaint) throw new Error(complaint);
+  const problem = calibrationProblem(calibration);
+  if (problem) throw new Error(problem);
   const neutral = neutralHead(motion, pieces);
   const floor = floorHeight(motion, pieces);
   const clips: MocapClip[] = [];

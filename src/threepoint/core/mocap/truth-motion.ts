@@ -135,7 +135,7 @@ function restInMetres(file: ImportedMotion, skeleton: MappedSkeleton, unit: numb
 }
 
 /** Returns why height and arm span of joints at rest [m] are no person's; null: they are, or there are no legs. */
-function bodyComplaint(rest: RestJoints): string | null {
+function bodyProblem(rest: RestJoints): string | null {
   const eyeHeight = eyeHeightAtRest(rest);
   return eyeHeight === null ? null : calibrationProblem({ eyeHeight, armSpan: armSpanAtRest(rest) });
 }
@@ -144,7 +144,7 @@ function bodyComplaint(rest: RestJoints): string | null {
 function isPersonSized(rest: RestJoints): boolean {
   const [least, most] = armLength as [number, number];
   const arm = armAtRest(rest, 'left');
-  return least < arm && arm < most && bodyComplaint(rest) === null;
+  return least < arm && arm < most && bodyProblem(rest) === null;
 }
 
 /** The unit of a file, and a note if it was assumed; null: metres, centimetres or the map's. */
@@ -164,9 +164,9 @@ function averageUnit(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit {
       ? [arm / armAtRest(rest, 'left'), `arms of ${arm.toFixed(2)} m`]
       : [(eyeHeight - eyesFromHeadJoint[1]!) / head, `a height of ${statureFromEyeHeight(eyeHeight).toFixed(2)} m`];
   if (!(metres > 0 && metres < Infinity)) throw new Error('its bones have no length');
-  const complaint = bodyComplaint(restInMetres(file, skeleton, metres));
-  if (complaint)
-    throw new Error(`its unit is unknown, and its body is no person’s when it is scaled to ${size}: ${complaint}`);
+  const problem = bodyProblem(restInMetres(file, skeleton, metres));
+  if (problem)
+    throw new Error(`its unit is unknown, and its body is no person’s when it is scaled to ${size}: ${problem}`);
   return { metres, note: `its unit is unknown: its body was scaled to ${size}` };
 }
 

@@ -227,10 +227,10 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
   };
   const trackers = samples.map((sample) => sample.trackers);
   const calibration = { ...measured, ...pinning?.measure(trackers, measured, head.height) };
-  const complaint = calibrationProblem(calibration);
-  return complaint === null
+  const problem = calibrationProblem(calibration);
+  return problem === null
     ? { kind: 'done', calibration }
-    : { kind: 'failed', fault: 'unlikely', reason: `${complaint} ${calibrationFaults.unlikely}` };
+    : { kind: 'failed', fault: 'unlikely', reason: `${problem} ${calibrationFaults.unlikely}` };
 }
 
 /**
