@@ -5,7 +5,7 @@ import type { CompletedFrame } from '../complete-hands';
 import type { SolvedFrame } from '../joint-source';
 import headsetRise from './headset-rise.json' with { type: 'json' };
 
-const { furthest, hanging, fraction, speed, unremarkable, usualReach } = headsetRise;
+const { furthest, hanging, share: fraction, speed, unremarkable, usualReach } = headsetRise;
 
 /** The estimate of the headset's rise above its nominal position on the head. */
 interface HeadsetRiseState {
