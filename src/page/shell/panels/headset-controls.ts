@@ -6,7 +6,7 @@ import type { CalibrationControl } from '../input/calibration-control';
 import type { InputParts } from '../input/input-parts';
 import { UserHeight } from '../input/user-height';
 import type { StageParts } from '../stage/stage-parts';
-import type { PanelActions } from './panel';
+import type { PanelActions } from './panel-actions';
 import { type ComfortActions, comfortSheet } from './vr-menu/comfort-sheet';
 import { GazeOffer } from './vr-menu/gaze-offer';
 import type { VrMenuActions, VrMenuState } from './vr-menu/menu-buttons';
