@@ -6,8 +6,8 @@ import { reasonOf } from '../core/errors/reasons';
 import { nameOfAddress } from '../core/files';
 import type { BoneMap } from '../core/humanoid/bones';
 import { assertOptions } from './assert-options';
-import { readBundledMannequin } from './bundled-mannequin';
-import { startValidator } from './bundled-validator';
+import { readBundledMannequin } from './bundled/mannequin';
+import { startValidator } from './bundled/validator';
 import type { MotionWriter } from './motion-file';
 
 export interface LoadAvatarOptions {

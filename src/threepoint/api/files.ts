@@ -2,7 +2,7 @@
 // or decode compressed ones.
 import { createWorkerCheck } from '../avatar/file/avatar-check-client';
 import type { AvatarCheck } from '../avatar/file/check-avatar';
-import { startValidator } from './bundled-validator';
+import { startValidator } from './bundled/validator';
 
 export type { CheckedAvatar } from '../avatar/file/check-avatar';
 export { MotionOnlyError } from '../avatar/file/motion-only-error';

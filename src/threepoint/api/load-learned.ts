@@ -3,7 +3,7 @@ import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { assertOptions } from './assert-options';
-import { readBundledWeights } from './bundled-weights';
+import { readBundledWeights } from './bundled/weights';
 
 export interface LoadLearnedOptions {
   /**
