@@ -31,7 +31,6 @@ import { AvatarLoader, fetchBuiltInAvatar } from './stage/avatar-loader';
 import { BoneMapStore } from './stage/bone-map-store';
 import { DeviceDifference } from './stage/device-difference';
 import { LazyMocap } from './stage/lazy-mocap';
-import { handleLostGraphics } from './stage/lost-graphics';
 import { PassthroughHost } from './stage/passthrough-host';
 import { Stage } from './stage/stage';
 import type { DrawingParts, StageParts } from './stage/stage-parts';
@@ -131,6 +130,25 @@ function createParts(context: PageContext, loading: PageLoading) {
 
 /** The parts of the page, none of them running yet. */
 export type Page = ReturnType<typeof createParts>;
+
+const pictureLost = 'The graphics device was lost. The picture returns when the browser restores it.';
+const sessionLost = 'The graphics device was lost, and VR has ended. Your game continues. Enter VR again.';
+
+/** Keeps the page alive when the graphics device is lost, and notifies the user. */
+function handleLostGraphics({ stage, notices, headset, timing }: StageParts): void {
+  const canvas = stage.renderer.domElement;
+  canvas.addEventListener('webglcontextlost', () => {
+    notices.show('warning', headset.worn ? sessionLost : pictureLost);
+    // What the headset shows was drawn by the lost device; a session cannot be given another one.
+    headset.exit();
+  });
+  canvas.addEventListener('webglcontextrestored', () => {
+    stage.studio.restore();
+    timing.reset();
+    notices.withdraw(pictureLost);
+    notices.show('info', 'The graphics device is back.');
+  });
+}
 
 /** Connects what happens to the body, to the session and to the activities with the parts that it changes. */
 function connectParts(page: Page): void {

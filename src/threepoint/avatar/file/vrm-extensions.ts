@@ -7,7 +7,10 @@ interface Description {
   readonly extensions?: {
     readonly VRMC_vrm?: { readonly expressions?: Readonly<Record<string, unknown>> };
     VRMC_springBone?: unknown;
-    readonly VRM?: { readonly blendShapeMaster?: { readonly blendShapeGroups?: unknown }; secondaryAnimation?: unknown };
+    readonly VRM?: {
+      readonly blendShapeMaster?: { readonly blendShapeGroups?: unknown };
+      secondaryAnimation?: unknown;
+    };
   };
 }
 
