@@ -30,10 +30,11 @@ import { Activities } from './stage/activities';
 import { AvatarLoader, fetchBuiltInAvatar } from './stage/avatar-loader';
 import { BoneMapStore } from './stage/bone-map-store';
 import { DeviceDifference } from './stage/device-difference';
+import type { DrawingParts } from './stage/drawing-parts';
 import { LazyMocap } from './stage/lazy-mocap';
 import { PassthroughHost } from './stage/passthrough-host';
 import { Stage } from './stage/stage';
-import type { DrawingParts, StageParts } from './stage/stage-parts';
+import type { StageParts } from './stage/stage-parts';
 import { UserAvatar } from './stage/user-avatar';
 import { UserCalibration } from './stage/user-calibration';
 

@@ -16,8 +16,8 @@ import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
 import { home } from '../activity-registry';
 import { ActivityStaging } from './activity-staging';
+import type { DrawingParts } from './drawing-parts';
 import type { Picture } from './stage';
-import type { DrawingParts } from './stage-parts';
 import { unlockSound } from './unlock-sound';
 
 export interface ActivitiesOptions extends DrawingParts {

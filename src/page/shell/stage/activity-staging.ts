@@ -2,7 +2,7 @@ import type { Side } from 'threepoint/math';
 import type { MouseAim } from 'threepoint-ui';
 import type { OpenActivity } from '../../activity/activity';
 import { type CameraScene, studioScene } from '../../scene/desktop-view';
-import type { DrawingParts } from './stage-parts';
+import type { DrawingParts } from './drawing-parts';
 
 /** The wishes of the mirror. */
 const mirrorStaging: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'watched'> = {

@@ -7,7 +7,7 @@ import type { ClipView } from '../../mocap/motion-bones';
 import { estimatorTexts } from '../session/estimator-texts';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
-import type { DrawingParts } from './stage-parts';
+import type { DrawingParts } from './drawing-parts';
 
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
 
