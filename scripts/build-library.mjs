@@ -82,7 +82,7 @@ const packages = new Set();
  */
 const alias = Object.fromEntries(
   ['weights', 'mannequin', 'validator'].map((name) => [
-    `./bundled-${name}`,
+    `./bundled/${name}`,
     join(root, `scripts/library/embedded-${name}.ts`),
   ]),
 );

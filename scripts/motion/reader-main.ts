@@ -15,7 +15,7 @@ async function sourceOf({ name, bytes, skeleton, ...more }: FileBytes): Promise<
 const reader: ReaderApi = {
   clips: async (file) => finishWork(prepareMocap(await sourceOf(file))).clips,
   truth: async (file) => finishWork(readTruthMotion(await sourceOf(file))),
-  avatar: async ({ name, bytes }) => (await checkAvatar(bytes, { name, supportedCompressions: [] })).bytes,
+  avatar: async ({ name, bytes }) => (await checkAvatar(bytes, { name, supportedCompressions: [] })).file.arrayBuffer(),
 };
 
 const respond = (response: ReaderResponse): void => void process.send!(response);

@@ -20,7 +20,7 @@ import {
 } from 'threepoint/math';
 
 /** The centre of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
-export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);
+const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);
 
 /** Distance of the palm's skin below the centre of the wrist [m]. */
 const palm = 0.015;

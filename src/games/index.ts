@@ -1,8 +1,6 @@
 // "threepoint-games": what both games share.
-export type { Launch } from './ballistics';
-export { fallTime, positionAt, velocityAt } from './ballistics';
+export { fallTime, type Launch, positionAt, velocityAt } from './ballistics';
 export { pulseBothHands } from './both-hands-pulse';
 export { ballInPalm } from './fist';
-export type { Match } from './match';
-export { createMatch } from './match';
+export { createMatch, type Match } from './match';
 export type { SimulatedInput } from './simulated-input';

@@ -13,7 +13,7 @@ export interface Match<State, Action, Event> {
 }
 
 /** Optional callbacks of a match. */
-export interface MatchHooks<Action> {
+interface MatchHooks<Action> {
   /** Returns the action with its delay after the start of its tick [s]. */
   delayed?(action: Action, delay: number): Action;
   /** Called before each tick with its actions, which suffice to replay the match. */

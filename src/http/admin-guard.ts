@@ -7,8 +7,7 @@ import { tooManyRequests } from './rate-limit';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 
-/** Settings of an AdminGuard. */
-export interface AdminSettings {
+interface AdminSettings {
   /** Nobody is admitted without one. */
   readonly adminToken: string | null;
   /** Whether a proxy in front of the server states the address of the client. */

@@ -3,7 +3,7 @@ import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { ClientAddress } from './client-address';
 
 /** The kind of a secret: a server's token, a code that withdraws a participant's data, or an invitation to a study. */
-export type SecretKind = 'token' | 'withdrawal code' | 'invitation';
+type SecretKind = 'token' | 'withdrawal code' | 'invitation';
 
 /** A failed attempt for the log, without the secret that was sent. */
 export interface FailedAttempt {
@@ -19,7 +19,6 @@ export interface AuthAttempt {
   readonly what: SecretKind;
   readonly address: ClientAddress;
   readonly of: string | null;
-  /** The secret that was sent. */
   readonly secret: string;
 }
 

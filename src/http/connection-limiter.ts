@@ -1,7 +1,7 @@
 import type { Socket } from 'node:net';
 import { parseClientAddress } from './client-address';
 
-export interface ConnectionLimiterOptions {
+interface ConnectionLimiterOptions {
   /** Open connections allowed for one address. */
   readonly perAddress: number;
   /** Whether connections come from a proxy, which limits its clients itself; then none is refused here. */

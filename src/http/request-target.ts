@@ -1,7 +1,6 @@
 import type { IncomingMessage } from 'node:http';
 
-/** The target of a request. */
-export interface RequestTarget {
+interface RequestTarget {
   /** The path as sent: it begins with one slash; percent signs and dots are not decoded. */
   readonly path: string;
   /** The path with its percent signs decoded. */

@@ -23,7 +23,6 @@ export const textResponse = (text: string, status = 200): HttpResponse => ({
   body: `${text}\n`,
 });
 
-/** A response without a body. */
 export const noContent: HttpResponse = { status: 204 };
 
 export const errorResponse = ({ status, message, field, headers }: HttpError): HttpResponse => {

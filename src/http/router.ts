@@ -16,7 +16,6 @@ export interface Call {
   readonly body: Uint8Array<ArrayBuffer>;
 }
 
-/** One route of a service. */
 export interface Route<Access extends string = string> {
   readonly method: 'GET' | 'POST' | 'PUT' | 'DELETE';
   /** The path; ":name" matches one segment. */
@@ -47,7 +46,6 @@ function depthExceeds(value: unknown, limit: number): boolean {
   return limit === 0 || Object.values(value).some((inner) => depthExceeds(inner, limit - 1));
 }
 
-/** Returns the body as text. */
 export const textOf = ({ body }: Pick<Call, 'body'>): string => Buffer.from(body.buffer).toString('utf8');
 
 /** Returns the parsed JSON body. Throws an HttpError 400 if it is not JSON or nested too deeply. */

@@ -2,8 +2,7 @@ import type { IncomingMessage } from 'node:http';
 import { isIP } from 'node:net';
 import { hostname } from 'node:os';
 
-/** The reason for refusing a request. */
-export interface SiteRefusal {
+interface SiteRefusal {
   readonly status: 400 | 403 | 421;
   readonly message: string;
 }

@@ -1,7 +1,7 @@
 import { type MessagePort, Worker } from 'node:worker_threads';
 
 /** The functions of a thread. Arguments and results are copied; bytes that fill their buffer are transferred. */
-export type ThreadApi = { readonly [name: string]: (...args: never[]) => unknown };
+type ThreadApi = { readonly [name: string]: (...args: never[]) => unknown };
 
 export interface ThreadLimits {
   /** The most unfinished calls, those whose caller has timed out included. */

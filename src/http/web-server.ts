@@ -23,7 +23,6 @@ export interface Credentials {
   readonly cert: string;
 }
 
-/** A listening server. */
 export interface WebServer {
   readonly port: number;
   /** Stops listening and ends what is open; resolves when all is closed. */
@@ -34,12 +33,12 @@ export interface WebServer {
 export type UpgradeListener = (request: IncomingMessage, socket: Duplex, head: Buffer) => boolean;
 
 /** The address on which a server listens; the port is the next free one where it is taken. */
-export interface ListenOptions {
+interface ListenOptions {
   readonly host: string;
   readonly port: number;
 }
 
-export interface WebServerOptions {
+interface WebServerOptions {
   readonly credentials?: Credentials;
   readonly upgrade?: UpgradeListener;
   /** Limits the connections of each address; every connection is accepted without it. */
@@ -92,7 +91,7 @@ function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
 }
 
 /** Receives the exceptions of a server's handlers, for its log. */
-export type FaultListener = (error: unknown) => void;
+type FaultListener = (error: unknown) => void;
 
 /** The responses that each connection has not sent yet, in the order of their requests. */
 const unanswered = new WeakMap<Duplex, Set<ServerResponse>>();
@@ -289,7 +288,7 @@ async function listenOnFreePort(server: NetServer, host: string, port: number): 
 }
 
 /** A server that does not listen yet. */
-export interface PreparedServer {
+interface PreparedServer {
   /** The server to which services with addresses of their own attach. */
   readonly http: HttpServer;
   listen(options: ListenOptions): Promise<WebServer>;

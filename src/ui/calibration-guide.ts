@@ -11,16 +11,14 @@ import type { CalibrationStep } from './calibration-dialog';
 const countdown = 3;
 const closing = 4;
 
-export interface CalibrationGuideOptions {
+/** Leads through two seconds of standing still. Its clock is that of the tracked frames. */
+export function createCalibrationGuide(options: {
   /** null: the guide is not running. */
   onStep(step: CalibrationStep | null): void;
   onMeasured(calibration: Calibration): void;
   /** Whether "Done" goes away by itself, as it should where there is no hand free to close it. */
   closesItself(): boolean;
-}
-
-/** Leads through two seconds of standing still. Its clock is that of the tracked frames. */
-export function createCalibrationGuide(options: CalibrationGuideOptions) {
+}) {
   let startTime: number | null = null;
   let running = false;
   let measuring: GuidedCalibration = initialGuidedCalibration;

@@ -15,7 +15,6 @@ export const Complaint = ({ text }: { readonly text: string | null }) => (
   </p>
 );
 
-/** A field with its label. */
 export const Labelled = ({ label, children }: { readonly label: string; readonly children: ComponentChildren }) => (
   // biome-ignore lint/a11y/noLabelWithoutControl: the children are the control
   <label>
@@ -32,7 +31,6 @@ export interface ChooserProps {
   readonly choose: (id: string) => void;
 }
 
-/** A list to choose one entry from. */
 export const Chooser = ({ name, choices, chosen = '', choose }: ChooserProps) => (
   <Labelled label={name}>
     <select
@@ -63,7 +61,6 @@ interface FileFieldProps {
   readonly open: (file: File) => void;
 }
 
-/** A field for a file. */
 export const FileField = ({ label, name, accept, open }: FileFieldProps) => (
   <Labelled label={label}>
     <input

@@ -1,14 +1,5 @@
 import { button, element } from './element';
 
-/** What entering would mean now. sentence: shown below the button; null: nothing to say. */
-export interface EnterState {
-  readonly label: string;
-  /** The label of the second button, which enters a session that shows the room around the user; null: none. */
-  readonly passthroughLabel: string | null;
-  readonly sentence: string | null;
-  readonly enabled: boolean;
-}
-
 /** The big button of the page, and beside it the one for passthrough. */
 export function createEnterButton(region: HTMLElement, onEnter: (passthrough: boolean) => void) {
   const node = button('Enter VR', () => onEnter(false), { class: 'enter', disabled: true });
@@ -16,7 +7,13 @@ export function createEnterButton(region: HTMLElement, onEnter: (passthrough: bo
   const sentence = element('p', { class: 'sentence', role: 'status' });
   region.append(element('div', {}, node, passthrough), sentence);
   return {
-    show(state: EnterState): void {
+    show(state: {
+      readonly label: string;
+      /** The label of the second button, which enters a session that shows the room around the user; null: none. */
+      readonly passthroughLabel: string | null;
+      readonly sentence: string | null;
+      readonly enabled: boolean;
+    }): void {
       node.textContent = state.label;
       node.disabled = !state.enabled;
       passthrough.textContent = state.passthroughLabel;

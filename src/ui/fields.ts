@@ -1,16 +1,13 @@
-import { element } from './element';
+import { button, element } from './element';
 
-/** An entry of a list. */
 export interface Choice {
   readonly id: string;
   readonly label: string;
 }
 
-/** Returns a field with its label. */
 export const labelled = (label: string, field: HTMLElement): HTMLElement =>
   element('label', {}, element('span', {}, label), field);
 
-/** Returns a list to choose one entry from. */
 export function chooser(
   name: string,
   choices: readonly Choice[],
@@ -34,4 +31,28 @@ export function fileField(label: string, name: string, accept: string, open: (fi
     if (chosen) open(chosen);
   });
   return labelled(label, input);
+}
+
+/** A labelled switch; the whole row is its target. */
+export function toggle(label: string, onChange: (on: boolean) => void) {
+  const input = element('input', { type: 'checkbox', role: 'switch' });
+  input.addEventListener('change', () => onChange(input.checked));
+  return { input, node: element('label', { class: 'toggle' }, element('span', {}, label), input) };
+}
+
+/** A button that opens a file dialog for one file, or for several at once. */
+export function fileButton(
+  label: string,
+  accept: string,
+  onFiles: (files: readonly [File, ...File[]]) => void,
+  { multiple = false } = {},
+): HTMLElement[] {
+  const input = element('input', { type: 'file', accept, multiple, hidden: true, 'aria-label': label });
+  input.addEventListener('change', () => {
+    const [file, ...others] = input.files ?? [];
+    if (file) onFiles([file, ...others]);
+    // Choosing the same file again must emit a change too.
+    input.value = '';
+  });
+  return [button(label, () => input.click()), input];
 }

@@ -1,7 +1,7 @@
 import { element } from './element';
 
 /** One stage of the frame and what it costs [ms]. */
-export interface StageCost {
+interface StageCost {
   readonly name: string;
   readonly p50Ms: number;
   readonly p95Ms: number;

@@ -13,14 +13,14 @@ export interface PanelTarget {
 }
 
 /** What pointers do on a panel in a frame. */
-export interface Touched<Target extends PanelTarget> {
+interface Touched<Target extends PanelTarget> {
   readonly pointedAt: Target | null;
   /** A target that two pointers press is here once. */
   readonly pressed: readonly Target[];
 }
 
 /** Rays and finger tips on one panel. */
-export interface PanelTouch<Target extends PanelTarget> {
+interface PanelTouch<Target extends PanelTarget> {
   /**
    * Returns what the pointers point at and press in this frame; the next frame overwrites it. Reports to the pointers
    * what they point at.

@@ -5,7 +5,7 @@ import type { Target } from './archery-state';
 const farthest = 14;
 
 /** What a ray aims at. */
-export interface Aim {
+interface Aim {
   readonly point: Vec3;
   /** From the origin of the ray [m]. */
   readonly distance: number;

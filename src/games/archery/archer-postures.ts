@@ -39,7 +39,6 @@ import type { SimulatedInput } from '../simulated-input';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseDirection } from './flight';
 
-/** The body of an archer. */
 export interface ArcherBody {
   readonly bowSide: Side;
   /** Height of the eyes above the floor [m], standing or seated. */
@@ -56,7 +55,7 @@ const drawnTurn = 1.05;
 const elbowLift = 0.95;
 
 /** A bow and the hand on its string at one moment, relative to the eyes, arena axes. */
-export interface Hold {
+interface Hold {
   /** The arrow rest, at which the arrow passes the bow. */
   readonly arrowRest: Vec3;
   /** Direction of the arrow, unit. */

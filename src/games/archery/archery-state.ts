@@ -1,6 +1,5 @@
 import type { Quat, Vec3 } from 'threepoint/math';
 
-/** What may differ between matches. */
 export interface ArcheryOptions {
   readonly arrows: number;
   /** Seconds from the first release or the start signal until the bell. */

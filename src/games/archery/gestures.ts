@@ -85,7 +85,7 @@ export interface GestureFrame {
 }
 
 /** A press nocks within this distance of the fist from the nocking point [m]; the margin is hysteresis. */
-export const nockReach = 0.18;
+const nockReach = 0.18;
 const nearMargin = 0.03;
 /** A longer interval between two frames [s] is a pause: the page's clock counts its longest step for it. */
 const longestFrame = maxStepSeconds - 1e-3;
@@ -141,7 +141,6 @@ export class ArcheryGestures {
     haptics: this.#haptics,
     cues: this.#cues,
   };
-  // Scratch.
   readonly #fist = vec3(0, 0, 0);
   readonly #point = vec3(0, 0, 0);
 

@@ -13,9 +13,9 @@ import { bowDirection, bowInHand, nockingPointOf, turnBow } from './bow-pose';
 import { slerpDirection } from './slerp-direction';
 
 /** A press takes the bow out of the other hand within this distance of the fist from its grip [m]. */
-export const takeReach = 0.1;
+const takeReach = 0.1;
 /** Half-life of the bow's return to the hand's orientation after a shot [s]. */
-export const settleHalfLife = 0.08;
+const settleHalfLife = 0.08;
 /** After this long without its hand [s] the bow is no longer held, and a drawn arrow returns to the quiver. */
 export const holdSeconds = 0.5;
 

@@ -23,9 +23,9 @@ import { arrowRestOf, bowDirection, turnBow } from './bow-pose';
 import { slerpDirection } from './slerp-direction';
 
 /** Half-life of a drawn arrow's direction [s]. */
-export const aimHalfLife = 0.05;
+const aimHalfLife = 0.05;
 /** Half-life with one hand, which trembles more [s]. */
-export const oneHandedAimHalfLife = 0.08;
+const oneHandedAimHalfLife = 0.08;
 /** Speed of a one-handed draw [m/s], and its end [m]. */
 export const oneHandedDrawSpeed = 0.5;
 export const oneHandedDraw = 0.6;
@@ -133,14 +133,12 @@ export class NockedArrow {
     return addScaled(target, this.direction, -braceHeight - this.draw, target);
   }
 
-  /** Returns whether the draw has changed by another haptic notch. */
   passesHapticNotch(): boolean {
     if (!(Math.abs(this.draw - this.#feltDraw) >= hapticNotch)) return false;
     this.#feltDraw = this.draw;
     return true;
   }
 
-  /** Returns whether the draw has grown by another creak notch. */
   passesCreakNotch(): boolean {
     const further = this.draw - this.#creakedDraw >= creakNotch;
     if (further || this.draw < this.#creakedDraw) this.#creakedDraw = this.draw;

@@ -41,7 +41,7 @@ export const walls: readonly Wall[] = [
 ];
 
 /** Radius of every target [m]. */
-export const targetRadius = 0.45;
+const targetRadius = 0.45;
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
@@ -72,7 +72,7 @@ const farthestHead = 50;
 export const releaseInterval = 0.5;
 
 /** The paper's game: five arrows, 70 s, every target once. */
-export const defaultArcheryOptions: ArcheryOptions = {
+const defaultArcheryOptions: ArcheryOptions = {
   arrows: 5,
   seconds: 70,
   everyHitCounts: false,
@@ -81,7 +81,7 @@ export const defaultArcheryOptions: ArcheryOptions = {
 };
 
 /** Limits of the eye height by which targets are placed [m]; it is clamped to them. */
-export const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
+const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
 
 function placeTargets(eyeHeight: number, seed: number): Target[] {
   const chance = createRandom(seed);
@@ -309,3 +309,10 @@ export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, 
     return { state: next, events };
   },
 };
+
+/** How archery is played, a sentence a line. */
+export const archeryRulesText: readonly string[] = [
+  'Five arrows, four targets from 4.5 to 10.5 m: 5, 10, 15 and 20 points, each target once. 70 seconds from the first arrow.',
+  'Hold the bow in one hand. With the other hand press the trigger (or pinch) at the string, draw, and release.',
+  'Stay on the deck: only arrows from there count.',
+];

@@ -10,13 +10,13 @@ export const fastestThrow = 20;
 /** The slowest throw [m/s]; a slower ball returns to the rack. */
 export const slowestThrow = 0.8;
 /** The largest distance of a fist from the ball that it takes [m]; clients use less. */
-export const grabReach = 0.35;
+const grabReach = 0.35;
 /** The largest distance of a hand from the head [m]. */
 export const armReach = 1.4;
 /**
  * The largest distance of a release from the last position of the hand [m]: at 10 m/s a hand moves that far in 70 ms.
  */
-export const releaseReach = 0.7;
+const releaseReach = 0.7;
 /** The largest delay of an action [s]; older ones are moved to this age. */
 export const maxDelay = 0.5;
 

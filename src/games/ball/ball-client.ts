@@ -16,9 +16,8 @@ import { arenaFromSeatFloor } from './stations';
 export type BallConnection = Connection<BallGame>;
 export type BallConnectionUpdate = ConnectionUpdate<BallGame>;
 export type BallRoomView = RoomView<BallGame>;
-export type BallLoopbackHost = LoopbackHost<BallGame>;
+type BallLoopbackHost = LoopbackHost<BallGame>;
 
-/** The client policy of the ball game. */
 export const ballClientPolicy: ClientPolicy<BallGame> = {
   kind: ballKind,
   readMessage: ballRoomMessageFrom,

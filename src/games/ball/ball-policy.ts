@@ -13,7 +13,7 @@ export interface BallGame extends SentBallGame {
   readonly action: BallAction;
 }
 
-export interface BallPolicyOptions extends Partial<BallOptions> {
+interface BallPolicyOptions extends Partial<BallOptions> {
   readonly seed?: number;
 }
 

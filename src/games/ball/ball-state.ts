@@ -2,7 +2,6 @@ import type { SeatAction } from 'threepoint/core';
 import type { Side, Vec3 } from 'threepoint/math';
 import type { Launch } from '../ballistics';
 
-/** What may differ between matches. */
 export interface BallOptions {
   /** The number of balls; half of them are in each thrower's rack. */
   readonly balls: number;

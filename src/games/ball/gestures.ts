@@ -37,7 +37,7 @@ import { ballInHand } from './state-selectors';
 import { rackPosition } from './stations';
 
 /** The player and the match, which the gestures read in every frame. */
-export interface BallGestureSettings {
+interface BallGestureSettings {
   /** The player's index. */
   readonly player: number;
   /** The state of the match, with predictions. */
@@ -67,7 +67,7 @@ export interface BallGestureFrame {
 }
 
 /** A press takes a ball within this distance of the fist [m]. */
-export const takeReach = 0.2;
+const takeReach = 0.2;
 /** After this long without its hand [s] a held ball returns to the rack. */
 export const holdSeconds = 0.5;
 /** A pause of this length [s] throws nothing. */
@@ -93,7 +93,6 @@ interface Holding {
   opened: Opened | null;
 }
 
-/** The state of one hand. */
 interface HandState {
   readonly speed: HandVelocity;
   holding: Holding | null;

@@ -1,21 +1,15 @@
 // "threepoint-games/ball": rules, gestures, players and rooms of the ball game.
 export type { BallBot } from './ball-bot';
-export type { BallConnection, BallRoomView } from './ball-client';
-export { ballClientPolicy, createBallLoopbackHost } from './ball-client';
+export { type BallConnection, type BallRoomView, ballClientPolicy, createBallLoopbackHost } from './ball-client';
 export { ballKind } from './ball-messages';
-export type { BallGame } from './ball-policy';
-export { BallPolicy } from './ball-policy';
-export type { BallTerms } from './ball-room-kind';
-export { ballRoomKind } from './ball-room-kind';
+export { type BallGame, BallPolicy } from './ball-policy';
+export { type BallTerms, ballRoomKind } from './ball-room-kind';
 export type { BallEvent, BallInput, BallPlace, BallRole, BallState, Refusal, TimedLaunch } from './ball-state';
-export type { Opening } from './basket';
-export { basketDepth, basketInHands, basketRadius, landsIn, rimTube } from './basket';
+export { basketDepth, basketInHands, basketRadius, landsIn, type Opening, rimTube } from './basket';
 export { ballInAir, ballRadius } from './flight';
-export type { BallCue, BallGestureFrame } from './gestures';
-export { BallGestures } from './gestures';
+export { type BallCue, type BallGestureFrame, BallGestures } from './gestures';
 export type { PlayerBody } from './player-postures';
-export { ballRules, defaultBallOptions } from './rules';
-export { ballRulesText } from './rules-text';
+export { ballRules, ballRulesText, defaultBallOptions } from './rules';
 export { createSimulatedHolder } from './simulated-holder';
 export { createSimulatedThrower } from './simulated-thrower';
 export { ballPosition, ballSecondsLeft, ballsLeft, catchesOf, displayedSeconds } from './state-selectors';
@@ -28,5 +22,4 @@ export {
   stations,
   zoneRadius,
 } from './stations';
-export type { BallSteering, SteeredPlayer } from './steered-players';
-export { createSteeredHolder, createSteeredThrower } from './steered-players';
+export { type BallSteering, createSteeredHolder, createSteeredThrower, type SteeredPlayer } from './steered-players';

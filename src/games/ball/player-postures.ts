@@ -39,7 +39,7 @@ export interface PlayerBody {
 }
 
 /** Position and directions of a fist, floor frame. */
-export interface Grasp {
+interface Grasp {
   readonly fist: Vec3;
   readonly knuckles: Vec3;
   readonly thumb: Vec3;
@@ -168,7 +168,6 @@ export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = ar
       const turn = fromAxisAngle(up, yaw, target);
       return multiply(turn, fromAxisAngle(right, pitch, nod), turn);
     },
-    /** Writes a hanging hand. */
     hang(side: Side, eyes: Vec3, target: MutableGrasp): void {
       add(shoulder(side, eyes, target.fist), hanging[side], target.fist);
       copyVec3(hangingKnuckles, target.knuckles);

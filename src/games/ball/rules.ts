@@ -13,7 +13,7 @@ import { holderStation, isInZone, stations } from './stations';
 export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotation: 0, everySeat: false };
 
 /** The basket waits for the holder's next pose this long [s]; then it counts as unmoved. */
-export const basketPatience = 0.25;
+const basketPatience = 0.25;
 /** A basket faster than this [m/s] has jumped, and catches nothing on its way. */
 const fastestBasket = 12;
 
@@ -264,3 +264,13 @@ export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> 
     return { state: next, events };
   },
 };
+
+/** How the ball game is played, a sentence a line; `balls` and `seconds` of a match. */
+export const ballRulesText = (balls: number, seconds: number): readonly string[] => [
+  'Two players throw, the third holds the basket, 5 m away. Bots take free places.',
+  `${balls} balls, ${Math.round(seconds)} seconds, a point for every ball that lands in the basket.`,
+  'Throw: take a ball from the rack (trigger, grip or pinch), swing and release. Dropped balls return to the rack.',
+  'Catch: the basket hangs between both hands, or at one, and opens where the thumbs point.',
+  'Stay within 1.2 m of your mark: only throws from there count.',
+  'A match starts when every player has pressed Ready.',
+];

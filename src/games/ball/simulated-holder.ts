@@ -41,7 +41,7 @@ const lean = 0.5;
 const widest = 0.85;
 
 /** Writes the wanted position of the opening into `target`, own floor frame. `home`: the position at which it waits. */
-export type HolderGoal = (home: Vec3, target: MutableVec3) => Vec3;
+type HolderGoal = (home: Vec3, target: MutableVec3) => Vec3;
 
 /** Normal of a waiting basket. */
 const waiting = normalise(vec3(0, 1, -0.25));

@@ -32,7 +32,6 @@ export function arenaFromSeatFloor(seat: number, match: BallState | null): Trans
   return stations[match?.players[seat]?.station ?? seat] ?? stations[0]!;
 }
 
-/** The station of the basket holder. */
 export const holderStation = 2;
 
 /**

@@ -84,7 +84,6 @@ function ahead({ origin, direction }: Ray, z: number, target: MutableVec3): Muta
 
 type Phase = 'idle' | 'reaching' | 'taking' | 'ready' | 'drawing' | 'swinging' | 'following';
 
-/** The input of one frame. */
 interface SteeringFrame {
   time: number;
   sight: BotView;

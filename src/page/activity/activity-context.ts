@@ -72,13 +72,11 @@ export interface ActivityServices {
   readonly body: { readonly calibration: Calibration };
   /** The user's avatar; `isBuiltIn`: it is a built-in one, not a file. */
   readonly avatar: { readonly isBuiltIn: boolean; readonly worn: OwnAvatar };
-  /** Downloads a built-in avatar. */
   fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
   readonly notices: Pick<Notices, 'show'>;
   /** The study that the user takes part in; `run`: null without one. */
   readonly study: { readonly run: Pick<StudyRun, 'idle' | 'paused'> | null };
-  /** Shows a caption of a sound. */
   onCaption(text: string): void;
   /** Call after a change that a panel or a menu shows. */
   onChange(): void;

@@ -89,7 +89,6 @@ export interface OpenActivity {
   calibrate?(calibration: Calibration): void;
   /** Whether the user can see the page: other players are notified. */
   setAway?(away: boolean): void;
-  /** Mutes or unmutes the user's microphone. */
   toggleMuted?(): void;
   /** A warning about the connection; null: none. */
   banner?(): string | null;

@@ -4,7 +4,6 @@ import type { ActivityPanel } from '../activity/activity';
 import type { ActivityContext, StoredActivitySettings } from '../activity/activity-context';
 import type { roundOf } from './archery-play';
 
-/** Settings of hands and rules. */
 export type ArcheryRules = Partial<Pick<StoredActivitySettings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>;
 
 /** A round as the panel shows it. */
@@ -13,8 +12,7 @@ export interface ArcheryRound extends ReturnType<typeof roundOf> {
   readonly waiting: string | null;
 }
 
-/** What the panel shows and does. */
-export interface ArcheryControls {
+interface ArcheryControls {
   round(): ArcheryRound | null;
   setRules(rules: ArcheryRules): void;
   chooseShooter(shooter: 'mouse' | 'actor'): void;

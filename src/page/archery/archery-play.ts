@@ -30,10 +30,7 @@ import {
 import type { ActivitySettings } from '../activity/activity-context';
 
 /** The player's choices, read in every frame. */
-export type ArcherySettings = Pick<
-  ActivitySettings,
-  'bowSide' | 'oneHanded' | 'everyHitCounts' | 'startSignal' | 'seconds'
->;
+type ArcherySettings = Pick<ActivitySettings, 'bowSide' | 'oneHanded' | 'everyHitCounts' | 'startSignal' | 'seconds'>;
 
 /** The result of one frame of play, for view, sound and haptics. */
 export interface ArcheryFrame {
@@ -88,7 +85,6 @@ function movedTo(place: Vec3, { frame, buttons }: SimulatedInput): SimulatedInpu
 
 /** A round and its player, without the view. */
 export class ArcheryPlay {
-  /** The newest frame; null before the first. */
   newest: ArcheryFrame | null = null;
   readonly #settings: () => ArcherySettings;
   readonly #seed: () => number;
@@ -117,7 +113,6 @@ export class ArcheryPlay {
     this.restart(calibration);
   }
 
-  /** The targets of this round. */
   get targets(): ArcheryState['targets'] {
     return this.#match.state.targets;
   }

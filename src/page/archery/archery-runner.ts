@@ -5,7 +5,7 @@ import type { ActivityRunner, RunnerServices } from '../activity/activity';
 import type { ArcheryFrame } from './archery-play';
 
 /** The parts of archery that a study uses. */
-export interface StudiedArchery {
+interface StudiedArchery {
   readonly play: { readonly newest: ArcheryFrame | null };
   /** Starts a round by its signal, with this layout and length [s]. */
   startRound(layout: number, seconds: number): void;

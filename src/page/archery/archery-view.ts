@@ -20,7 +20,7 @@ import { createRange } from './range/range';
 import { TargetStands } from './range/target-stands';
 import { ArcherySounds } from './sound/archery-sounds';
 
-export interface ArcheryViewOptions {
+interface ArcheryViewOptions {
   readonly quality: Quality;
   /** The distances of the targets along the floor [m], for the signs. */
   readonly distances: readonly number[];

@@ -126,7 +126,6 @@ export class BoneChoices {
     );
   }
 
-  /** The map of the file's bones. */
   get bones(): BoneMap {
     return Object.fromEntries([...this.#partOf].map(([joint, part]) => [part, this.joints[joint]!.name]));
   }

@@ -6,7 +6,6 @@ export type MeasuredQuantity =
   | { readonly kind: 'noise' | 'losses' | 'body' }
   | { readonly kind: 'frames'; readonly world: WorldName; readonly estimator: EstimatorName };
 
-/** One step of the check. */
 export interface CheckStep {
   readonly title: string;
   /** The instruction, spoken and shown. It is spoken once for successive steps that share it. */

@@ -1,7 +1,7 @@
 import type { Quality } from '../scene/renderer';
 
 /** What the address of the check asks for. */
-export interface CheckSwitches {
+interface CheckSwitches {
   /** The emulated headset replaces the browser's WebXR. */
   readonly emulate: boolean;
   /** Absent: as the machine affords. */

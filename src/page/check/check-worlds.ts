@@ -106,7 +106,6 @@ export class CheckWorlds {
     return this.#studio.scene;
   }
 
-  /** Shows a world. */
   show(world: WorldName): void {
     this.#world = world;
     const place = { mirror: null, archery: this.#archery.range, ball: this.#court }[world];

@@ -15,14 +15,13 @@ import { StepSequence } from './step-sequence';
 const emulatedRateHz = 60;
 const usualRateHz = 72;
 
-export interface HeadsetCheckOptions {
+interface HeadsetCheckOptions {
   readonly renderer: WebGLRenderer;
   readonly quality: Quality;
   readonly worlds: CheckWorlds;
   /** Draws the body of the user; `timing` measures its work. */
   readonly tracker: BodyTracker;
   readonly timing: FrameTiming;
-  /** Whether the headset is the emulated one. */
   readonly emulated: boolean;
   /** The factor of all durations. */
   readonly pace: number;

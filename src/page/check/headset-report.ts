@@ -15,7 +15,7 @@ export const reportFormat = 'threepoint-headset-check';
 /** The version of the format that this page writes and reads. */
 export const reportVersion = 1;
 /** The longest file that is read [bytes]; a usual one has 8 kB. */
-export const longestReport = 1_000_000;
+const longestReport = 1_000_000;
 
 export const worldNames = ['mirror', 'archery', 'ball'] as const;
 export type WorldName = (typeof worldNames)[number];

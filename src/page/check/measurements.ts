@@ -9,8 +9,7 @@ import type { HeadsetReport, WorldName } from './headset-report';
 import { TrackerNoise } from './tracker-noise';
 import { TrackingLosses } from './tracking-losses';
 
-/** The data of one frame of the session. */
-export interface CheckFrame {
+interface CheckFrame {
   readonly time: number;
   readonly tracked: TrackingFrame | null;
   readonly pose: AvatarPose | null;

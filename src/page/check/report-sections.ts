@@ -3,8 +3,7 @@ import { jointLabels } from '../shell/stage/device-difference';
 import type { HeadsetReport } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './tracking-losses';
 
-/** One part of the card. */
-export interface ReportSection {
+interface ReportSection {
   readonly title: string;
   readonly lines: readonly { readonly label: string; readonly value: string }[];
   /** What the figures mean, and what they do not. */

@@ -1,7 +1,7 @@
 import { type CheckStep, type MeasuredQuantity, openingSteps } from './check-steps';
 
 /** The events of a sequence, reported within their frame. */
-export interface StepListener {
+interface StepListener {
   /** A step begins with its lead. */
   begin(step: CheckStep): void;
   /** The lead is over: frames are measured from now on. */

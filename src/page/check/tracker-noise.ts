@@ -10,7 +10,7 @@ import {
 } from 'threepoint/math';
 
 /** The second time scale [s]; the first is one frame. */
-export const slowLag = 0.1;
+const slowLag = 0.1;
 /** The length of a window [s]: the median of the windows counts, so a movement in fewer than half of them does not. */
 const windowSeconds = 0.5;
 /** A figure needs this many windows, and a window this many second differences. */
@@ -20,7 +20,7 @@ const fewestInWindow = 8;
 const intervalTolerance = 0.35;
 
 /** The standard deviations of one quantity, by axis or by component of a rotation vector. */
-export interface NoiseLevels {
+interface NoiseLevels {
   /** White noise from frame to frame. */
   readonly frame: number;
   /** The noise at a lag of 0.1 s. It is larger than `frame` where the device smooths its noise. */

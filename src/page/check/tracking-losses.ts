@@ -1,5 +1,4 @@
-/** The losses of one hand. */
-export interface HandLosses {
+interface HandLosses {
   /** The observed time [s]: from the first frame with the hand on, without system menus. */
   readonly observedSeconds: number;
   /** The length of each loss with a return [whole ms], ascending. */

@@ -14,8 +14,7 @@ import { type JointErrors, meanOf } from './joint-errors';
 import { type TruthPlace, truthPlaces } from './truth-places';
 import './mocap.css';
 
-/** The errors of one method. */
-export interface MethodErrors {
+interface MethodErrors {
   readonly estimator: EstimatorName;
   /** The errors of the current frame; null: no body is drawn. */
   readonly now: JointErrors | null;
@@ -24,7 +23,7 @@ export interface MethodErrors {
 }
 
 /** The state of an opened clip that the card shows. */
-export interface CardState {
+interface CardState {
   readonly clips: readonly string[];
   readonly clip: number;
   readonly paused: boolean;

@@ -23,7 +23,6 @@ export interface GivenBones {
 
 const endingOf = (file: MocapFile): string => fileNameOf(file).split('.').at(-1)!.toLowerCase();
 
-/** Whether a file is a map of a skeleton. */
 export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
 
 /**

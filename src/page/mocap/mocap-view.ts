@@ -24,7 +24,7 @@ import { Truth } from './truth';
 import type { TruthPlace } from './truth-places';
 
 /** The page's replay, which brings a recording's frames to its body. */
-export interface Replay extends ReplayState {
+interface Replay extends ReplayState {
   readonly duration: number;
   /**
    * Loads a recording. Throws a sentence if another one must not be lost to it. `requestNumber`: its number among the
@@ -38,7 +38,7 @@ export interface Replay extends ReplayState {
   stop(): void;
 }
 
-export interface MocapViewOptions {
+interface MocapViewOptions {
   readonly scene: Object3D;
   readonly region: HTMLElement;
   readonly labels: Labels;
@@ -57,7 +57,6 @@ export interface MocapViewOptions {
   onChange(): void;
 }
 
-/** The clip that is shown. */
 interface OpenClip extends ReadMocap {
   readonly name: string;
   readonly sources: readonly MocapFile[];

@@ -21,7 +21,6 @@ export interface ClipView {
   readonly truth?: TruthPlace | undefined;
 }
 
-/** Files to open. */
 export interface OpenRequest {
   readonly sources: readonly MocapFile[];
   readonly view: ClipView;
@@ -29,7 +28,7 @@ export interface OpenRequest {
   readonly requestNumber?: number | undefined;
 }
 
-export interface MotionBonesOptions {
+interface MotionBonesOptions {
   readonly boneMaps: BoneMaps;
   /** Shows the form; null: hides it. */
   show(skeleton: SkeletonToMap | null): void;
@@ -38,14 +37,12 @@ export interface MotionBonesOptions {
 }
 
 /** Bones of a motion, and the files from which they were read. */
-export interface OfferedBones extends FileBones {
+interface OfferedBones extends FileBones {
   readonly name: string;
   readonly request: OpenRequest;
   /** The hash by which the map is stored; null: it is not stored. */
   readonly hash: string | null;
-  /** Whether the motion is shown. */
   readonly isShown: boolean;
-  /** Whether the bones are the user's map. */
   readonly isOwnMap: boolean;
 }
 

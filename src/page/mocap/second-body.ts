@@ -3,7 +3,7 @@ import { BodySolver, type BodySolverOptions, ReplayedBody, type ReplayState } fr
 import type { Calibration, EstimatorName, TrackingFrame, UpperBodyPose } from 'threepoint/core';
 import type { Avatar } from 'threepoint/three';
 
-export interface SecondBodyOptions {
+interface SecondBodyOptions {
   readonly scene: Object3D;
   readonly calibration: Calibration;
   readonly estimator: EstimatorName;

@@ -1,4 +1,3 @@
 /** The places of the ground truth: inside the body, beside it, or hidden. */
 export const truthPlaces = ['inside', 'beside', 'off'] as const;
-/** See truthPlaces. */
 export type TruthPlace = (typeof truthPlaces)[number];

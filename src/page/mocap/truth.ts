@@ -5,7 +5,6 @@ const width = 3 * truthJoints.length;
 
 /** The true positions of a person's joints, floor frame [m]. */
 export class Truth {
-  /** The joints that the file has. */
   readonly joints: readonly TruthJoint[];
   readonly frameCount: number;
   readonly #numbers: Float32Array;

@@ -4,7 +4,7 @@ import { pageFolder } from 'threepoint-ui';
 /**
  * This browser's copy of the page for use without a network: none, loading, complete, or the reason why there is none.
  */
-export type OfflineCopyState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
+type OfflineCopyState = 'nothing' | 'coming' | 'whole' | { readonly refused: string };
 
 /** Resolves when the worker has installed its files, or has failed. */
 function settled(worker: ServiceWorker): Promise<void> {

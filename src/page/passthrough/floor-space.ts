@@ -1,7 +1,7 @@
 import type { FloorNeeds } from '../activity/activity';
 
 /** A point of the floor [m], floor frame. */
-export interface FloorPoint {
+interface FloorPoint {
   readonly x: number;
   readonly z: number;
 }

@@ -1,7 +1,7 @@
 import { forward, fromAxisAngle, rotate, up, type Vec3, vec3 } from 'threepoint/math';
 
 /** The foot of the mirror [m], floor frame, and its turn [rad]; turned by 0 it faces +Z. */
-export interface MirrorPlace {
+interface MirrorPlace {
   readonly x: number;
   readonly y: number;
   readonly z: number;
@@ -23,7 +23,7 @@ export interface StoredAnchor {
   store(handle: string | undefined): void;
 }
 
-export interface MirrorStandOptions {
+interface MirrorStandOptions {
   readonly session: XRSession;
   /** The space of the page's floor frame; null before the session started. */
   floorSpace(): XRReferenceSpace | null;

@@ -14,14 +14,6 @@ export interface Insets {
   readonly bottom: number;
 }
 
-/** A box in the window [CSS pixels]. */
-export interface WindowBox {
-  readonly left: number;
-  readonly right: number;
-  readonly top: number;
-  readonly bottom: number;
-}
-
 /** Half-life of the camera's motion towards the body [s]. */
 const followHalfLife = 0.35;
 /** A body up to this height [m] fits into the initial view. */
@@ -36,7 +28,7 @@ const bodyWidth = 0.45;
 const keyStep = Math.PI / 36;
 
 /** A start of the camera and the point that it looks at, both from the pelvis [m]. */
-export interface CameraStart {
+interface CameraStart {
   readonly offset: Vec3;
   readonly aim: Vec3;
   readonly fovDegrees: number;
@@ -113,7 +105,6 @@ export class DesktopView {
     this.#project();
   }
 
-  /** The pose of the camera. */
   get pose(): Pose<'floor'> {
     const { position, quaternion } = this.camera;
     return {
@@ -154,7 +145,6 @@ export class DesktopView {
     this.#project();
   }
 
-  /** The window changed its size. */
   resize(): void {
     this.#project();
   }
@@ -200,7 +190,7 @@ export class DesktopView {
   }
 
   /** Returns the box of these points, floor frame [m], in the window. */
-  boxOf(points: Iterable<Vec3>): WindowBox {
+  boxOf(points: Iterable<Vec3>) {
     const box = { left: Infinity, right: -Infinity, top: Infinity, bottom: -Infinity };
     for (const point of points) {
       const { x, y } = new Vector3().copy(point).project(this.camera);

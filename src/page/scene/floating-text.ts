@@ -8,8 +8,7 @@ import type { Quality } from './renderer';
 /** Height of the letters, as a share of the distance from which they are read. */
 const apparentSize = 0.055;
 
-/** How a word rises. */
-export interface FloatingTextOptions {
+interface FloatingTextOptions {
   readonly quality: Quality;
   /** How long it is seen [s]. */
   readonly seconds: number;

@@ -2,7 +2,6 @@ import type { Object3D, Scene } from 'three';
 
 type Triple = readonly [number, number, number];
 
-/** A light from far away. */
 export interface DistantLight {
   readonly color: string;
   readonly intensity: number;

@@ -30,8 +30,8 @@ import { Activities } from './stage/activities';
 import { AvatarLoader, fetchBuiltInAvatar } from './stage/avatar-loader';
 import { BoneMapStore } from './stage/bone-map-store';
 import { DeviceDifference } from './stage/device-difference';
+import type { DrawingParts } from './stage/drawing-parts';
 import { LazyMocap } from './stage/lazy-mocap';
-import { handleLostGraphics } from './stage/lost-graphics';
 import { PassthroughHost } from './stage/passthrough-host';
 import { Stage } from './stage/stage';
 import type { StageParts } from './stage/stage-parts';
@@ -63,8 +63,8 @@ function createParts(context: PageContext, loading: PageLoading) {
   const stage = new Stage(canvas, quality);
   loading.mark('scene');
 
-  const { renderer, studio } = stage;
-  const { scene } = studio;
+  const { renderer } = stage;
+  const { scene } = stage.studio;
   const clock = createPageClock(() => performance.now());
   const tracker = new BodyTracker<Avatar | null>(renderer, {
     ...bodyOptions(context),
@@ -75,6 +75,8 @@ function createParts(context: PageContext, loading: PageLoading) {
   scene.add(tracker.object);
   const sessionParts: SessionParts = {
     ...context,
+    quality,
+    clock,
     loading,
     timing,
     tracker,
@@ -97,26 +99,21 @@ function createParts(context: PageContext, loading: PageLoading) {
   const mousePointer = createMousePointer(mouse, stage.view);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
-  const drawing = { ...sessionParts, stage, avatar, recorder };
+  const drawingParts: DrawingParts = { ...sessionParts, stage, avatar, recorder };
   const activities = new Activities({
-    ...drawing,
+    ...drawingParts,
     activities: registeredActivities,
-    services: {
-      ...drawing,
-      clock,
-      quality,
-      fetchBuiltInAvatar,
-      pointer: () => (headset.worn ? pointers.steering : settings.mouse ? mousePointer() : null),
-      onCaption: captions.emit,
-    },
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     mouse,
+    pointer: () => (headset.worn ? pointers.steering : settings.mouse ? mousePointer() : null),
+    fetchBuiltInAvatar,
+    onCaption: captions.emit,
     onArrival: arrivals.emit,
   });
   const stageParts: StageParts = {
-    ...drawing,
+    ...drawingParts,
     activities,
-    mocap: new LazyMocap({ ...sessionParts, scene, recorder, boneMaps, prepare }),
+    mocap: new LazyMocap(drawingParts, boneMaps, prepare),
     userCalibration: new UserCalibration(sessionParts, stage),
     degradation: new TrackingDegradation(),
     difference: new DeviceDifference(),
@@ -126,7 +123,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const parts: InputParts = { ...stageParts, pointers, source: new TrackingSource(stageParts, pointers, actor) };
   const controls = new Controls(parts);
   const isCovered = () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken);
-  const passthrough = new PassthroughHost(parts, quality, isCovered);
+  const passthrough = new PassthroughHost(parts, isCovered);
   const frame = new PageFrame(parts, controls, passthrough);
   const kept = new OfflineCopy();
   return { ...parts, controls, passthrough, frame, kept, avatarShown, actor, captions, arrivals };
@@ -134,6 +131,25 @@ function createParts(context: PageContext, loading: PageLoading) {
 
 /** The parts of the page, none of them running yet. */
 export type Page = ReturnType<typeof createParts>;
+
+const pictureLost = 'The graphics device was lost. The picture returns when the browser restores it.';
+const sessionLost = 'The graphics device was lost, and VR has ended. Your game continues. Enter VR again.';
+
+/** Keeps the page alive when the graphics device is lost, and notifies the user. */
+function handleLostGraphics({ stage, notices, headset, timing }: StageParts): void {
+  const canvas = stage.renderer.domElement;
+  canvas.addEventListener('webglcontextlost', () => {
+    notices.show('warning', headset.worn ? sessionLost : pictureLost);
+    // What the headset shows was drawn by the lost device; a session cannot be given another one.
+    headset.exit();
+  });
+  canvas.addEventListener('webglcontextrestored', () => {
+    stage.studio.restore();
+    timing.reset();
+    notices.withdraw(pictureLost);
+    notices.show('info', 'The graphics device is back.');
+  });
+}
 
 /** Connects what happens to the body, to the session and to the activities with the parts that it changes. */
 function connectParts(page: Page): void {

@@ -20,10 +20,8 @@ const maxFrames = 108_000;
 export class Recorder {
   #mode: 'idle' | 'recording' | 'replaying' = 'idle';
   #loop = true;
-  /** The current recording. */
   #recording: Replayable | null = null;
   #name: string | null = null;
-  /** The frames of the recording in progress. */
   #frames: TrackingFrame[] = [];
   #about: Omit<Replayable, 'frames'> = { device: '', rateHz: 60, calibration: null };
   /** The time of the last request for a frame of the replay; null: none yet. */
@@ -51,7 +49,6 @@ export class Recorder {
     return this.#mode === 'replaying' ? (this.#recording?.calibration ?? null) : null;
   }
 
-  /** The current recording; null: none. */
   get recording(): Replayable | null {
     return this.#recording;
   }
@@ -60,7 +57,6 @@ export class Recorder {
     return this.#loop;
   }
 
-  /** Whether the replay is paused. */
   get paused(): boolean {
     return this.#paused;
   }
@@ -79,7 +75,6 @@ export class Recorder {
     return this.#mode === 'recording' ? this.#frames.length : (this.#recording?.frames.length ?? 0);
   }
 
-  /** The name of the current recording; null: none. */
   get name(): string | null {
     return this.#name;
   }
@@ -113,7 +108,6 @@ export class Recorder {
     if (this.#frames.length >= maxFrames) this.#end();
   }
 
-  /** Ends recording or replay. */
   stop(): void {
     if (this.#mode === 'recording' && this.#frames.length > 0) {
       this.#recording = { ...this.#about, frames: this.#frames };
@@ -161,7 +155,6 @@ export class Recorder {
     return { ...sampleRecording(recording, first.time + this.#seconds), time };
   }
 
-  /** Pauses or resumes the replay. */
   setPaused(on: boolean): void {
     this.#paused = on && this.#mode === 'replaying';
   }

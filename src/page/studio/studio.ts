@@ -163,7 +163,6 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
     scene,
     /** The studio's objects, which other surroundings replace. */
     home: studio,
-    /** The current surroundings. */
     get surroundings(): Surroundings {
       return place;
     },

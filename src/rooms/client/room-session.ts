@@ -1,10 +1,10 @@
 import {
   type AvatarRef,
+  averageSkeleton,
   type Calibration,
   defaultAvatar,
   type Skeleton,
   sameMeasures,
-  skeletonFromCalibration,
 } from 'threepoint/core';
 import type { Transform } from 'threepoint/math';
 import {
@@ -50,7 +50,7 @@ interface KnownRoom
   readonly seats: readonly (SeatInfo | null)[];
 }
 
-const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonFromCalibration(info.calibration);
+const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && averageSkeleton(info.calibration);
 
 /** The client's side of the protocol. Subclasses send its messages, in `transmit` and `transmitPose`. */
 export abstract class RoomSession<Game extends HostedGame> implements Connection<Game> {
@@ -96,7 +96,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
     this.#visitor = visitor;
     this.#knowsClock = knowsClock;
     this.#calibration = toMillimetres(visitor.calibration);
-    this.#skeleton = skeletonFromCalibration(this.#calibration);
+    this.#skeleton = averageSkeleton(this.#calibration);
     this.#avatar = visitor.avatar ?? defaultAvatar;
     this.#seatRequest = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
   }
@@ -161,7 +161,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
 
   calibrate(calibration: Calibration): void {
     this.#calibration = toMillimetres(calibration);
-    this.#skeleton = skeletonFromCalibration(this.#calibration);
+    this.#skeleton = averageSkeleton(this.#calibration);
     if (this.#known) this.transmit({ type: 'calibration', calibration: this.#calibration });
   }
 

@@ -1,10 +1,10 @@
 import {
   type AvatarPose,
   assertCalibration,
+  averageSkeleton,
   type Calibration,
   type Skeleton,
   sameMeasures,
-  skeletonFromCalibration,
   unknownFingers,
 } from 'threepoint/core';
 import { toMillimetres } from '../protocol/messages';
@@ -131,7 +131,7 @@ export class PoseSender {
     assertCalibration(calibration);
     this.#calibration = calibration;
     // The others know the measures rounded to millimetres.
-    this.#skeleton = skeletonFromCalibration(toMillimetres(calibration));
+    this.#skeleton = averageSkeleton(toMillimetres(calibration));
     this.sendProfile();
   }
 

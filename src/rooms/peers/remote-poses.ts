@@ -1,12 +1,12 @@
 import {
   type AvatarPose,
+  averageSkeleton,
   type Calibration,
   createJointPoses,
   forwardKinematics,
   type JointPoses,
   type Skeleton,
   sameMeasures,
-  skeletonFromCalibration,
 } from 'threepoint/core';
 import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
@@ -212,7 +212,7 @@ class Peer implements RemotePose {
 
   #setProfile(profile: PeerProfile): void {
     if (!this.#profile || !sameMeasures(profile.calibration, this.#profile.calibration)) {
-      this.#skeleton = skeletonFromCalibration(profile.calibration);
+      this.#skeleton = averageSkeleton(profile.calibration);
     }
     this.#profile = profile;
     if (!profile.visible) this.#hasPose = false;

@@ -6,8 +6,8 @@ import { reasonOf } from '../core/errors/reasons';
 import { nameOfAddress } from '../core/files';
 import type { BoneMap } from '../core/humanoid/bones';
 import { assertOptions } from './assert-options';
-import { readBundledMannequin } from './bundled-mannequin';
-import { startValidator } from './bundled-validator';
+import { readBundledMannequin } from './bundled/mannequin';
+import { startValidator } from './bundled/validator';
 import type { MotionWriter } from './motion-file';
 
 export interface LoadAvatarOptions {
@@ -23,7 +23,6 @@ export interface LoadAvatarOptions {
   readonly untrusted?: boolean;
 }
 
-/** Options of `avatarMotionWriter`. */
 export interface AvatarMotionOptions extends Pick<LoadAvatarOptions, 'bones'> {
   /** The decoders of compressed meshes and textures. Default: none, so that a compressed file is rejected. */
   readonly decoders?: Decoders;

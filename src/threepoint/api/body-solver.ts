@@ -87,7 +87,6 @@ export interface BodySolverOptions {
   readonly events?: BodyEvents;
 }
 
-/** The names of a body's options. */
 export const bodyOptions = optionNames<BodySolverOptions>({
   estimator: true,
   calibration: true,
@@ -134,7 +133,6 @@ export class BodySolver {
     tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point),
   );
   #afterFrame: AfterFrame | null = null;
-  /** The measures in force: the user's, or a stand-in's. */
   #calibration: Calibration;
   #userCalibration: Calibration;
   #given: boolean;

@@ -6,7 +6,7 @@ import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-export interface EstimatorSelectorOptions {
+interface EstimatorSelectorOptions {
   /** The estimator to start with; no callback is called before the constructor has returned. */
   readonly estimator: EstimatorName;
   readonly calibration: Calibration;

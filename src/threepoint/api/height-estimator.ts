@@ -6,8 +6,7 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 /** The time [s] for which a head must be tracked without a gap before its height is used. */
 const settleSeconds = 0.7;
 
-export interface HeightEstimatorOptions {
-  /** Returns the measures in force. */
+interface HeightEstimatorOptions {
   calibration(): Calibration;
   /** Returns whether the user has calibrated: these measures stay, and a mismatch is reported. */
   isCalibrated(): boolean;

@@ -3,7 +3,7 @@ import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { assertOptions } from './assert-options';
-import { readBundledWeights } from './bundled-weights';
+import { readBundledWeights } from './bundled/weights';
 
 export interface LoadLearnedOptions {
   /**
@@ -12,7 +12,7 @@ export interface LoadLearnedOptions {
    */
   readonly modelUrl?: string | URL;
   /** Called with the fraction [0, 1] of the weights that has loaded. */
-  readonly onProgress?: (share: number) => void;
+  readonly onProgress?: (fraction: number) => void;
 }
 
 /**
@@ -20,7 +20,7 @@ export interface LoadLearnedOptions {
  * Error that names the file and its fault.
  *
  * @example
- * const body = new Body({ networks: () => loadLearned({ onProgress: (share) => bar.set(share) }) });
+ * const body = new Body({ networks: () => loadLearned({ onProgress: (fraction) => bar.set(fraction) }) });
  */
 export async function loadLearned(options: LoadLearnedOptions = {}): Promise<PoseRegressor> {
   assertOptions('loadLearned', options, ['modelUrl', 'onProgress']);

@@ -27,7 +27,7 @@ export interface OnnxNetworksOptions {
    */
   readonly createWorker?: () => Worker;
   /** Called with the fraction [0, 1] of a network's file that has loaded. */
-  readonly onProgress?: (share: number) => void;
+  readonly onProgress?: (fraction: number) => void;
   /** Called with the reason when WebAssembly replaces WebGPU. */
   readonly onProviderFallback?: (reason: string) => void;
 }

@@ -62,7 +62,6 @@ function writeMatrix({ position, orientation: { x, y, z, w } }: Place, target: F
 
 type FillPoses = (spaces: Iterable<XRSpace>, base: XRSpace, transforms: Float32Array) => boolean;
 
-/** The browser's own functions. */
 interface Originals {
   readonly getPose: XRFrame['getPose'];
   readonly fillPoses: FillPoses | undefined;
@@ -221,7 +220,6 @@ class SessionBody {
   }
 }
 
-/** Returns the pose as an XRPose. */
 const asXRPose = ({ position, orientation }: Place): XRPose => ({
   transform: new XRRigidTransform({ ...position, w: 1 }, orientation),
   emulatedPosition: true,

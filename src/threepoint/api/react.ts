@@ -39,7 +39,6 @@ export type SelfAvatarCallbacks = {
   readonly [Name in EventName as (typeof callbackNames)[Name]]?: (event: BodyTrackerEvents[Name]) => void;
 };
 
-/** The avatar that a component loads. */
 export interface LoadedAvatarProps {
   /** The avatar's URL, file or bytes, as in `loadAvatar`. A change loads another avatar. */
   readonly avatar: AvatarSource;
@@ -61,7 +60,6 @@ export interface SelfAvatarProps extends LoadedAvatarProps, Omit<BodyTrackerOpti
   readonly ref?: Ref<BodyTracker>;
 }
 
-/** Props of `RemoteAvatar`. */
 export interface RemoteAvatarProps extends LoadedAvatarProps {
   /**
    * The pose to draw, floor frame [m], with its fingers if it has any; null hides the body. A ref is read in each

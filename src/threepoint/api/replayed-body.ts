@@ -7,7 +7,6 @@ import type { BodySolver } from './body-solver';
 /** The state of a replay that may move a body. */
 export interface ReplayState {
   readonly mode: 'idle' | 'recording' | 'replaying';
-  /** Whether the replay is paused. */
   readonly paused: boolean;
   /** The position in the recording [s]. */
   readonly seconds: number;
@@ -21,7 +20,7 @@ const warmUpSeconds = 5;
 const maxWarmUpHz = 60;
 
 /** Yields the last frames of a recording up to the position `seconds` [s], which gets the time `time` [s]. */
-export function* warmUpFrames(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
+function* warmUpFrames(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
   const first = recording.frames.at(0)!.time;
   const rateHz = Math.min(recording.rateHz, maxWarmUpHz);
   for (let left = Math.floor(Math.min(warmUpSeconds, seconds) * rateHz); left >= 0; left--) {
@@ -56,7 +55,6 @@ export class ReplayedBody {
     this.#replay = replay;
   }
 
-  /** Solves one tracking frame; see `solve` of the body. */
   update(frame: TrackingFrame | null, standIn: Calibration | null): AvatarPose | null {
     const { mode, paused } = this.#replay;
     if (!frame || mode !== 'replaying') {

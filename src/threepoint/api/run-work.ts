@@ -1,6 +1,5 @@
 import { runInTurns, secondsLeft, type Work, type WorkHost } from '../core/motion/work';
 
-/** The progress of long work. */
 export interface WorkProgress {
   /** The fraction [0, 1] of the work that is done. */
   readonly fraction: number;

@@ -1,6 +1,5 @@
 // "threepoint/three": draws the body as an avatar in three.js, driven by a WebXR session.
-export type { Avatar } from '../avatar/avatar';
-export { createAvatarBetweenFrames } from '../avatar/avatar';
+export { type Avatar, createAvatarBetweenFrames } from '../avatar/avatar';
 export { createBlobShadow } from '../avatar/blob-shadow';
 export { bodyLabelOf, bodyLabels } from '../avatar/built-in-body-labels';
 export { createDebugSkeleton } from '../avatar/debug-skeleton';
@@ -15,5 +14,4 @@ export { thirdPersonOnlyLayer } from '../avatar/rig/body-meshes';
 export type { BoneMap } from '../core/humanoid/bones';
 export type { AvatarMotionOptions, AvatarSource, LoadAvatarOptions } from './avatar-source';
 export { avatarMotionWriter, loadAvatar, loadMannequin } from './avatar-source';
-export type { BodyTrackerEvents, BodyTrackerOptions } from './body-tracker';
-export { BodyTracker } from './body-tracker';
+export { BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions } from './body-tracker';

@@ -25,7 +25,7 @@ type AvatarDescription = GltfDescription & {
 };
 
 /** Writes a motion as an animated GLB file of an avatar. */
-export interface AvatarMotionWriter {
+interface AvatarMotionWriter {
   readonly extension: 'glb';
   readonly type: 'model/gltf-binary';
   write(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]>;

@@ -9,7 +9,7 @@ import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { jointNames } from '../core/body/joints';
-import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
+import { averageSkeleton, type Skeleton } from '../core/body/skeleton';
 import type { GaitPoints } from '../core/estimation/gait/gait-features';
 import { identity, quat, rotate } from '../core/math/quat';
 import { type Side, sides } from '../core/math/side';
@@ -88,7 +88,6 @@ const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 const longestStep = 0.25;
 const upright = recordOf(jointNames, () => identity);
 
-/** The parts of an avatar that take long to create. */
 interface AvatarParts {
   readonly vrm: VRM;
   readonly object: Group;
@@ -145,7 +144,7 @@ class VrmAvatar implements Avatar {
   private readonly meshes: BodyMeshes;
   private readonly springs: Springs;
   private readonly face: Face;
-  private skeleton: Skeleton = skeletonFromCalibration(averageBody);
+  private skeleton: Skeleton = averageSkeleton(averageBody);
   private scale = 1;
   private lastTime: number | null = null;
   private readonly joints = createJointPoses();
@@ -181,7 +180,7 @@ class VrmAvatar implements Avatar {
   }
 
   setCalibration(calibration: Calibration): void {
-    this.skeleton = skeletonFromCalibration(calibration);
+    this.skeleton = averageSkeleton(calibration);
     const hipsPosition = this.skeleton.restOffsets.hips;
     const tPose = forwardKinematics(this.skeleton, { hipsPosition, localRotations: upright });
     // Rig to body, the same in all directions; limbs add their own stretch.

@@ -13,7 +13,7 @@ import { sides } from '../core/math/side';
 import type { Vec3 } from '../core/math/vec3';
 
 /** Lines from joint to joint, drawn through the skin. */
-export interface DebugSkeleton {
+interface DebugSkeleton {
   readonly object: Object3D;
   setVisible(visible: boolean): void;
   /** Sets the joints in the floor frame [m], as returned by `Avatar.jointPositions`. */

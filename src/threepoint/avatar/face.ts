@@ -34,7 +34,6 @@ const widestGaze = 11;
 /** The largest turn of the eyes of a file without VRM [degrees]. */
 const eyeRange = new VRMLookAtRangeMap(30, 30);
 
-/** The morph target influence of one shape of a mesh. */
 interface Shape {
   readonly influences: number[];
   readonly index: number;

@@ -6,7 +6,7 @@ const fadeSeconds = 0.6;
 const faded = 0.25;
 
 /** Fades a body whose head is lost, so that a body that stands still does not look as if a person moved it. */
-export interface HeadLossFade {
+interface HeadLossFade {
   /** Returns the opacity in [0.25, 1] at this time [s]; 1 in the first frame with a tracked head. */
   opacityAt(time: number, seen: boolean): number;
 }

@@ -1,21 +1,19 @@
 import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
-import type { Object3D } from 'three';
+import { BufferAttribute, type InterleavedBufferAttribute, type Object3D, type TypedArray } from 'three';
 import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
 import type { BoneMap } from '../core/humanoid/bones';
-import { betweenFrames } from './between-frames';
+import { betweenFrames, type Steps } from './between-frames';
 import { blobBufferViews } from './file/blob-buffer-views';
 import type { CheckedAvatar } from './file/check-avatar';
 import { convertToGlb } from './file/convert-to-glb';
-import { removeInvalidExpressionBinds } from './file/expression-binds';
-import { readGlbChunks } from './file/glb-chunks';
 import { inspectAvatar } from './file/inspect-avatar';
-import { makeGeometryPlain } from './file/plain-geometry';
-import { removeInvalidSprings } from './file/valid-springs';
+import { removeInvalidExpressionBinds, removeInvalidSprings } from './file/vrm-extensions';
 import { restoreBindPose } from './humanoid/bind-pose';
 import { assertNeededBones, boneNode } from './humanoid/needed-bones';
 import { settleRest } from './humanoid/rest-pose';
 import { setVrmBones } from './humanoid/write-bone-names';
+import { meshesOf } from './scene-meshes';
 
 /** A loaded avatar: VRM 0.x or 1.0, or another humanoid in rest pose. */
 export interface LoadedAvatar {
@@ -45,13 +43,14 @@ export async function parseAvatar(
 ): Promise<LoadedAvatar> {
   const bytes = await convertToGlb(given, name, 'body');
   const usedCompressions = inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
-  return parseChecked({ bytes, usedCompressions, file: new Blob([bytes]) }, name, { bones, decoders });
+  return parseChecked({ name, file: new Blob([bytes]), usedCompressions }, { bones, decoders });
 }
 
 /** Parses a file that has passed `checkAvatar`. */
-export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, name: string, options: ParseOptions = {}) {
+export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, options: ParseOptions = {}) {
+  const { name } = checked;
   try {
-    const { gltf, own } = await readScene(checked, name, options);
+    const { gltf, own } = await readScene(checked, options);
     // Files without a humanoid of their own need the matcher, which others do not load.
     const vrm = own ?? (await import('./humanoid/create-humanoid')).createHumanoid(gltf.scene, name, options.bones);
     settleRest(vrm, name);
@@ -65,8 +64,7 @@ export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, name: s
 
 /** Reads the scene of a file in bind pose, and its VRM; undefined: it is no VRM. */
 export async function readScene(
-  { bytes, usedCompressions, file }: Omit<CheckedAvatar, 'hash'>,
-  name: string,
+  { name, file, usedCompressions }: Omit<CheckedAvatar, 'hash'>,
   { bones, decoders = {} }: ParseOptions,
 ): Promise<{ readonly gltf: GLTF; readonly own: VRM | undefined }> {
   const loader = new GLTFLoader();
@@ -75,13 +73,11 @@ export async function readScene(
   loader.register(removeInvalidExpressionBinds);
   loader.register(removeInvalidSprings);
   loader.register((parser) => new VRMLoaderPlugin(parser));
-  const chunks = readGlbChunks(new Uint8Array(bytes))!;
-  loader.register(blobBufferViews(chunks.binary, file));
-  const gltf = await loader
-    .parseAsync(bones ? withVrmBones(chunks.json, bones, name) : chunks.json, '')
-    .catch((error: unknown) => {
-      throw new Error(`${name}: cannot be read as glTF (${reasonOf(error)})`);
-    });
+  const { json, binary } = await chunksOf(file);
+  loader.register(blobBufferViews(binary));
+  const gltf = await loader.parseAsync(bones ? withVrmBones(json, bones, name) : json, '').catch((error: unknown) => {
+    throw new Error(`${name}: cannot be read as glTF (${reasonOf(error)})`);
+  });
   await betweenFrames(makeGeometryPlain(gltf.scene));
   const own = gltf.userData.vrm as VRM | undefined;
   if (own) {
@@ -90,6 +86,13 @@ export async function readScene(
     VRMUtils.rotateVRM0(own);
   } else restoreBindPose(gltf.scene);
   return { gltf, own };
+}
+
+/** Returns the two chunks of a GLB file that has been inspected; only the text is read. */
+async function chunksOf(file: Blob): Promise<{ readonly json: string; readonly binary: Blob }> {
+  const header = new DataView(await file.slice(0, 20).arrayBuffer());
+  const end = 20 + header.getUint32(12, true);
+  return { json: await file.slice(20, end).text(), binary: file.slice(end + 8) };
 }
 
 /** Returns the JSON of a file in which a VRM states these bones. Throws a sentence that names the file. */
@@ -119,4 +122,43 @@ function nodeIndicesOf({ parser }: GLTF): ReadonlyMap<Object3D, number> {
     if (place?.nodes !== undefined && 'isObject3D' in object) indices.set(object as Object3D, place.nodes);
   }
   return indices;
+}
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute;
+
+/** Returns a copy of an interleaved attribute in a separate array. */
+function deinterleaved(attribute: InterleavedBufferAttribute): BufferAttribute {
+  const { count, itemSize, normalized, offset } = attribute;
+  const { array, stride } = attribute.data;
+  const plain = new (array.constructor as new (length: number) => TypedArray)(count * itemSize);
+  for (let vertex = 0; vertex < count; vertex++) {
+    const from = vertex * stride + offset;
+    for (let item = 0; item < itemSize; item++) plain[vertex * itemSize + item] = array[from + item] as number;
+  }
+  return new BufferAttribute(plain, itemSize, normalized);
+}
+
+/**
+ * Replaces interleaved attributes by separate arrays and adds missing indices to a scene's geometries, as the code that
+ * cuts meshes into parts requires. Meshes that shared an attribute still share it.
+ */
+function* makeGeometryPlain(scene: Object3D): Steps<void> {
+  const known = new Map<Attribute, BufferAttribute>();
+  const plain = (attribute: Attribute): BufferAttribute => {
+    if (!('isInterleavedBufferAttribute' in attribute)) return attribute;
+    const made = known.get(attribute) ?? deinterleaved(attribute);
+    known.set(attribute, made);
+    return made;
+  };
+  for (const { geometry } of meshesOf(scene)) {
+    yield;
+    for (const [name, attribute] of Object.entries(geometry.attributes)) geometry.setAttribute(name, plain(attribute));
+    for (const [name, targets] of Object.entries(geometry.morphAttributes)) {
+      geometry.morphAttributes[name as 'position'] = (targets as Attribute[]).map(plain);
+    }
+    if (!geometry.index) {
+      const { count } = geometry.getAttribute('position');
+      geometry.setIndex(Array.from({ length: count }, (_, index) => index));
+    }
+  }
 }

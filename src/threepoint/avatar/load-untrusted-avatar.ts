@@ -3,7 +3,7 @@ import { untrustedAvatarLimits } from './file/avatar-limits';
 import type { AvatarCheck } from './file/check-avatar';
 import { type ParseOptions, parseChecked } from './load-avatar';
 
-export interface LoadUntrustedAvatarOptions extends ParseOptions {
+interface LoadUntrustedAvatarOptions extends ParseOptions {
   readonly check: AvatarCheck;
 }
 
@@ -21,5 +21,5 @@ export async function loadUntrustedAvatar(
     supportedCompressions: Object.keys(decoders),
     limits: untrustedAvatarLimits,
   });
-  return createAvatarBetweenFrames(await parseChecked(checked, name, { bones, decoders }));
+  return createAvatarBetweenFrames(await parseChecked(checked, { bones, decoders }));
 }

@@ -17,7 +17,7 @@ import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import { eyeLayers } from './eye-layers';
 import { thirdPersonOnlyLayer } from './rig/body-meshes';
 
-export interface MirrorOptions {
+interface MirrorOptions {
   /** The distance ahead of the floor's origin, along −Z [m]. */
   readonly distance?: number;
   readonly width?: number;
@@ -248,7 +248,6 @@ export class FramePacer {
   rateHz: number | null = null;
   #next = Number.NEGATIVE_INFINITY;
 
-  /** Makes the next frame due. */
   restart(): void {
     this.#next = Number.NEGATIVE_INFINITY;
   }
@@ -269,10 +268,10 @@ export class FramePacer {
  * The largest size of a reflection relative to the image that shows it [fraction of pixels]. A mirror of 1.5 × 2.15 m
  * seen from 1.5 m fills less than a third of an eye's 96°.
  */
-const pixelShare = 0.4;
+const pixelFraction = 0.4;
 
 /** The size of a texture [pixels]. */
-export interface TextureSize {
+interface TextureSize {
   readonly width: number;
   readonly height: number;
 }
@@ -285,7 +284,7 @@ const size = { width: 0, height: 0 };
  * `maxWidth`: the limit [pixels]. The next call overwrites the result.
  */
 export function reflectionSize(pixels: number, heightToWidth: number, maxWidth: number): TextureSize {
-  const width = Math.floor(Math.min(maxWidth, Math.sqrt((pixelShare * pixels) / heightToWidth)));
+  const width = Math.floor(Math.min(maxWidth, Math.sqrt((pixelFraction * pixels) / heightToWidth)));
   size.width = width;
   size.height = Math.floor(width * heightToWidth);
   return size;

@@ -1,7 +1,7 @@
 import type { SkinTone } from '../core/body/built-in-bodies';
 
 /** Colours of the mannequin's materials (docs/avatar.md), one palette per player. CSS colours. */
-export interface Palette {
+interface Palette {
   readonly name: string;
   readonly label: string;
   /** The accent colour that represents the palette in menus. */

@@ -11,7 +11,7 @@ import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
 import { meshesOf } from './scene-meshes';
 
-export interface RemoteAvatarsOptions {
+interface RemoteAvatarsOptions {
   /**
    * Loads the body of an avatar: once for a file, and for each needed copy of a built-in body. Rejects
    * where it is unavailable; after a TransientError it is called again some seconds later.

@@ -8,7 +8,6 @@ function nodesThatAre(mark: 'isMesh' | 'isSkinnedMesh', scene: Object3D): readon
   return found;
 }
 
-/** Returns the meshes of a scene, skinned ones included. */
 export const meshesOf = (scene: Object3D) => nodesThatAre('isMesh', scene) as readonly Mesh[];
 
 export const skinnedMeshesOf = (scene: Object3D) => nodesThatAre('isSkinnedMesh', scene) as readonly SkinnedMesh[];

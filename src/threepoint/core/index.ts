@@ -9,8 +9,7 @@ export {
 } from './body/arm-rotations';
 export type { AvatarPose, MutableUpperBodyPose, TrackedFeet, UpperBodyPose } from './body/avatar-pose';
 export { makeUpperBodyPose } from './body/avatar-pose';
-export type { AvatarHash, AvatarRef } from './body/avatar-ref';
-export { avatarHashPattern, maxAvatarBytes } from './body/avatar-ref';
+export { type AvatarHash, type AvatarRef, avatarHashPattern, maxAvatarBytes } from './body/avatar-ref';
 export type { BuiltInAvatar, BuiltInBody, SkinTone } from './body/built-in-bodies';
 export {
   bodyOf,
@@ -37,19 +36,18 @@ export {
   withForearm,
 } from './body/calibration';
 export { fingerBoneSuffixes } from './body/finger-bone-names';
-export type { JointPoses } from './body/forward-kinematics';
-export { createJointPoses, forwardKinematics } from './body/forward-kinematics';
+export { createJointPoses, forwardKinematics, type JointPoses } from './body/forward-kinematics';
 export type { HandGeometry } from './body/hand-geometry';
 export type { FingerName, Fingers, HandShape, MutableHandShape } from './body/hand-shape';
 export { copyFingers, isFiniteHand, lerpHandShape, makeHandShape, unknownFingers } from './body/hand-shape';
 export { headJointOf } from './body/head-joint';
-export type { EstimatedJoint } from './body/joints';
-export { estimatedJoints, jointNames } from './body/joints';
+export { type EstimatedJoint, estimatedJoints, jointNames } from './body/joints';
 export { writeLocalRotations } from './body/local-rotations';
 export type { RemotePerson } from './body/remote-person';
 export type { Skeleton } from './body/skeleton';
 export {
   armBonesOf,
+  averageSkeleton,
   chestSpaceBody,
   sideSign,
   skeletonFromCalibration,
@@ -63,11 +61,9 @@ export { createEstimator, networkOf } from './estimation/estimators';
 export type { EstimatorName, PoseEstimator, ThreePointName } from './estimation/pose-estimator';
 export { estimatorNames, threePointNames } from './estimation/pose-estimator';
 export { nameOfAddress } from './files';
-export type { BoneMap, BoneName } from './humanoid/bones';
-export { boneNames, neededBones, vrmFingerNames } from './humanoid/bones';
+export { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from './humanoid/bones';
 export type { SkeletonJoint } from './humanoid/joint-tree';
-export type { FileBones } from './humanoid/unknown-bones-error';
-export { UnknownBonesError } from './humanoid/unknown-bones-error';
+export { type FileBones, UnknownBonesError } from './humanoid/unknown-bones-error';
 export type { Button, ButtonPresses, Buttons, HandButtons } from './input/button-presses';
 export {
   allReleased,
@@ -79,20 +75,15 @@ export {
 } from './input/button-presses';
 export { GazePointer } from './input/gaze-pointer';
 export type { HapticPulse } from './input/haptic-pulse';
-export type { Pointer, PointerTarget } from './input/pointer';
-export { MutablePointer } from './input/pointer';
+export { MutablePointer, type Pointer, type PointerTarget } from './input/pointer';
 export { isObject } from './json';
-export type { Mutable } from './records';
-export { recordOf } from './records';
+export { type Mutable, recordOf } from './records';
 export { actorFrame } from './tracking/actor-motion';
-export type { CalibrationFault } from './tracking/calibration-faults';
-export { calibrationFaults } from './tracking/calibration-faults';
+export { type CalibrationFault, calibrationFaults } from './tracking/calibration-faults';
 export { deviceJoint } from './tracking/device-body';
-export type { GuidedCalibration } from './tracking/guided-calibration';
-export { initialGuidedCalibration, stepGuidedCalibration } from './tracking/guided-calibration';
+export { type GuidedCalibration, initialGuidedCalibration, stepGuidedCalibration } from './tracking/guided-calibration';
 export { headingOf } from './tracking/heading';
-export type { PageClock } from './tracking/page-clock';
-export { createPageClock, maxStepSeconds, monotonic } from './tracking/page-clock';
+export { createPageClock, maxStepSeconds, monotonic, type PageClock } from './tracking/page-clock';
 export type { Recording, Replayable, TrackingFrames } from './tracking/recording';
 export {
   parseRecording,

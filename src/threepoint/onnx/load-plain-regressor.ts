@@ -9,7 +9,7 @@ import { fetchContract, fetchEntry, withFileName } from './model-files';
  */
 export async function loadPlainRegressor(
   contractUrl: string,
-  onProgress?: (share: number) => void,
+  onProgress?: (fraction: number) => void,
 ): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
   const weights = weightsOf(contract);

@@ -12,7 +12,7 @@ import {
 import { SessionRegressor } from './session-regressor';
 import { createWorkerSession } from './worker-session';
 
-export interface LoadOptions {
+interface LoadOptions {
   /** The backend; 'wasm' replaces 'webgpu' where that is unavailable. */
   readonly provider?: ExecutionProvider;
   /**
@@ -23,7 +23,7 @@ export interface LoadOptions {
   /** The URL of the runtime's files. Default: as a bundler resolves them. */
   readonly wasmPaths?: WasmPaths;
   /** Called with the fraction [0, 1] of the model file that has loaded. */
-  readonly onProgress?: (share: number) => void;
+  readonly onProgress?: (fraction: number) => void;
   /** Called with the reason when WASM replaces WebGPU, at load or when the device fails later. */
   readonly onProviderFallback?: (reason: string) => void;
 }

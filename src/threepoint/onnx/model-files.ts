@@ -18,7 +18,7 @@ export async function fetchContract(url: string): Promise<ModelContract> {
 export async function fetchFile(
   url: string,
   stated: FileEntry,
-  onProgress?: (share: number) => void,
+  onProgress?: (fraction: number) => void,
 ): Promise<Uint8Array> {
   const bytes = await download(url, onProgress);
   await verify(stated, bytes);
@@ -29,7 +29,7 @@ export async function fetchFile(
 export const fetchEntry = (
   contractUrl: string,
   stated: FileEntry,
-  onProgress?: (share: number) => void,
+  onProgress?: (fraction: number) => void,
 ): Promise<Uint8Array> => fetchFile(siblingUrl(contractUrl, stated.file), stated, onProgress);
 
 /** Returns the address of a file beside another, without the other's query. */
@@ -51,7 +51,7 @@ function filesOfNode(): { readFile(url: URL): Promise<Uint8Array> } | undefined 
 }
 
 /** Loads the whole file at this address; throws a sentence where that fails. */
-async function download(url: string, onProgress?: (share: number) => void): Promise<Uint8Array> {
+async function download(url: string, onProgress?: (fraction: number) => void): Promise<Uint8Array> {
   const file = nameOfAddress(url);
   const onDisk = url.startsWith('file:') ? filesOfNode() : undefined;
   if (onDisk) {

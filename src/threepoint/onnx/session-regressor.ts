@@ -4,7 +4,7 @@ import { withFileName } from './model-files';
 import type { InferenceSession } from './session';
 
 /** The replacement of a session whose graphics device fails. */
-export interface Takeover {
+interface Takeover {
   /** Opens the network in WebAssembly. */
   open(): Promise<InferenceSession>;
   /** Called with the reason for leaving WebGPU, once WebAssembly runs. */

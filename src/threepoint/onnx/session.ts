@@ -5,7 +5,7 @@ export type ExecutionProvider = 'wasm' | 'webgpu';
 /** The runtime's `env.wasm.wasmPaths`: a folder, or the address of each file. */
 export type WasmPaths = string | { readonly wasm?: string; readonly mjs?: string };
 
-export interface SessionOptions {
+interface SessionOptions {
   /** The runtime's bundle to load; default: the provider's own. */
   readonly bundle?: ExecutionProvider | undefined;
   readonly wasmPaths?: WasmPaths | undefined;

@@ -48,7 +48,7 @@ export class ControllerFingers {
 
   /** Returns the fingers of this frame. `time`: [s], on the clock of the frames. */
   read(gamepad: Gamepad | undefined, time: number): HandShape {
-    const share = this.#lastTime === null ? 1 : smoothingFactor(halfLife, time - this.#lastTime);
+    const fraction = this.#lastTime === null ? 1 : smoothingFactor(halfLife, time - this.#lastTime);
     this.#lastTime = time;
     const trigger = gamepad?.buttons[triggerButton];
     const onTrigger = touches(trigger);
@@ -60,8 +60,8 @@ export class ControllerFingers {
     }
     this.#capacitive ||= touchesOnly(trigger);
     // A controller without touch sensors reports no finger: the fingers lie on it.
-    this.#pointing += ((this.#capacitive && !onTrigger ? 1 : 0) - this.#pointing) * share;
-    this.#thumbAway += ((this.#capacitive && !onFace ? 1 : 0) - this.#thumbAway) * share;
+    this.#pointing += ((this.#capacitive && !onTrigger ? 1 : 0) - this.#pointing) * fraction;
+    this.#thumbAway += ((this.#capacitive && !onFace ? 1 : 0) - this.#thumbAway) * fraction;
     this.#bend(pressure(trigger), pressure(gamepad?.buttons[squeezeButton]));
     return this.#shape;
   }

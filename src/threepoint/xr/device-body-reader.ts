@@ -10,7 +10,6 @@ interface DeviceXRBody {
   get(name: string): XRSpace | undefined;
 }
 
-/** The frame of devices with WebXR Body Tracking. */
 interface BodyFrame {
   readonly body?: DeviceXRBody | null;
   fillPoses?(spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean;
@@ -72,7 +71,7 @@ const matrixSize = 16;
 const placeInMatrix = 12;
 
 /**
- * Reads the device's own body frame by frame into one buffer. Never throws: `complaint` is a sentence about the fault.
+ * Reads the device's own body frame by frame into one buffer. Never throws: `problem` is a sentence about the fault.
  */
 export class DeviceBodyReader {
   readonly #joints: DeviceBody = new Float32Array(deviceBodySize);

@@ -1,7 +1,7 @@
 import type { DrawingSpace } from './tracked-session';
 
 /** The part of a renderer that draws a session: `renderer.xr` of three.js. */
-export interface SessionDrawing extends DrawingSpace {
+interface SessionDrawing extends DrawingSpace {
   setSession(session: XRSession): Promise<void>;
 }
 

@@ -1,12 +1,12 @@
-/** A rate is held when fewer frames than this share are late over a window of this length [s]. */
-const lateShare = 0.01;
+/** A rate is held when fewer frames than this fraction are late over a window of this length [s]. */
+const lateFraction = 0.01;
 const windowSeconds = 10;
-/** All savings are taken at once if more than this share of the frames is late. */
-const veryLateShare = 0.05;
+/** All savings are taken at once if more than this fraction of the frames is late. */
+const veryLateFraction = 0.05;
 /** A frame that takes more than this many intervals of the device is late. */
 const lateAfterIntervals = 1.5;
-/** A higher rate is tried only if the work of a frame leaves this share of its interval to compositor and graphics. */
-const workShare = 0.6;
+/** A higher rate is tried only if a frame's work leaves this fraction of its interval to compositor and graphics. */
+const workFraction = 0.6;
 /** Frames right after the start or a change of the rate do not count [s]. */
 const settleSeconds = 1;
 /** The time [s] after which a failed rate is tried again. It doubles with each failure, up to the second. */
@@ -14,7 +14,7 @@ const shortestRetry = 60;
 const longestRetry = 960;
 
 /** The part of an XRSession that has rates; browsers without the choice lack all of it. */
-export interface RatedSession {
+interface RatedSession {
   readonly frameRate?: number | undefined;
   readonly supportedFrameRates?: ArrayLike<number> | null | undefined;
   readonly updateTargetFrameRate?: ((rate: number) => Promise<void>) | undefined;
@@ -78,7 +78,6 @@ export class FrameRateControl {
     return this.#session.frameRate ?? null;
   }
 
-  /** The savings in use. */
   get savings(): Savings {
     return this.rate === null ? defaultSavings : levels[this.#level]!;
   }
@@ -104,8 +103,8 @@ export class FrameRateControl {
     // A pause, however long, is one late frame.
     if (interval > lateAfterIntervals / rate) this.#late += 1;
     const next = this.rates.find((higher) => higher > rate);
-    if (next !== undefined && workSeconds > workShare / next) this.#heavy += 1;
-    const allowed = lateShare * windowSeconds * rate;
+    if (next !== undefined && workSeconds > workFraction / next) this.#heavy += 1;
+    const allowed = lateFraction * windowSeconds * rate;
     if (this.#late > allowed) this.#relieve(rate, time);
     else if (time - this.#windowStart >= windowSeconds) {
       this.#heldAt.set(rate, this.#level);
@@ -123,7 +122,7 @@ export class FrameRateControl {
 
   /** Takes savings, or the next lower rate where there are no more. */
   #relieve(rate: number, time: number): void {
-    const veryLate = this.#late > veryLateShare * this.#frames;
+    const veryLate = this.#late > veryLateFraction * this.#frames;
     this.#fail(rate, time);
     this.#begin(time);
     if (this.#level < allSavings) {

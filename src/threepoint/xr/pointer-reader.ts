@@ -11,7 +11,6 @@ function sourceOf({ targetRayMode, hand }: XRInputSource): PointerSource {
 /** Reads the pointers of a session: the rays, finger tips and select events of its input sources. */
 export class PointerReader {
   readonly #known = new WeakMap<XRInputSource, MutablePointer>();
-  /** The pointers of the newest frame. */
   #now: MutablePointer[] = [];
   #before: MutablePointer[] = [];
   /** The sources that select now, and those that began to since the last frame. */
@@ -31,7 +30,6 @@ export class PointerReader {
     return this.#now;
   }
 
-  /** Starts a frame. */
   begin(): void {
     const before = this.#before;
     this.#before = this.#now;

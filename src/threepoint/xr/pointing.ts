@@ -59,7 +59,6 @@ export class Pointing {
     this.#pointers.begin();
   }
 
-  /** Reads a source without a hand. */
   read(source: XRInputSource, { frame, space }: InputFrame): void {
     this.#pointers.read(source, frame.getPose(source.targetRaySpace, space) ?? null, false, null);
   }
@@ -79,7 +78,6 @@ export class Pointing {
     return taken;
   }
 
-  /** Ends a frame. */
   finish(suspended: boolean): void {
     this.#pointers.finish(suspended);
   }

@@ -9,7 +9,7 @@ export type XrFault =
  * The result of asking the browser for VR; `sentence` is the reason for the user. `passthrough`: the headset also shows
  * the room around its user.
  */
-export type XrSupport =
+type XrSupport =
   | { readonly kind: 'device'; readonly sentence: null; readonly passthrough: boolean }
   | { readonly kind: 'none'; readonly sentence: string; readonly fault: XrFault };
 

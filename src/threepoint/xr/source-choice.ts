@@ -8,8 +8,7 @@ const turnedBy = (5 * Math.PI) / 180;
 /** The source in use stays in use for this time [s] after its last movement. */
 const keptSeconds = 0.5;
 
-/** One input source of a side in one frame. */
-export interface SourceReading {
+interface SourceReading {
   readonly source: XRInputSource;
   readonly pose: TrackedPose;
   /** A bare hand, as opposed to a controller. */

@@ -6,8 +6,7 @@ import { dot, down, normalise, subtract, vec3 } from '../core/math/vec3';
 /** A palm faces the eyes when their direction is within 35° of its normal. */
 const facing = Math.cos((35 * Math.PI) / 180);
 
-/** A bare hand in one frame. */
-export interface SeenHand {
+interface SeenHand {
   readonly wrist: Pose<'floor'>;
   /** 0 to 1; NaN: the fingers are not seen. */
   readonly pinch: number;

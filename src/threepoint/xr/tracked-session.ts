@@ -18,7 +18,7 @@ export interface DrawingSpace {
   setReferenceSpace(space: XRReferenceSpace | null): void;
 }
 
-export interface TrackedSessionOptions {
+interface TrackedSessionOptions {
   readonly session: XRSession;
   readonly drawing: DrawingSpace;
   /** Reads the device's own body into each frame; null: it is not read. */

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { type Calibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { averageSkeleton, type Calibration, forwardKinematics } from 'threepoint/core';
 import { createRandom, distance } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { packetMs } from '../../../src/rooms/protocol/packet-time';
@@ -24,7 +24,7 @@ const clients = ['ann', 'ben', 'cal'];
 
 /** The longest way from the head to a joint of a body [m]; NaN where a number of the packet is none. */
 function reachOf(bytes: Uint8Array, calibration: Calibration): number {
-  const skeleton = skeletonFromCalibration(calibration);
+  const skeleton = averageSkeleton(calibration);
   const packet = decodePose(bytes, skeleton);
   if (!packet || !numbersIn(packet).every(Number.isFinite)) return Number.NaN;
   const { head, body, feet } = packet.pose;

@@ -1,6 +1,6 @@
 import { Matrix4, type SkinnedMesh, Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
-import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
+import { gltfFaults } from '../../../src/threepoint/avatar/file/check-avatar';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { builtRig, type RigOptions, rightArm } from './built-rig';

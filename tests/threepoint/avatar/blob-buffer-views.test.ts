@@ -82,7 +82,7 @@ async function loaded(file: ArrayBuffer) {
   vi.stubGlobal('self', globalThis);
   const { json, binary } = readGlbChunks(new Uint8Array(file))!;
   const loader = new GLTFLoader();
-  loader.register(blobBufferViews(binary, new Blob([file])));
+  loader.register(blobBufferViews(new Blob([binary as Uint8Array<ArrayBuffer>])));
   loader.register((parser) => {
     parser.textureLoader = { load: readPicture } as never;
     vi.spyOn(parser, 'loadBuffer');

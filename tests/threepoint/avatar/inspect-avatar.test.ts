@@ -1,9 +1,8 @@
 import { afterAll, describe, expect, test } from 'vitest';
 import { avatarLimits } from '../../../src/threepoint/avatar/file/avatar-limits';
-import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
+import { checkAvatar, gltfFaults } from '../../../src/threepoint/avatar/file/check-avatar';
 import { imageSize } from '../../../src/threepoint/avatar/file/image-size';
 import { inspectAvatar } from '../../../src/threepoint/avatar/file/inspect-avatar';
-import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
 import { parseAvatar, parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { reportFigures } from '../../reliability/report-figures';
 import { changed, type GltfJson, mannequin } from './glb';
@@ -251,7 +250,7 @@ describe('a compressed body', () => {
 
 /** Opens a file with the check that the page's worker runs. */
 const checked = (bytes: ArrayBuffer) => checkAvatar(bytes, { name: 'person.vrm', supportedCompressions: [] });
-const opened = async (bytes: ArrayBuffer) => parseChecked(await checked(bytes), 'person.vrm');
+const opened = async (bytes: ArrayBuffer) => parseChecked(await checked(bytes));
 
 /** Well within every limit, and wrong all the same. */
 const broken: readonly (readonly [string, (json: GltfJson) => void])[] = [

@@ -134,7 +134,7 @@ async function wornOrMoved(bytes: ArrayBuffer, parts: SceneParts): Promise<void>
     return;
   }
   const options = { name, supportedCompressions: [], limits: untrustedAvatarLimits };
-  const { vrm } = await parseChecked(await checkAvatar(bytes, options), name);
+  const { vrm } = await parseChecked(await checkAvatar(bytes, options));
   vrm.scene.traverse((node) => {
     node.updateMatrix();
     expect(node.matrix.elements.every(Number.isFinite), node.name).toBe(true);

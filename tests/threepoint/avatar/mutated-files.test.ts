@@ -94,7 +94,7 @@ test.each([
   ['VRM 1.0', smallVrm],
   ['VRM 0.x', smallOldVrm],
 ])('a small %s is read', async (_, file) => {
-  const { vrm } = await parseChecked(await checkAvatar(file, { name, supportedCompressions: [] }), name);
+  const { vrm } = await parseChecked(await checkAvatar(file, { name, supportedCompressions: [] }));
   expect(vrm.humanoid.getRawBoneNode('head')).not.toBeNull();
 });
 
@@ -128,7 +128,7 @@ test.each([
   ['VRM 0.x', smallOldVrm, { x: 'a', y: 0, z: 0 }],
 ])('the springs of a %s whose numbers are none are left out', async (_, file, offset) => {
   const read = async (bytes: ArrayBuffer) =>
-    (await parseChecked(await checkAvatar(bytes, { name, supportedCompressions: [] }), name)).vrm.springBoneManager;
+    (await parseChecked(await checkAvatar(bytes, { name, supportedCompressions: [] }))).vrm.springBoneManager;
   expect((await read(withOffset(file, undefined)))!.joints.size).toBeGreaterThan(0);
   expect((await read(withOffset(file, offset)))?.joints.size ?? 0).toBe(0);
 });
@@ -153,7 +153,7 @@ test('spoiled avatar files are refused in a sentence or read as finite bodies, i
       counts.refused += 1;
       continue;
     }
-    const read = await building.measure(size, () => parseChecked(checked, name));
+    const read = await building.measure(size, () => parseChecked(checked));
     if (read instanceof Error) {
       expect(read.message, `file ${i}: ${read.stack}`).toMatch(/^person\.vrm: /);
       counts['refused by the reader'] += 1;

@@ -3,7 +3,7 @@ import { BoneChoices } from '../../../src/page/bones/bone-choices';
 import { createPreferenceStore } from '../../../src/page/shell/session/preferences';
 import { BoneMapStore } from '../../../src/page/shell/stage/bone-map-store';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
-import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
+import { gltfFaults } from '../../../src/threepoint/avatar/file/check-avatar';
 import { boneNode } from '../../../src/threepoint/avatar/humanoid/needed-bones';
 import { withNamedBones } from '../../../src/threepoint/avatar/humanoid/write-bone-names';
 import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';

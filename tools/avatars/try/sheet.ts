@@ -112,7 +112,7 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   const bytes = await (await fetch(address)).arrayBuffer();
   const began = performance.now();
   const checked = await checkInWorker(bytes, { name, supportedCompressions: Object.keys(decoders) });
-  const avatar = createAvatar(await parseChecked(checked, name, { decoders }));
+  const avatar = createAvatar(await parseChecked(checked, { decoders }));
   const loadMs = performance.now() - began;
   const scene = createScene();
   scene.add(avatar.object);

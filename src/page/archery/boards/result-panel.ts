@@ -117,7 +117,6 @@ export function createResultPanel(quality: Quality) {
      * panel now.
      */
     restartAt: (origin: Vec3, direction: Vec3): number | null => sheet.buttonAt(origin, direction)?.distance ?? null,
-    /** Lights the button while something points at it. */
     setHovered: (on: boolean): void => sheet.setHovered(on ? 'restart' : null),
   };
 }

@@ -8,7 +8,7 @@ import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 
 /** The texts of the board; equal boards are drawn once. */
-export interface BoardText {
+interface BoardText {
   readonly score: number;
   readonly maximum: number;
   readonly arrows: number;
@@ -57,7 +57,7 @@ export function boardText(state: ArcheryState, time: number): BoardText {
   };
 }
 
-export const boardSize = { width: 1024, height: 640 } as const;
+const boardSize = { width: 1024, height: 640 } as const;
 
 /** Draws an arrow that points up: filled if it is left, an outline if it was shot. */
 function pip(context: CanvasRenderingContext2D, x: number, y: number, height: number, left: boolean): void {
@@ -87,7 +87,7 @@ function pip(context: CanvasRenderingContext2D, x: number, y: number, height: nu
 }
 
 /** Score, arrows, time and the last sentence, on boardSize. */
-export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): void {
+function paintBoard(context: CanvasRenderingContext2D, text: BoardText): void {
   const { width, height } = boardSize;
   paintGround(context, width, height);
   const { score, maximum, seconds, phase } = text;

@@ -9,7 +9,7 @@ export interface ArrowPose {
 }
 
 /** An arrow pose that its owner overwrites. */
-export interface MutableArrowPose extends ArrowPose {
+interface MutableArrowPose extends ArrowPose {
   readonly tip: MutableVec3;
   readonly direction: MutableVec3;
 }

@@ -6,7 +6,7 @@ import { bisect, distance, type MutableVec3, setVec3, smoothstep, type Vec3, vec
  * the string runs on the side of +Z. A limb lies in the plane x = 0: a point of its centre line and its direction
  * there.
  */
-export interface LimbPoint {
+interface LimbPoint {
   readonly y: number;
   readonly z: number;
   /** Angle of the centre line from +Y towards +Z [rad]. */
@@ -18,7 +18,7 @@ export type MutableLimbPoint = Mutable<LimbPoint>;
 
 /** The height at which the limbs leave the riser, above and below the grip: y [m]. */
 export const limbRoot = 0.23;
-export const limbLength = 0.53;
+const limbLength = 0.53;
 /** Points along a limb, root and tip included. */
 export const limbPoints = 17;
 

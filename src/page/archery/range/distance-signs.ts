@@ -12,7 +12,7 @@ const signHeight = 0.28;
 const cell = { width: 256, height: 128 };
 
 /** Formats a distance for a sign: "4.5 m". */
-export const distanceLabel = (distance: number): string => `${Number(distance.toFixed(1))} m`;
+const distanceLabel = (distance: number): string => `${Number(distance.toFixed(1))} m`;
 
 function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[]): void {
   labels.forEach((label, row) => {
@@ -36,7 +36,6 @@ interface Place {
   readonly x: number;
   readonly z: number;
   readonly turn: number;
-  /** Row of its label. */
   readonly row: number;
 }
 

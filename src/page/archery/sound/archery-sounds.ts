@@ -20,7 +20,6 @@ const twangName = (share: number): string => `twang ${share}`;
 /** There is a chime for each target of the game; other scores have that of the nearest. */
 const chimeName = (points: number): string => `chime ${clamp(5 * Math.round(points / 5), 5, 20)}`;
 
-/** The sounds by name. */
 const recipes: Recipes = new Map<string, Recipe>([
   ...Object.entries({ bell, click, earth, rattle, thud, warning, whoosh }),
   ...Array.from({ length: drawSteps + 1 }, (_, step): [string, Recipe][] => {
@@ -49,7 +48,6 @@ export class ArcherySounds {
   readonly #onCaption: (text: string) => void;
   /** The stage that plays the sounds. It must be unlocked; captions work without it. */
   readonly stage: SoundStage;
-  /** The sound of each arrow in the air. */
   readonly #flying = new Map<number, AudioBufferSourceNode>();
   #head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
   /** The creaking of the bow was captioned in this draw. */

@@ -1,7 +1,7 @@
 import { drawText, textWidth } from 'threepoint-ui/vr';
 import { ink } from './board-style';
 
-export interface ScoreHeading {
+interface ScoreHeading {
   readonly score: number;
   /** The highest possible score. */
   readonly of: number;

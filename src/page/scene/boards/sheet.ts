@@ -116,7 +116,6 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
       const id = buttonUnder(shown.buttons, size, from.x + along.x * distance, from.y + along.y * distance);
       return id === null ? null : { id, distance };
     },
-    /** Lights the button that something points at. */
     setHovered(id: Id | null): void {
       hovered = id;
       redraw();
@@ -125,7 +124,7 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
 }
 
 /** The look of a button; `primary`: the main action of the sheet. */
-export interface ButtonLook {
+interface ButtonLook {
   readonly primary?: boolean;
   readonly hovered: boolean;
   /** Weight and size of its label. */

@@ -2,7 +2,7 @@ import { BoxGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, Plane
 import { woodColor } from '../outdoors/wood-color';
 import { merged, painted, paintedBox } from '../painted-geometry';
 
-export interface WoodenBoardShape {
+interface WoodenBoardShape {
   /** The width of the lettering [m]. */
   readonly width: number;
   readonly height: number;
@@ -31,7 +31,6 @@ export function createWoodenBoard({ width, height, middle }: WoodenBoardShape, t
         [width * 0.36, (middle + height / 2) / 2 - 0.02, -0.075],
         woodColor(0),
       ),
-      // A little roof.
       painted(
         new BoxGeometry(width + 0.34, 0.03, 0.3).rotateX(0.22).translate(0, middle + height / 2 + 0.13, 0.02),
         '#4f5b63',

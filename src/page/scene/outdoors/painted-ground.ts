@@ -4,7 +4,7 @@ import { type Color, Mesh, MeshLambertMaterial, PlaneGeometry, type Texture } fr
 const half = 85;
 
 /** What paints a ground, in GLSL. */
-export interface GroundPaint {
+interface GroundPaint {
   readonly colors: Readonly<Record<string, Color | readonly Color[]>>;
   /** Uniforms of the colours, and functions. */
   readonly declarations: string;

@@ -3,7 +3,7 @@ import type { Quality } from '../renderer';
 
 /** The colour of the horizon and of the fog. */
 export const hazeColor = '#dfe9ec';
-export const zenithColor = '#3f7fc4';
+const zenithColor = '#3f7fc4';
 
 /**
  * A summer morning: blue overhead, haze at the horizon, a soft sun with its glow, thin clouds. Drawn behind everything.

@@ -3,7 +3,6 @@ import { forward, type Pose, rotate, up, type Vec3, vec3 } from 'threepoint/math
 /** Makes a sound's samples at a rate [1/s]. */
 export type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
 
-/** The recipes of sounds by name. */
 export type Recipes = ReadonlyMap<string, Recipe>;
 
 /** The part of a stage that the page controls. */

@@ -94,7 +94,6 @@ export function chime(rate: number, points: number): Samples {
   return normalised(samples, rate, 0.5);
 }
 
-/** The bell at the end of a round. */
 export function bell(rate: number): Samples {
   const partials = [
     [0.5, 0.5, 1.3],

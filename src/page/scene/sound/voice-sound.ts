@@ -121,7 +121,6 @@ export class VoiceSound {
     panner.positionZ.value = z;
   }
 
-  /** Silences a voice, or plays it again. */
   setSilent(id: string, silent: boolean): void {
     const heard = this.#voices.get(id);
     if (heard) heard.gain.gain.value = silent ? 0 : 1;

@@ -2,9 +2,9 @@ import { defaultAvatar, skinTones } from 'threepoint/core';
 import { bodyLabels, skinColors } from 'threepoint/three';
 import { button, createStatusLine, element, fileButton, toggle } from 'threepoint-ui';
 import { createLazyBonesForm } from '../../bones/lazy-bones-form';
-import type { AvatarActions, PanelPage, PanelState } from './panel-state';
+import type { PanelActions } from './panel-actions';
+import type { PanelPage, PanelState } from './panel-state';
 
-/** The colours of a built-in avatar. */
 export interface PaletteChoice {
   readonly name: string;
   readonly label: string;
@@ -12,7 +12,7 @@ export interface PaletteChoice {
 }
 
 /** Shows the name of the avatar and, for built-in avatars, their colours. `correct`: what corrects a file's bones. */
-function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions, correct: HTMLElement) {
+function createShown(palettes: readonly PaletteChoice[], actions: PanelActions, correct: HTMLElement) {
   const name = element('p', { class: 'avatar-name' });
   const pending = createStatusLine({ class: 'hint' });
   const builtIn = button('Back to the page’s avatar', () => actions.showBuiltInAvatar());
@@ -78,7 +78,7 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions,
 }
 
 /** Lets the user open another avatar: a file of this device, or an address. */
-function otherAvatars(actions: AvatarActions): HTMLElement {
+function otherAvatars(actions: PanelActions): HTMLElement {
   const address = element('input', {
     type: 'url',
     placeholder: 'https://…/avatar.vrm',
@@ -108,7 +108,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
 }
 
 /** Shows the form for the bones of a file, and the button that opens it for the shown avatar. */
-function createBones(actions: AvatarActions) {
+function createBones(actions: PanelActions) {
   const form = createLazyBonesForm({ apply: (map) => actions.applyBones(map), cancel: () => actions.cancelAvatar() });
   const correct = button('Correct the bones…', () => actions.correctBones());
   return {
@@ -124,7 +124,7 @@ function createBones(actions: AvatarActions) {
 }
 
 /** Which avatars players show to each other. */
-function createSight(actions: AvatarActions) {
+function createSight(actions: PanelActions) {
   const share = toggle('Others see my avatar', (shareAvatar) => actions.keep({ shareAvatar }));
   const plain = toggle('Show all others as mannequins', (plainOthers) => actions.keep({ plainOthers }));
   return {
@@ -148,7 +148,7 @@ function createSight(actions: AvatarActions) {
 }
 
 /** Which avatar the body wears, and how much of it. */
-export function createAvatarPage(palettes: readonly PaletteChoice[], actions: AvatarActions): PanelPage {
+export function createAvatarPage(palettes: readonly PaletteChoice[], actions: PanelActions): PanelPage {
   const bones = createBones(actions);
   const shown = createShown(palettes, actions, bones.correct);
   const sight = createSight(actions);

@@ -1,13 +1,14 @@
 import type { MeasureRange } from 'threepoint/core';
 import { button, element, toggle } from 'threepoint-ui';
 import { estimatorOrder, estimatorTexts } from '../session/estimator-texts';
-import type { BodyActions, PanelPage, PanelState } from './panel-state';
+import type { PanelActions } from './panel-actions';
+import type { PanelPage, PanelState } from './panel-state';
 
 /** What can be typed [cm]. */
 export type MeasureRanges = Readonly<Record<'height' | 'armSpan' | 'forearm', MeasureRange>>;
 
 /** Lets the user choose an estimator. An unavailable one gives the reason. */
-function createEstimators(actions: BodyActions) {
+function createEstimators(actions: PanelActions) {
   const choices = estimatorOrder.map((name) => {
     const { label, text } = estimatorTexts[name];
     const described = `about-${name}`;
@@ -42,7 +43,7 @@ function createEstimators(actions: BodyActions) {
 }
 
 /** Whether the headset's body tracking is used. */
-function createDeviceBody(actions: BodyActions) {
+function createDeviceBody(actions: PanelActions) {
   const ask = toggle('Use the headset’s body tracking', (deviceBody) => actions.change({ deviceBody }));
   const about =
     'Starts when you next enter VR, and lasts until you close the page. It is off by default, because it has crashed the browsers of some headsets.';
@@ -77,7 +78,7 @@ function createMeasure(label: string, range: MeasureRange, onChange: () => void)
 }
 
 /** The measures of the person, typed or measured. */
-function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
+function createMeasures(ranges: MeasureRanges, actions: PanelActions) {
   const apply = () => {
     const valid = [height, armSpan, forearm].every(({ input }) => input.reportValidity());
     const heightCm = height.input.valueAsNumber;
@@ -117,7 +118,7 @@ function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
 }
 
 /** The estimator and the measurements of the body. */
-export function createBodyPage(ranges: MeasureRanges, actions: BodyActions): PanelPage {
+export function createBodyPage(ranges: MeasureRanges, actions: PanelActions): PanelPage {
   const estimators = createEstimators(actions);
   const deviceBody = createDeviceBody(actions);
   const measures = createMeasures(ranges, actions);

@@ -83,17 +83,14 @@ export class Controls {
     this.#desktop.setPanelOpen(open && (asked || !isNarrow()));
   }
 
-  /** Shows a caption of a sound. */
   caption(text: string): void {
     this.#play.caption(text);
   }
 
-  /** Arranges the page's parts in the window. */
   layOut(): void {
     this.#layout.layOut();
   }
 
-  /** Passes a tracked frame to the calibration. */
   observe(frame: TrackingFrame): void {
     this.#measuring.observe(frame);
   }

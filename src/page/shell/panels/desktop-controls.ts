@@ -11,7 +11,8 @@ import { viewNames } from '../../scene/desktop-view';
 import type { InputParts } from '../input/input-parts';
 import { estimatorOrder } from '../session/estimator-texts';
 import type { MotionExport } from './motion-export';
-import { createPanel, type Panel, type PanelActions } from './panel';
+import { createPanel, type Panel } from './panel';
+import type { PanelActions } from './panel-actions';
 import type { PanelState } from './panel-state';
 
 const centimetres = (metres: number): number => 100 * metres;

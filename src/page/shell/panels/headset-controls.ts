@@ -1,14 +1,15 @@
 import type { Pointer, TrackingFrame } from 'threepoint/core';
 import type { FrameReport } from 'threepoint-ui';
 import type { VrPointers } from 'threepoint-ui/vr';
+import type { ActivityMenu, MenuSheet } from '../../activity/activity-menu';
 import type { CalibrationControl } from '../input/calibration-control';
 import type { InputParts } from '../input/input-parts';
 import { UserHeight } from '../input/user-height';
-import type { PanelActions } from './panel';
+import type { StageParts } from '../stage/stage-parts';
+import type { PanelActions } from './panel-actions';
 import { type ComfortActions, comfortSheet } from './vr-menu/comfort-sheet';
 import { GazeOffer } from './vr-menu/gaze-offer';
-import type { VrMenuActions } from './vr-menu/menu-buttons';
-import { menuStateOf } from './vr-menu/menu-state';
+import type { VrMenuActions, VrMenuState } from './vr-menu/menu-buttons';
 import { VrMenu } from './vr-menu/vr-menu';
 import { WristButtons } from './vr-menu/wrist-buttons';
 
@@ -23,7 +24,6 @@ export class HeadsetControls {
   readonly #parts: InputParts;
   readonly #measuring: CalibrationControl;
   readonly #actions: PanelActions;
-  /** Draws the pointers. */
   readonly #rays: VrPointers;
   readonly #menu: VrMenu;
   readonly #wrists = new WristButtons();
@@ -44,7 +44,6 @@ export class HeadsetControls {
     rays.objects.visible = false;
   }
 
-  /** For the scene. */
   get objects() {
     return [this.#menu.object, this.#rays.objects, this.#wrists.object, this.#offer.object] as const;
   }
@@ -96,7 +95,6 @@ export class HeadsetControls {
     this.#rays.show(pointers.offersGaze && !offers ? acting : pointers.all);
   }
 
-  /** Writes the pointers of a kind. */
   #only(isOne: (pointer: Pointer) => boolean, out: Pointer[]): readonly Pointer[] {
     out.length = 0;
     for (const pointer of this.#parts.pointers.all) if (isOne(pointer)) out.push(pointer);
@@ -189,4 +187,32 @@ export class HeadsetControls {
       exit: () => actions.exitVr(),
     };
   }
+}
+
+/** The menu of an activity that has none. */
+const noMenu: ActivityMenu = { entries: [], sheet: null, notice: null, hint: null };
+
+/** Returns the current state of the menu in the headset. `sheet`: the shell's own page in place of it; null: none. */
+export function menuStateOf(
+  { body, settings, activities, notices, headset }: StageParts,
+  measuring: CalibrationControl,
+  sheet: MenuSheet | null,
+): VrMenuState {
+  const activity = activities.current && (activities.current.menu?.() ?? noMenu);
+  return {
+    estimator: body.estimator,
+    unavailable: body.unavailableEstimators,
+    calibration: measuring.step,
+    overlay: settings.vrOverlay,
+    deviceBody: settings.deviceBody,
+    nextPassthrough: headset.passthroughOffered ? settings.passthrough : null,
+    beside: headset.passthrough ? settings.beside : null,
+    inPassthrough: headset.passthrough !== null,
+    builtInBody: settings.builtInBody,
+    skinTone: settings.skinTone,
+    places: activities.all.map(({ name, title }) => ({ name, title })),
+    activity,
+    sheet: sheet ?? activity?.sheet ?? null,
+    notice: activity?.notice ?? notices.current().at(-1)?.text ?? activity?.hint ?? null,
+  };
 }

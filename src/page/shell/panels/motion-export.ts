@@ -22,7 +22,6 @@ export class MotionExport {
     return this.#state;
   }
 
-  /** Cancels the export in progress. */
   cancel(): void {
     this.#cancellation.abort();
   }

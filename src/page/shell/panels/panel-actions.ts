@@ -1,23 +1,29 @@
-import { armSpanFromFingertipSpan, calibrationProblem, eyeHeightFromStature } from 'threepoint/core';
+import {
+  armSpanFromFingertipSpan,
+  type BoneMap,
+  type BuiltInBody,
+  calibrationProblem,
+  type EstimatorName,
+  eyeHeightFromStature,
+  type SkinTone,
+} from 'threepoint/core';
 import { offerDownload } from 'threepoint-ui';
+import type { ViewName } from '../../scene/desktop-view';
 import type { CalibrationControl } from '../input/calibration-control';
 import type { FileOpener } from '../input/file-opener';
+import type { Settings, StoredSettings } from '../session/settings';
 import type { StageParts } from '../stage/stage-parts';
 import type { MotionExport } from './motion-export';
-import type { PanelActions } from './panel';
-import type { AvatarActions, BodyActions, RecordingActions, SettingActions } from './panel-state';
+import type { ExportChoice, PanelState } from './panel-state';
 
-function bodyActions(
-  { store, body, notices, userCalibration }: StageParts,
-  measuring: CalibrationControl,
-): Omit<BodyActions, keyof SettingActions> {
+function bodyActions({ store, body, notices, userCalibration }: StageParts, measuring: CalibrationControl) {
   return {
-    chooseEstimator(name) {
+    chooseEstimator(name: EstimatorName) {
       store.remember({ estimator: name });
       void body.setEstimator(name);
     },
     calibrate: () => measuring.start(),
-    setMeasures({ heightCm, armSpanCm, forearmCm }) {
+    setMeasures({ heightCm, armSpanCm, forearmCm }: Pick<PanelState, 'heightCm' | 'armSpanCm' | 'forearmCm'>) {
       // What is measured of hands and gaze stays: no one types that.
       const { forearm, ...measured } = body.userCalibration;
       const calibration = {
@@ -34,30 +40,32 @@ function bodyActions(
   };
 }
 
-function avatarActions({ writer, avatar }: StageParts, files: FileOpener): Omit<AvatarActions, keyof SettingActions> {
+function avatarActions({ writer, avatar }: StageParts, files: FileOpener) {
   return {
-    choosePalette(palette) {
+    choosePalette(palette: string) {
       writer.keep({ palette });
       avatar.recolour();
     },
-    chooseBuiltInBody(builtInBody) {
+    chooseBuiltInBody(builtInBody: BuiltInBody) {
       writer.keep({ builtInBody });
       files.showBuiltInAvatar();
     },
-    chooseSkinTone(skinTone) {
+    chooseSkinTone(skinTone: SkinTone) {
       writer.keep({ skinTone });
       files.showBuiltInAvatar();
     },
-    openAvatarFile: (file) => void files.open(file),
-    openAvatarUrl: (url) => void files.openAvatar(url),
+    openAvatarFile: (file: File) => void files.open(file),
+    openAvatarUrl: (url: string) => void files.openAvatar(url),
     showBuiltInAvatar: () => files.showBuiltInAvatar(),
     cancelAvatar: () => avatar.cancel(),
+    /** Opens the form for the bones of the shown file. */
     correctBones: () => void avatar.correctBones(),
-    applyBones: (bones) => void files.applyBones(bones),
+    /** Sets which bone of the file that waits is which; null: forgets the user's map. */
+    applyBones: (bones: BoneMap | null) => void files.applyBones(bones),
   };
 }
 
-function recordingActions(parts: StageParts, files: FileOpener, motionExport: MotionExport): RecordingActions {
+function recordingActions(parts: StageParts, files: FileOpener, motionExport: MotionExport) {
   const { writer, settings, recorder, headset, timing, body, onChange } = parts;
   return {
     record() {
@@ -78,51 +86,52 @@ function recordingActions(parts: StageParts, files: FileOpener, motionExport: Mo
       const file = recorder.file();
       if (file) offerDownload(file.name, 'application/json', file.text);
     },
-    exportMotion: (choice) => void motionExport.begin(choice),
+    exportMotion: (choice: ExportChoice) => void motionExport.begin(choice),
     cancelExport: () => motionExport.cancel(),
-    openFiles: (chosen) => files.openAll(chosen),
-    openMotion: (chosen) => files.openAll(chosen, { asMotion: true }),
-    seek(seconds) {
+    /** Opens recordings, or the files of one motion. */
+    openFiles: (chosen: readonly File[]) => files.openAll(chosen),
+    /** Opens files that were chosen as motion capture, of a body that moves its motion. */
+    openMotion: (chosen: readonly File[]) => files.openAll(chosen, { asMotion: true }),
+    seek(seconds: number) {
       recorder.seek(seconds);
       body.discontinuity();
       onChange();
     },
-    setPaused(on) {
+    setPaused(on: boolean) {
       recorder.setPaused(on);
       onChange();
     },
-    setLoop(on) {
+    setLoop(on: boolean) {
       recorder.setLoop(on);
       onChange();
     },
-    setActor(on) {
+    setActor(on: boolean) {
       writer.change({ actor: on });
       body.discontinuity();
       // Without the actor a person must hold the headset: a real one, or the emulated one.
       if (!on) void headset.ensureEmulator().then((emulator) => emulator?.release());
     },
-    setEmulatorPanel(on) {
+    setEmulatorPanel(on: boolean) {
       void headset.emulator?.setPanelVisible(on);
       writer.change({ emulatorPanel: on });
     },
   };
 }
 
-/** Creates the actions of the panel. */
 export function createPanelActions(
   parts: StageParts,
   measuring: CalibrationControl,
   files: FileOpener,
   motionExport: MotionExport,
-): PanelActions {
+) {
   const { writer, stage, userCalibration, headset, onChange } = parts;
   return {
     ...bodyActions(parts, measuring),
     ...avatarActions(parts, files),
     ...recordingActions(parts, files, motionExport),
-    change: (part) => writer.change(part),
-    keep: (part) => writer.keep(part),
-    chooseView(name) {
+    change: (part: Partial<Settings>) => writer.change(part),
+    keep: (part: StoredSettings) => writer.keep(part),
+    chooseView(name: ViewName) {
       stage.view.setView(name);
       onChange();
     },
@@ -130,3 +139,6 @@ export function createPanelActions(
     exitVr: () => headset.exit(),
   };
 }
+
+/** What the controls can do, on the desktop and in the headset. */
+export type PanelActions = ReturnType<typeof createPanelActions>;

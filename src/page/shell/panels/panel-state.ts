@@ -1,8 +1,8 @@
-import type { BoneMap, BuiltInBody, EstimatorName, SkinTone } from 'threepoint/core';
+import type { BuiltInBody, EstimatorName } from 'threepoint/core';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { ViewName } from '../../scene/desktop-view';
 import type { Recorder } from '../../studio/recorder';
-import type { Settings, SettingsWriter } from '../session/settings';
+import type { Settings } from '../session/settings';
 
 /** What the recorder is doing; seconds since its start, of how many. */
 export type RecorderState = Pick<Recorder, 'mode' | 'paused' | 'seconds' | 'duration' | 'loop' | 'name'>;
@@ -60,52 +60,6 @@ export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly ratesHz: readonly number[];
   /** Why the worn headset tracks no body; null: it does, or no headset is worn. */
   readonly bodyComplaint: string | null;
-}
-
-/** Changes settings for this visit (`change`), or also for later ones (`keep`). */
-export type SettingActions = Pick<SettingsWriter, 'change' | 'keep'>;
-
-export interface BodyActions extends SettingActions {
-  chooseEstimator(name: EstimatorName): void;
-  calibrate(): void;
-  setMeasures(measures: Pick<PanelState, 'heightCm' | 'armSpanCm' | 'forearmCm'>): void;
-  resetCalibration(): void;
-}
-
-export interface AvatarActions extends SettingActions {
-  choosePalette(name: string): void;
-  chooseBuiltInBody(name: BuiltInBody): void;
-  chooseSkinTone(tone: SkinTone): void;
-  openAvatarFile(file: File): void;
-  openAvatarUrl(url: string): void;
-  showBuiltInAvatar(): void;
-  cancelAvatar(): void;
-  /** Opens the form for the bones of the shown file. */
-  correctBones(): void;
-  /** Which bone of the file that waits is which; null: forgets the user's map. */
-  applyBones(bones: BoneMap | null): void;
-}
-
-export interface RecordingActions {
-  record(): void;
-  stop(): void;
-  replay(): void;
-  download(): void;
-  exportMotion(choice: ExportChoice): void;
-  cancelExport(): void;
-  /** Recordings, or the files of one motion. */
-  openFiles(files: readonly File[]): void;
-  /** Opens files that were chosen as motion capture, of a body that moves its motion. */
-  openMotion(files: readonly File[]): void;
-  seek(seconds: number): void;
-  setPaused(on: boolean): void;
-  setLoop(on: boolean): void;
-  setActor(on: boolean): void;
-  setEmulatorPanel(on: boolean): void;
-}
-
-export interface ViewActions extends SettingActions {
-  chooseView(view: ViewName): void;
 }
 
 /** A page of the panel, behind its tab. It shows a state and reports wishes; what happens is decided elsewhere. */

@@ -1,21 +1,10 @@
 import { button, element } from 'threepoint-ui';
 import { createAvatarPage, type PaletteChoice } from './avatar-page';
 import { createBodyPage, type MeasureRanges } from './body-page';
-import {
-  type AvatarActions,
-  type BodyActions,
-  exitLabel,
-  type PanelState,
-  type RecordingActions,
-  type ViewActions,
-} from './panel-state';
+import type { PanelActions } from './panel-actions';
+import { exitLabel, type PanelState } from './panel-state';
 import { createRecordingPage } from './recording-page';
 import { createViewPage } from './view-page';
-
-export interface PanelActions extends BodyActions, AvatarActions, RecordingActions, ViewActions {
-  recentre(): void;
-  exitVr(): void;
-}
 
 /** Creates tabs after the ARIA pattern: one tab is in the tab order, and arrow keys move between them. */
 function createTabs(pages: readonly { readonly name: string; readonly content: readonly Node[] }[]): HTMLElement[] {

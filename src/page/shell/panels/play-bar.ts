@@ -18,7 +18,6 @@ export function createPlayBar(activities: Activities) {
   let panel: ActivityPanel | null = null;
 
   return {
-    /** Updates the bar to the current activity. */
     show(): void {
       const { name: current, arriving } = activities;
       for (const { name, node } of places) {

@@ -1,5 +1,6 @@
 import { button, createStatusLine, element, fileButton, toggle } from 'threepoint-ui';
-import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
+import type { PanelActions } from './panel-actions';
+import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState } from './panel-state';
 
 const seconds = (value: number): string => `${value.toFixed(1)} s`;
 
@@ -13,7 +14,7 @@ export function recorderText({ mode, name, seconds: passed, duration }: Recorder
 const about =
   'Records tracking in full precision on this device. Every estimator can replay every recording. Motion capture (BVH, ASF with AMC, VRM Animation) is shown with its ground truth.';
 
-function createRecorderSection(actions: RecordingActions) {
+function createRecorderSection(actions: PanelActions) {
   const record = button('Record', () => actions.record(), { class: 'record' });
   const stop = button('Stop', () => actions.stop());
   const replay = button('Replay', () => actions.replay());
@@ -69,13 +70,13 @@ const exportChoices: readonly (readonly [ExportChoice, label: string, title: str
 ];
 
 /** How far a file is, in words. */
-export const exportText = ({ name, method, fraction, secondsLeft }: ExportState): string => {
+const exportText = ({ name, method, fraction, secondsLeft }: ExportState): string => {
   const left = secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`;
   return `${name} as drawn by ${method}: ${Math.floor(100 * fraction)}\u00a0%${left}`;
 };
 
 /** Files for other programs. */
-function createExportSection(actions: RecordingActions) {
+function createExportSection(actions: PanelActions) {
   const choices = exportChoices.map(([choice, label, title]) =>
     button(label, () => actions.exportMotion(choice), { title }),
   );
@@ -108,7 +109,7 @@ function createExportSection(actions: RecordingActions) {
 }
 
 /** Chooses what moves the body while no headset is worn. */
-function createMovers(actions: RecordingActions) {
+function createMovers(actions: PanelActions) {
   const actor = toggle('Actor moves the body', (on) => actions.setActor(on));
   const emulatorPanel = toggle('Emulator controls', (on) => actions.setEmulatorPanel(on));
   return {
@@ -122,7 +123,7 @@ function createMovers(actions: RecordingActions) {
 }
 
 /** Recordings, and what moves the body instead of a person. */
-export function createRecordingPage(actions: RecordingActions): PanelPage {
+export function createRecordingPage(actions: PanelActions): PanelPage {
   const recorder = createRecorderSection(actions);
   const exports = createExportSection(actions);
   const movers = createMovers(actions);

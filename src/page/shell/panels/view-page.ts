@@ -1,7 +1,8 @@
 import { button, element, toggle } from 'threepoint-ui';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../session/estimator-texts';
-import type { PanelPage, ViewActions } from './panel-state';
+import type { PanelActions } from './panel-actions';
+import type { PanelPage } from './panel-state';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
   'third-person': 'Third person',
@@ -44,7 +45,7 @@ function rateText(rateHz: number, ratesHz: readonly number[]): string {
 }
 
 /** The camera, and what it shows in addition to the body. */
-export function createViewPage(actions: ViewActions): PanelPage {
+export function createViewPage(actions: PanelActions): PanelPage {
   const views = viewNames.map((view) => ({
     view,
     node: button(viewTexts[view], () => actions.chooseView(view), { 'aria-pressed': 'false' }),

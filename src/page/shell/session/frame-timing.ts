@@ -2,7 +2,7 @@ import { recordOf } from 'threepoint/core';
 
 /** The stages of a frame, in the order in which they run. */
 export const stageNames = ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render'] as const;
-export type StageName = (typeof stageNames)[number];
+type StageName = (typeof stageNames)[number];
 
 /** The number of frames in a summary: four seconds at 60 Hz. */
 const length = 240;
@@ -55,7 +55,7 @@ export interface FrameSummary {
 }
 
 /** The object is the same in every frame: copy what must stay. */
-export type FrameListener = (spentMs: Readonly<Record<StageName | 'frame', number>>, late: boolean) => void;
+type FrameListener = (spentMs: Readonly<Record<StageName | 'frame', number>>, late: boolean) => void;
 
 const noTimes = (): Record<StageName, number> => recordOf(stageNames, () => 0);
 

@@ -30,7 +30,7 @@ const usualRateHz = 72;
 const snapAngle = Math.PI / 6;
 
 /** The kind of session that entering would start, and the reason if it is not a real headset; null: none. */
-export interface Readiness {
+interface Readiness {
   readonly real: boolean;
   readonly sentence: string | null;
   /** A session may show the room around the user. */
@@ -71,7 +71,6 @@ export class Headset {
   #entering = false;
   #installing: Promise<void> | null = null;
   #session: Session | null = null;
-  /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */
   #fault: XrFault | null = null;
   /** There is a device: the emulator is not needed. */
   #real = false;
@@ -119,7 +118,6 @@ export class Headset {
     return this.#session?.passthrough ? this.#session.xr : null;
   }
 
-  /** A session may show the room around the user. */
   get passthroughOffered(): boolean {
     return this.#passthroughOffered;
   }

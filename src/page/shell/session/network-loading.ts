@@ -3,19 +3,16 @@ import { type Notices, pageFolder } from 'threepoint-ui';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
 
-/** Returns the address of a network of this page. */
 const contractAt = (name: string): string => `${pageFolder()}/models/${name}.json`;
 /** The share of the download in the time that a network takes to load. */
 const downloadShare = 0.9;
 
-export interface NetworkLoadingOptions {
+/** Loads networks by name. The download of the runtime starts at once. */
+export function createNetworkLoader(options: {
   readonly provider: Switches['executionProvider'];
   readonly notices: Pick<Notices, 'show'>;
   readonly loading: Pick<PageLoading, 'report'>;
-}
-
-/** Loads networks by name. The download of the runtime starts at once. */
-export function createNetworkLoader(options: NetworkLoadingOptions): BodySolverOptions['networks'] {
+}): BodySolverOptions['networks'] {
   const { provider, notices, loading } = options;
   const networksArrive = import('threepoint/onnx').then(({ createInferenceWorker, onnxNetworks }) =>
     onnxNetworks({

@@ -1,6 +1,8 @@
 import type { Body, BodySolverOptions } from 'threepoint';
+import type { PageClock } from 'threepoint/core';
 import type { Avatar, BodyTracker } from 'threepoint/three';
 import type { ServerPresence } from 'threepoint-ui';
+import type { Quality } from '../../scene/renderer';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { PageContext } from './page-context';
@@ -9,6 +11,8 @@ import type { PageStudy } from './page-study';
 
 /** The parts of the page that need no picture. */
 export interface SessionParts extends PageContext {
+  readonly quality: Quality;
+  readonly clock: PageClock;
   readonly loading: PageLoading;
   readonly timing: FrameTiming;
   readonly tracker: BodyTracker<Avatar | null>;

@@ -14,23 +14,20 @@ import type { TaskPlace } from 'threepoint-study/participant';
 import type { MouseAim } from 'threepoint-ui';
 import type { Activity, OpenActivity } from '../../activity/activity';
 import type { ActivityContext, ActivityServices, InputSource } from '../../activity/activity-context';
-import type { Recorder } from '../../studio/recorder';
 import { home } from '../activity-registry';
-import type { SessionParts } from '../session/session-parts';
 import { ActivityStaging } from './activity-staging';
-import type { Picture, Stage } from './stage';
+import type { DrawingParts } from './drawing-parts';
+import type { Picture } from './stage';
 import { unlockSound } from './unlock-sound';
-import type { UserAvatar } from './user-avatar';
 
-export interface ActivitiesOptions extends SessionParts {
+export interface ActivitiesOptions extends DrawingParts {
   readonly activities: readonly Activity[];
-  readonly services: ActivityServices;
   /** The seed of the first layout. */
   readonly seed: number;
-  readonly stage: Stage;
-  readonly avatar: UserAvatar;
-  readonly recorder: Recorder;
   readonly mouse: MouseAim;
+  readonly pointer: ActivityServices['pointer'];
+  readonly fetchBuiltInAvatar: ActivityServices['fetchBuiltInAvatar'];
+  readonly onCaption: ActivityServices['onCaption'];
   /** The user is somewhere else now: filters and clocks restart. */
   onArrival(): void;
 }
@@ -51,7 +48,7 @@ export class Activities {
 
   constructor(options: ActivitiesOptions) {
     this.#options = options;
-    this.#staging = new ActivityStaging(options, options.stage, options.avatar, options.mouse);
+    this.#staging = new ActivityStaging(options, options.mouse);
     this.#layout = { seed: options.seed };
   }
 
@@ -69,7 +66,6 @@ export class Activities {
     return this.#current;
   }
 
-  /** An activity is loading. */
   get arriving(): boolean {
     return this.#arriving;
   }
@@ -90,7 +86,7 @@ export class Activities {
     this.#options.writer.change({ following: null });
     this.#staging.arrange(this.#current, true);
     this.#options.stage.studio.setMarkVisible(this.#current === null);
-    this.#options.services.onCaption('');
+    this.#options.onCaption('');
     this.#options.onArrival();
   }
 
@@ -199,7 +195,7 @@ export class Activities {
   #context(): ActivityContext {
     const inputSource = () => this.inputSource;
     return {
-      ...this.#options.services,
+      ...this.#options,
       layout: this.#layout,
       place: this.#place,
       get inputSource() {

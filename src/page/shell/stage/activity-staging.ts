@@ -2,9 +2,7 @@ import type { Side } from 'threepoint/math';
 import type { MouseAim } from 'threepoint-ui';
 import type { OpenActivity } from '../../activity/activity';
 import { type CameraScene, studioScene } from '../../scene/desktop-view';
-import type { SessionParts } from '../session/session-parts';
-import type { Stage } from './stage';
-import type { UserAvatar } from './user-avatar';
+import type { DrawingParts } from './drawing-parts';
 
 /** The wishes of the mirror. */
 const mirrorStaging: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'watched'> = {
@@ -14,26 +12,21 @@ const mirrorStaging: Pick<OpenActivity, 'scene' | 'mirrorSide' | 'palette' | 'wa
 
 /** Sets camera, mirror, colours and mouse as the current activity wishes, and only when a wish has changed. */
 export class ActivityStaging {
-  readonly #parts: SessionParts;
-  readonly #stage: Stage;
-  readonly #avatar: UserAvatar;
+  readonly #parts: DrawingParts;
   readonly #mouse: MouseAim;
   #scene: CameraScene = studioScene;
   #mirrorSide: Side | null = null;
   #palette: string | null = null;
   #steering = false;
 
-  constructor(parts: SessionParts, stage: Stage, avatar: UserAvatar, mouse: MouseAim) {
+  constructor(parts: DrawingParts, mouse: MouseAim) {
     this.#parts = parts;
-    this.#stage = stage;
-    this.#avatar = avatar;
     this.#mouse = mouse;
   }
 
   /** `current`: null at the mirror. `moveCamera`: also moves the camera to an unchanged scene. */
   arrange(current: OpenActivity | null, moveCamera = false): void {
-    const { settings, headset } = this.#parts;
-    const stage = this.#stage;
+    const { settings, headset, stage, avatar } = this.#parts;
     const { scene, mirrorSide, palette = null, watched = null } = current ?? mirrorStaging;
     const steering = current !== null && settings.mouse && !headset.worn && !watched;
     if (steering !== this.#steering) {
@@ -52,7 +45,7 @@ export class ActivityStaging {
     }
     if (palette !== this.#palette) {
       this.#palette = palette;
-      this.#avatar.setSeatPalette(palette);
+      avatar.setSeatPalette(palette);
     }
   }
 }

@@ -15,42 +15,33 @@ import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-u
 import { decoders } from '../../scene/decoders';
 import type { BoneMapStore } from './bone-map-store';
 
-export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
+const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 
 /** Downloads a built-in avatar. `onProgress` is called with the share [0, 1] that has arrived. */
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
-/** A checked file without its bytes, which can be read from it again. */
-export type AvatarFile = Omit<CheckedAvatar, 'bytes'>;
-
-/** Builds a built-in avatar from its file. */
 export const buildBuiltIn = async (
   body: BuiltInBody,
   bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
 ): Promise<Avatar> => createAvatarBetweenFrames(await parseAvatar(await bytes, bodyLabelOf(body)));
 
-/** An avatar, and the reference by which other players see it. */
-export interface LoadedUserAvatar {
+/** An avatar, and the file or the built-in body that other players see. */
+export interface UserAvatarState {
   readonly avatar: Avatar;
   readonly worn: OwnAvatar;
-  /** Its file, and the map of its bones that the user gave (undefined: none); null: a built-in avatar. */
-  readonly source: { readonly checked: AvatarFile; readonly bones: BoneMap | undefined } | null;
+  /** The user's own file; null: a built-in avatar. */
+  readonly checked: CheckedAvatar | null;
+  /** The map of the file's bones that the user gave. */
+  readonly bones?: BoneMap | undefined;
 }
 
-/**
- * Returns the file for other players, who have no map of its bones. Its hash is null if this page cannot compute it.
- */
-async function fileFor({ bytes, file, hash }: CheckedAvatar, bones: BoneMap | undefined) {
-  if (!bones) return { file, hash };
-  const named = await withNamedBones(bytes, bones);
-  return { file: new Blob([named]), hash: await sha256Base64Url(named) };
+/** Returns the file for other players, who have no map of its bones. */
+async function fileFor(checked: CheckedAvatar, bones: BoneMap | undefined): Promise<OwnAvatar> {
+  if (!bones) return checked;
+  const named = await withNamedBones(await checked.file.arrayBuffer(), bones);
+  return { name: checked.name, file: new Blob([named]), hash: await sha256Base64Url(named) };
 }
-
-const withBytes = async (checked: AvatarFile): Promise<CheckedAvatar> => ({
-  ...checked,
-  bytes: await checked.file.arrayBuffer(),
-});
 
 /** Loads avatars from files, addresses and the page's folder. */
 export class AvatarLoader {
@@ -71,8 +62,8 @@ export class AvatarLoader {
     body: BuiltInBody,
     skinTone: SkinTone | undefined,
     bytes?: Promise<ArrayBuffer>,
-  ): Promise<LoadedUserAvatar> {
-    return { avatar: await buildBuiltIn(body, bytes), worn: builtInAvatarOf(body, skinTone), source: null };
+  ): Promise<UserAvatarState> {
+    return { avatar: await buildBuiltIn(body, bytes), worn: builtInAvatarOf(body, skinTone), checked: null };
   }
 
   /** Reads a file and checks it in a worker. */
@@ -88,32 +79,31 @@ export class AvatarLoader {
    * Builds the avatar of a checked file with the bones that the user gave for it before. Rejects with UnknownBonesError
    * if they are unknown.
    */
-  build(checked: CheckedAvatar, name: string): Promise<LoadedUserAvatar> {
-    return this.#build(checked, name, checked.hash === null ? undefined : this.#boneMaps.of(checked.hash));
+  build(checked: CheckedAvatar): Promise<UserAvatarState> {
+    return this.#build(checked, checked.hash === null ? undefined : this.#boneMaps.of(checked.hash));
   }
 
   /**
    * Builds the avatar of a checked file with these bones, and stores them for the file. null: without a map, which is
    * forgotten.
    */
-  async buildWith(checked: AvatarFile, name: string, bones: BoneMap | null): Promise<LoadedUserAvatar> {
-    const loaded = await this.#build(await withBytes(checked), name, bones ?? undefined);
+  async buildWith(checked: CheckedAvatar, bones: BoneMap | null): Promise<UserAvatarState> {
+    const built = await this.#build(checked, bones ?? undefined);
     if (checked.hash !== null && bones) this.#boneMaps.store(checked.hash, bones);
     else if (checked.hash !== null) this.#boneMaps.forget(checked.hash);
-    return loaded;
+    return built;
   }
 
   /** Reads the bones of a checked file, and what they are without a map. */
-  async bonesOf(checked: AvatarFile, name: string): Promise<ReadBones> {
-    return readFileBones(await withBytes(checked), name, decoders);
+  bonesOf(checked: CheckedAvatar): Promise<ReadBones> {
+    return readFileBones(checked, decoders);
   }
 
-  async #build(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<LoadedUserAvatar> {
-    const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
+  async #build(checked: CheckedAvatar, bones: BoneMap | undefined): Promise<UserAvatarState> {
+    const avatar = await createAvatarBetweenFrames(await parseChecked(checked, { decoders, bones }));
     try {
       await this.#prepare(avatar.object);
-      const { bytes: _, ...file } = checked;
-      return { avatar, worn: { name, ...(await fileFor(checked, bones)) }, source: { checked: file, bones } };
+      return { avatar, worn: await fileFor(checked, bones), checked, bones };
     } catch (error) {
       avatar.dispose();
       throw error;

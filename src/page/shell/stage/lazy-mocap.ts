@@ -4,29 +4,25 @@ import { type Avatar, palettes } from 'threepoint/three';
 import { pageElement } from 'threepoint-ui';
 import type { MocapView } from '../../mocap/mocap-view';
 import type { ClipView } from '../../mocap/motion-bones';
-import type { Recorder } from '../../studio/recorder';
 import { estimatorTexts } from '../session/estimator-texts';
-import type { SessionParts } from '../session/session-parts';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
-
-export interface LazyMocapOptions extends SessionParts {
-  readonly scene: Object3D;
-  readonly recorder: Recorder;
-  readonly boneMaps: BoneMapStore;
-  /** Compiles the materials of an object and uploads its textures before it is shown. */
-  prepare(object: Object3D): Promise<void>;
-}
+import type { DrawingParts } from './drawing-parts';
 
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
 
 /** Loads the motion capture viewer with the first file. */
 export class LazyMocap {
-  readonly #options: LazyMocapOptions;
+  readonly #parts: DrawingParts;
+  readonly #boneMaps: BoneMapStore;
+  readonly #prepare: (object: Object3D) => Promise<void>;
   #view: MocapView | null = null;
 
-  constructor(options: LazyMocapOptions) {
-    this.#options = options;
+  /** `prepare`: compiles the materials of an object and uploads its textures before it is shown. */
+  constructor(parts: DrawingParts, boneMaps: BoneMapStore, prepare: (object: Object3D) => Promise<void>) {
+    this.#parts = parts;
+    this.#boneMaps = boneMaps;
+    this.#prepare = prepare;
   }
 
   /**
@@ -36,14 +32,14 @@ export class LazyMocap {
   async open(
     sources: readonly (File | string)[],
     view: ClipView = {},
-    requestNumber = this.#options.recorder.nextRequest(),
+    requestNumber = this.#parts.recorder.nextRequest(),
   ): Promise<void> {
     try {
       const { MocapView } = await import('../../mocap/mocap-view');
       this.#view ??= this.#build(MocapView);
     } catch (error) {
       const reason = firstLine(reasonOf(error));
-      this.#options.notices.show('error', `The motion capture viewer could not be loaded: ${reason}`);
+      this.#parts.notices.show('error', `The motion capture viewer could not be loaded: ${reason}`);
     }
     await this.#view?.open(sources, view, requestNumber);
   }
@@ -53,7 +49,6 @@ export class LazyMocap {
     return this.#view?.aside ?? 0;
   }
 
-  /** Updates the view to a frame of the page. */
   frame(frame: TrackingFrame, pose: AvatarPose): void {
     this.#view?.frame(frame, pose);
   }
@@ -64,9 +59,12 @@ export class LazyMocap {
   }
 
   #build(View: typeof MocapView): MocapView {
-    const { body, recorder, store, onChange } = this.#options;
+    const { body, recorder, store, stage, onChange } = this.#parts;
     return new View({
-      ...this.#options,
+      ...this.#parts,
+      scene: stage.studio.scene,
+      boneMaps: this.#boneMaps,
+      prepare: this.#prepare,
       labels,
       region: pageElement('play', HTMLElement),
       replay: recorder,
@@ -90,10 +88,10 @@ export class LazyMocap {
 
   /** Loads a built-in avatar in other colours than those of the first. */
   async #loadAvatar(): Promise<Avatar> {
-    const { builtInBody, palette } = this.#options.settings;
+    const { builtInBody, palette } = this.#parts.settings;
     const avatar = await buildBuiltIn(builtInBody);
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
-    await this.#options.prepare(avatar.object);
+    await this.#prepare(avatar.object);
     return avatar;
   }
 }

@@ -1,19 +1,16 @@
 import { firstLine, reasonOf } from 'threepoint/core';
 import type { PassthroughOptions, PassthroughRoom } from '../../passthrough/passthrough-room';
-import type { Quality } from '../../scene/renderer';
 import type { StageParts } from './stage-parts';
 
 /** Loads the user's own room for a session that shows it; other sessions and the desktop never load its code. */
 export class PassthroughHost {
   readonly #parts: StageParts;
-  readonly #quality: Quality;
   readonly #isCovered: () => boolean;
   #room: PassthroughRoom | null = null;
 
   /** `isCovered`: whether the mirror is behind something that a hand points at. */
-  constructor(parts: StageParts, quality: Quality, isCovered: () => boolean) {
+  constructor(parts: StageParts, isCovered: () => boolean) {
     this.#parts = parts;
-    this.#quality = quality;
     this.#isCovered = isCovered;
   }
 
@@ -48,10 +45,10 @@ export class PassthroughHost {
   }
 
   #roomOptions(session: XRSession): PassthroughOptions {
-    const { headset, stage, activities, store, notices } = this.#parts;
+    const { headset, stage, activities, store, notices, quality } = this.#parts;
     return {
       notices,
-      quality: this.#quality,
+      quality,
       isCovered: this.#isCovered,
       session,
       room: headset.room,

@@ -75,7 +75,6 @@ export class Stage {
     this.renderer.info.autoReset = false;
   }
 
-  /** The reductions of the newest picture. */
   get savings(): Savings {
     return this.#savings;
   }

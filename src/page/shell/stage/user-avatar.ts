@@ -14,13 +14,12 @@ import type { OwnAvatar } from 'threepoint-rooms';
 import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { SessionParts } from '../session/session-parts';
-import { type AvatarFile, type AvatarLoader, fetchBuiltInAvatar, type LoadedUserAvatar } from './avatar-loader';
+import { type AvatarLoader, fetchBuiltInAvatar, type UserAvatarState } from './avatar-loader';
 
 /** An avatar that was requested, until it is shown, refused or cancelled. */
 interface Request {
   readonly turn: number;
   readonly name: string;
-  /** It is a built-in avatar. */
   readonly isBuiltIn: boolean;
   readonly cancellation: AbortController;
   /** The checked file; null: not loaded yet, or a built-in avatar. */
@@ -35,16 +34,15 @@ export class UserAvatar {
   readonly #parts: SessionParts;
   readonly #loader: AvatarLoader;
   #name = bodyLabelOf(defaultAvatar);
-  #worn: OwnAvatar = defaultAvatar;
-  #source: LoadedUserAvatar['source'] = null;
+  /** What is shown; the loader's avatar itself is the tracker's. */
+  #state: Omit<UserAvatarState, 'avatar'> = { worn: defaultAvatar, checked: null };
   #seatPalette: string | null = null;
   #pending: string | null = null;
   /** The number of requests, and that of the request that is shown. */
   #requested = 0;
   #shown = 0;
-  /** The file that is loading; null: none. */
   #loading: Request | null = null;
-  #waiting: (SkeletonToMap & { readonly checked: AvatarFile }) | null = null;
+  #waiting: (SkeletonToMap & { readonly checked: CheckedAvatar }) | null = null;
 
   constructor(parts: SessionParts, loader: AvatarLoader) {
     this.#parts = parts;
@@ -61,22 +59,22 @@ export class UserAvatar {
 
   /** Whether it is a built-in avatar, whose colours can be chosen. */
   get isBuiltIn(): boolean {
-    return typeof this.#worn === 'string';
+    return typeof this.worn === 'string';
   }
 
   /** The built-in avatar that is shown; null: it is a file. */
   get builtInBody(): BuiltInBody | null {
-    return typeof this.#worn === 'string' ? bodyOf(this.#worn) : null;
+    return typeof this.worn === 'string' ? bodyOf(this.worn) : null;
   }
 
   /** The avatar for other players: the same object for as long as it is shown. */
   get worn(): OwnAvatar {
-    return this.#worn;
+    return this.#state.worn;
   }
 
   /** Returns the file of the avatar. Rejects with a reason if it can no longer be read. */
   file(): Promise<ArrayBuffer> {
-    return typeof this.#worn === 'string' ? fetchBuiltInAvatar(bodyOf(this.#worn)) : this.#worn.file.arrayBuffer();
+    return typeof this.worn === 'string' ? fetchBuiltInAvatar(bodyOf(this.worn)) : this.worn.file.arrayBuffer();
   }
 
   /** The state of the last request in words; null: it is shown. */
@@ -91,7 +89,7 @@ export class UserAvatar {
 
   /** Whether the shown avatar is a file, whose bones the user can correct. */
   get canCorrectBones(): boolean {
-    return this.#source !== null && this.#waiting === null && !this.isLoading;
+    return this.#state.checked !== null && this.#waiting === null && !this.isLoading;
   }
 
   /** A file whose bones the user maps; null: none. */
@@ -138,7 +136,7 @@ export class UserAvatar {
     return this.#arrive(request, async () => {
       const { signal } = request.cancellation;
       request.checked = await this.#loader.check(source, { onProgress: this.#progressOf(request), signal });
-      return this.#loader.build(request.checked, request.name);
+      return this.#loader.build(request.checked);
     }).catch((error: unknown) => {
       if (!(error instanceof MotionOnlyError)) throw error;
       return 'motion' as const;
@@ -147,12 +145,13 @@ export class UserAvatar {
 
   /** Offers the bones of the shown file for correction: `waiting` has them. A failure becomes a notice. */
   async correctBones(): Promise<void> {
-    const [source, name, turn] = [this.#source, this.#name, this.#requested];
-    if (!source) return;
-    const { checked, bones } = source;
+    const [state, turn] = [this.#state, this.#requested];
+    const { checked, bones } = state;
+    if (!checked) return;
+    const { name } = checked;
     try {
-      const { joints, matched, confidence, accepted } = await this.#loader.bonesOf(checked, name);
-      if (this.#requested !== turn || this.#source !== source || this.#waiting) return;
+      const { joints, matched, confidence, accepted } = await this.#loader.bonesOf(checked);
+      if (this.#requested !== turn || this.#state !== state || this.#waiting) return;
       const [own, sure] = bones ? [bones, {}] : [matched, confidence];
       const canForgetMap = bones !== undefined && accepted;
       this.#waiting = {
@@ -182,7 +181,7 @@ export class UserAvatar {
     if (!waiting) return false;
     const { name, checked } = waiting;
     try {
-      const loaded = await this.#loader.buildWith(checked, name, bones);
+      const loaded = await this.#loader.buildWith(checked, bones);
       if (this.#waiting !== waiting) {
         loaded.avatar.dispose();
         return false;
@@ -235,7 +234,7 @@ export class UserAvatar {
    * Shows the avatar that `load` returns, unless a later request has been shown before. Rejects only where the file
    * holds motion and no body.
    */
-  async #arrive(request: Request, load: () => Promise<LoadedUserAvatar>): Promise<boolean> {
+  async #arrive(request: Request, load: () => Promise<UserAvatarState>): Promise<boolean> {
     const { turn, name, cancellation } = request;
     try {
       const loaded = await load();
@@ -275,17 +274,16 @@ export class UserAvatar {
     if (isNewest) this.#pending = isBuiltIn ? null : `${name} could not be shown.`;
   }
 
-  #show({ avatar, worn, source }: LoadedUserAvatar, name: string, turn: number): void {
+  #show({ avatar, ...state }: UserAvatarState, name: string, turn: number): void {
     const { tracker, settings } = this.#parts;
     tracker.setAvatar(avatar);
     this.#name = name;
-    this.#worn = worn;
-    this.#source = source;
+    this.#state = state;
     this.#shown = turn;
     this.#waiting = null;
     if (turn === this.#requested) this.#pending = null;
     this.recolour();
-    if (typeof worn === 'string') avatar.setSkinTone(skinToneOf(worn));
+    if (typeof state.worn === 'string') avatar.setSkinTone(skinToneOf(state.worn));
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
   }
 }

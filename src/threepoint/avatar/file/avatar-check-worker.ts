@@ -14,7 +14,7 @@ export type AvatarCheckResponse =
 
 self.addEventListener('message', ({ data: { bytes, ...question } }: MessageEvent<AvatarCheckRequest>) => {
   checkAvatar(bytes, question).then(
-    (checked) => self.postMessage({ checked } satisfies AvatarCheckResponse, { transfer: [checked.bytes] }),
+    (checked) => self.postMessage({ checked } satisfies AvatarCheckResponse),
     (error: unknown) =>
       self.postMessage(
         (error instanceof MotionOnlyError

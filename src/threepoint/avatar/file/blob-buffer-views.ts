@@ -13,12 +13,12 @@ interface Description {
 const isPacked = (extension: string): boolean => extension.endsWith('meshopt_compression');
 
 /**
- * Reads the buffer views of a GLB from a Blob of the file: meshes are copied one by one, images are slices of the Blob,
- * which the browser decodes on another thread. GLTFLoader copies the whole binary chunk, and each image twice, on the
- * page's thread.
+ * Reads the buffer views of a GLB from its binary chunk: meshes are read one by one, images are slices of the Blob,
+ * which the browser decodes on another thread. GLTFLoader copies the whole chunk, and each image twice, on the page's
+ * thread.
  */
 export const blobBufferViews =
-  (binary: Uint8Array, file: Blob) =>
+  (binary: Blob) =>
   (parser: GLTFParser): GLTFLoaderPlugin => {
     const { bufferViews = [], images = [] } = parser.json as Description;
     const pictures = new Set(images.map(({ bufferView }) => bufferView));
@@ -29,7 +29,7 @@ export const blobBufferViews =
         Object.assign(parser.extensions, {
           KHR_binary_glTF: {
             get body() {
-              return binary.slice().buffer;
+              return binary.arrayBuffer();
             },
           },
         });
@@ -39,9 +39,8 @@ export const blobBufferViews =
         const view = bufferViews[index];
         if (!view || Object.keys(view.extensions ?? {}).some(isPacked)) return null;
         const from = view.byteOffset ?? 0;
-        const to = from + view.byteLength;
-        if (!pictures.has(index)) return Promise.resolve(binary.slice(from, to).buffer);
-        const part = file.slice(binary.byteOffset + from, binary.byteOffset + to);
+        const part = binary.slice(from, from + view.byteLength);
+        if (!pictures.has(index)) return part.arrayBuffer();
         // reason: GLTFLoader passes a picture's view to a new Blob, which accepts a Blob; the types allow bytes only.
         return Promise.resolve(part as unknown as ArrayBuffer);
       },

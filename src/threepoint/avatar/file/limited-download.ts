@@ -10,10 +10,8 @@ export interface FileKind {
 
 export interface DownloadOptions {
   /** Called with the fraction [0, 1] that has loaded. */
-  readonly onProgress?: (share: number) => void;
-  /** Cancels a download. */
+  readonly onProgress?: (fraction: number) => void;
   readonly signal?: AbortSignal;
-  /** The headers of a download. */
   readonly headers?: Readonly<Record<string, string>>;
 }
 

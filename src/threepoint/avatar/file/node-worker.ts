@@ -25,9 +25,6 @@ const encoded = (bytes: Uint8Array): string => {
   return btoa(text);
 };
 
-/** Returns whether workers of the web exist; in Node, onnxruntime-web sets this global to those of worker_threads. */
-export const hasWebWorkers = (): boolean => globalThis.Worker?.prototype instanceof EventTarget;
-
 /**
  * Starts a thread of Node with limited memory, as a worker of the page; null: this is no Node. `code`: a module without
  * imports. `megabytes`: the limit; by default the memory of a page on a headset.

@@ -2,8 +2,7 @@ import { reasonOf } from '../../core/errors/reasons';
 import { convertToGlb } from './convert-to-glb';
 import { readGlbChunks } from './glb-chunks';
 
-/** The parts of a glTF file with motion. */
-export interface GltfMotion {
+interface GltfMotion {
   readonly format: 'gltf';
   readonly description: unknown;
   readonly binary: Uint8Array;

@@ -3,7 +3,6 @@ import { type Bone, type Object3D, Quaternion, Vector3 } from 'three';
 import { fingerBoneNames } from '../../core/body/finger-bone-names';
 import {
   bendFromPoints,
-  type FingerGeometry,
   type FingerPoints,
   fingerFrames,
   type HandGeometry,
@@ -32,13 +31,13 @@ import {
 import { boneNode } from '../humanoid/needed-bones';
 import { skinnedMeshesOf } from '../scene-meshes';
 
-export type BoneIndex = 0 | 1 | 2;
+type BoneIndex = 0 | 1 | 2;
 
 /**
  * A bone of a finger. Its node's rotation is before · turned · after, where turned is the rotation since the rest pose
  * relative to the carrying bone, in the frame of the wrist.
  */
-export interface FingerBone {
+interface FingerBone {
   readonly node: Object3D;
   readonly index: BoneIndex;
   /** The bone of the finger that is its parent; null: the hand. */
@@ -92,13 +91,7 @@ export function readRigHand(vrm: VRM, side: Side): RigHand {
   return { fingers, geometry: whole ? (geometries as HandGeometry) : null };
 }
 
-interface FoundFinger {
-  readonly name: FingerName;
-  readonly finger: RigFinger | null;
-  readonly geometry: FingerGeometry | null;
-}
-
-function readFinger(vrm: VRM, side: Side, name: FingerName, hand: Object3D): FoundFinger {
+function readFinger(vrm: VRM, side: Side, name: FingerName, hand: Object3D) {
   const nodes = nodesOf(vrm, side, name);
   if (!nodes.some(Boolean)) return { name, finger: null, geometry: null };
   const points = makeFingerPoints();
@@ -163,11 +156,11 @@ function skinOf(scene: Object3D, node: Object3D | null): readonly Vector3[] | nu
     const { skinIndex, skinWeight, position } = object.geometry.attributes;
     if (!skinIndex || !skinWeight || !position) continue;
     for (let v = 0; v < position.count; v++) {
-      let share = 0;
+      let fraction = 0;
       for (let slot = 0; slot < 4; slot++) {
-        if (skinIndex.getComponent(v, slot) === bone) share += skinWeight.getComponent(v, slot);
+        if (skinIndex.getComponent(v, slot) === bone) fraction += skinWeight.getComponent(v, slot);
       }
-      if (share > 0.5) found.push(object.getVertexPosition(v, new Vector3()).applyMatrix4(object.matrixWorld));
+      if (fraction > 0.5) found.push(object.getVertexPosition(v, new Vector3()).applyMatrix4(object.matrixWorld));
     }
   }
   return found.length >= 4 ? found : null;

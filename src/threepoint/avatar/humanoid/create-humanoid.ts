@@ -2,7 +2,7 @@ import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/thr
 import { type Group, type Object3D, Vector3 } from 'three';
 import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
-import { humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { fileBones, UnknownBonesError } from '../../core/humanoid/unknown-bones-error';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
@@ -91,12 +91,11 @@ export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D>
 function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
   const { nodes, joints } = skeletonOf(scene, name);
   const match = matchHumanoid(joints);
-  const complaint = humanoidComplaint(match);
-  if (!complaint)
-    return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
+  const problem = humanoidProblem(match);
+  if (!problem) return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
   if (joints.every((joint) => joint.name === '')) throw new Error(`${name}: no humanoid in the file: it has no bones`);
   const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
-  throw new UnknownBonesError(`${name}: ${complaint}. ${advice}`, fileBones(joints, match.map));
+  throw new UnknownBonesError(`${name}: ${problem}. ${advice}`, fileBones(joints, match.map));
 }
 
 /** Returns the nodes that a map names; of several with one name, one that moves skin. Throws if a node is missing. */

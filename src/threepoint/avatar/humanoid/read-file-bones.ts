@@ -1,6 +1,6 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
-import { type BoneMatch, humanoidComplaint, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { type BoneMatch, humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { type FileBones, fileBones } from '../../core/humanoid/unknown-bones-error';
 import type { CheckedAvatar } from '../file/check-avatar';
 import { type Decoders, readScene } from '../load-avatar';
@@ -15,8 +15,8 @@ export interface ReadBones extends FileBones {
  * Reads the bones of a checked file and matches them: by a VRM's humanoid, else by the matcher. Rejects with an Error
  * that names the file.
  */
-export async function readFileBones(checked: CheckedAvatar, name: string, decoders: Decoders): Promise<ReadBones> {
-  const { gltf, own } = await readScene(checked, name, { decoders });
+export async function readFileBones(checked: CheckedAvatar, decoders: Decoders): Promise<ReadBones> {
+  const { gltf, own } = await readScene(checked, { decoders });
   const { scene } = gltf;
   try {
     // three-vrm adds joints that the file does not have.
@@ -25,12 +25,12 @@ export async function readFileBones(checked: CheckedAvatar, name: string, decode
     const stated = Object.entries(own?.humanoid.humanBones ?? {}).map(([bone, { node }]) => ({ bone, node }));
     const { nodes, joints } = skeletonOf(
       scene,
-      name,
+      checked.name,
       stated.map(({ node }) => node),
     );
     if (!own) {
       const match = matchHumanoid(joints);
-      return { ...fileBones(joints, match.map), accepted: humanoidComplaint(match) === null };
+      return { ...fileBones(joints, match.map), accepted: humanoidProblem(match) === null };
     }
     const matches = stated.map(({ bone, node }): readonly [BoneName, BoneMatch] => [
       bone as BoneName,

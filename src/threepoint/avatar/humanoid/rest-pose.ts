@@ -17,7 +17,7 @@ const smallest = 0.4;
 const largest = 4;
 const usual = 1.6;
 /** The height of the ankle above the sole [fraction of the height of the head joint]. */
-const ankleShare = 0.065;
+const ankleFraction = 0.065;
 /** The angle from which a limb counts as bent [rad]. */
 const armBend = 0.03;
 const handBend = 0.1;
@@ -116,9 +116,9 @@ function assertBodyProportions(body: RestingBody): void {
     ['rightLowerArm', 'rightHand'],
   ];
   for (const [from, to] of limbs) {
-    const share = body.at(from)!.distanceTo(body.at(to)!) / trunk;
-    if (share > 0.02 && share < 5) continue;
-    const part = `${Number(share.toPrecision(2))} times as far from ${from} as the head from the hips`;
+    const fraction = body.at(from)!.distanceTo(body.at(to)!) / trunk;
+    if (fraction > 0.02 && fraction < 5) continue;
+    const part = `${Number(fraction.toPrecision(2))} times as far from ${from} as the head from the hips`;
     body.complain(`its joints are no body’s: ${to} lies ${part}`);
   }
 }
@@ -151,7 +151,7 @@ function lowest(body: RestingBody): number {
   const feet = [body.at('leftFoot'), body.at('rightFoot')].flatMap((foot) => foot?.y ?? []);
   if (feet.length === 0) return head - 2.6 * (head - body.at('hips')!.y);
   const ankle = Math.min(...feet);
-  return ankle - (head - ankle) * ankleShare;
+  return ankle - (head - ankle) * ankleFraction;
 }
 
 /**

@@ -193,8 +193,8 @@ export class LegPosture {
   private standUp(): void {
     this.gait.reset();
     this.stepping.reset();
-    this.pins.left.share = 0;
-    this.pins.right.share = 0;
+    this.pins.left.fraction = 0;
+    this.pins.right.fraction = 0;
     this.known = false;
   }
 

@@ -64,7 +64,7 @@ const lead = 0.1;
 const followHalfLife = 0.06;
 const standingHalfLife = 0.01;
 /** The largest height of the sole [leg lengths]. */
-const liftShare = 0.09;
+const liftFraction = 0.09;
 
 /** The time [s] in which a lifted foot reaches its full speed. */
 const takeOff = 0.12;
@@ -155,17 +155,17 @@ function plantWhereDue(foot: FootState): void {
 }
 
 function liftOf(foot: FootState, { legLength }: Stance): number {
-  const highest = liftShare * legLength;
+  const highest = liftFraction * legLength;
   if (foot.leftBehind) return 0.6 * highest * Math.sin(Math.PI * Math.min(1, foot.seconds / ownStep));
   return highest * clamp((1.5 * (plantAbove - foot.standing)) / plantAbove, minLift, 1);
 }
 
 function swing(foot: FootState, goal: ExpectedFoot, deltaSeconds: number): void {
-  const share = smoothingFactor(followHalfLife, deltaSeconds) * Math.min(1, foot.seconds / takeOff);
+  const fraction = smoothingFactor(followHalfLife, deltaSeconds) * Math.min(1, foot.seconds / takeOff);
   const { position } = foot;
-  position.x += (goal.x + foot.velocityX * lead - position.x) * share;
-  position.z += (goal.z + foot.velocityZ * lead - position.z) * share;
-  foot.yaw += wrapAngle(goal.yaw - foot.yaw) * share;
+  position.x += (goal.x + foot.velocityX * lead - position.x) * fraction;
+  position.z += (goal.z + foot.velocityZ * lead - position.z) * fraction;
+  foot.yaw += wrapAngle(goal.yaw - foot.yaw) * fraction;
 }
 
 function followGoal(foot: FootState, goal: ExpectedFoot, deltaSeconds: number): void {

@@ -110,7 +110,7 @@ function materialsOf(mesh: Mesh): Material[] {
 }
 
 /** The visible parts of a body: all, head and hands, or nothing before its first pose. */
-export type VisibleParts = 'body' | 'hands' | 'nothing';
+type VisibleParts = 'body' | 'hands' | 'nothing';
 
 /** Controls the meshes of an avatar: which parts are drawn, for which cameras, in which colours. */
 export class BodyMeshes {

@@ -14,7 +14,7 @@ import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import type { Rig, RigBone } from './rig';
 
 /** The fraction of a bone's length that belongs to the bone; its end belongs to the next bone. */
-const ownShare = 0.98;
+const ownFraction = 0.98;
 /** The number of vertices that one step processes. */
 const verticesAStep = 2048;
 
@@ -35,7 +35,7 @@ function nearestBone(bones: Bones, place: Vector3): RigBone {
     const { parent } = bone;
     if (!parent) continue;
     segment.set(parent.restPosition, bone.restPosition);
-    const along = Math.min(ownShare, segment.closestPointToPointParameter(place, true));
+    const along = Math.min(ownFraction, segment.closestPointToPointParameter(place, true));
     offer(parent, segment.at(along, nearest).distanceTo(place));
   }
   if (!best) throw new Error('avatar/loose-parts: a rig without bones');

@@ -22,9 +22,9 @@ import type { Rig } from './rig';
 /** The largest change of an upper arm's length [fraction] before the shoulder joint moves. */
 const armGives = 0.06;
 /** The base of a missing neck bone, from the middle of the shoulders to the head [fraction]. */
-const neckShare = 0.3;
+const neckFraction = 0.3;
 /** The base of a missing clavicle bone, from the neck to the shoulder [fraction]. */
-const clavicleShare = 0.2;
+const clavicleFraction = 0.2;
 
 /** A vertebra of the rig, with its offset from the one below at rest, scaled to the body [m]. */
 interface Link {
@@ -32,7 +32,7 @@ interface Link {
   readonly below: JointName;
   readonly offset: MutableVec3;
   /** The fraction of the chain's error that is added to this joint: 1 at the neck. */
-  share: number;
+  fraction: number;
 }
 
 interface Shoulder {
@@ -99,7 +99,7 @@ export class RigTrunk {
     let below: JointName = 'hips';
     for (const name of ['spine', 'chest', 'upperChest'] as const) {
       if (!rig.rest(name)) continue;
-      this.links.push({ name, below, offset: vec3(0, 0, 0), share: 0 });
+      this.links.push({ name, below, offset: vec3(0, 0, 0), fraction: 0 });
       below = name;
     }
     this.topVertebra = below;
@@ -116,24 +116,24 @@ export class RigTrunk {
     };
     const [hips, head, left, right] = [rest('hips'), rest('head'), rest('leftUpperArm'), rest('rightUpperArm')];
     if (!hips || !head || !left || !right) throw new Error('avatar/rig-trunk: a rig without hips, head or arms');
-    const restNeck = rest('neck') ?? lerp(lerp(left, right, 0.5), head, neckShare);
+    const restNeck = rest('neck') ?? lerp(lerp(left, right, 0.5), head, neckFraction);
     subtract(head, restNeck, this.neckToHead);
     // The spine is scaled to the distance from pelvis to head; its joints keep their proportions.
     const wanted = tPose.head.position.y - this.neckToHead.y - tPose.hips.position.y;
-    const share = Math.max(0.2, wanted / Math.max(1e-3, restNeck.y - hips.y));
+    const fraction = Math.max(0.2, wanted / Math.max(1e-3, restNeck.y - hips.y));
     let below = hips;
     for (const link of this.links) {
       const joint = rest(link.name) ?? below;
       subtract(joint, below, link.offset);
-      setVec3(link.offset, link.offset.x, link.offset.y * share, link.offset.z);
-      link.share = clamp((joint.y - hips.y) / Math.max(1e-3, restNeck.y - hips.y), 0, 1);
+      setVec3(link.offset, link.offset.x, link.offset.y * fraction, link.offset.z);
+      link.fraction = clamp((joint.y - hips.y) / Math.max(1e-3, restNeck.y - hips.y), 0, 1);
       below = joint;
     }
     subtract(restNeck, below, this.neckOffset);
-    setVec3(this.neckOffset, this.neckOffset.x, this.neckOffset.y * share, this.neckOffset.z);
+    setVec3(this.neckOffset, this.neckOffset.x, this.neckOffset.y * fraction, this.neckOffset.z);
     for (const { clavicle, upperArm, root, along } of this.shoulders) {
       const tip = upperArm === 'leftUpperArm' ? left : right;
-      const begin = rest(clavicle) ?? lerp(restNeck, tip, clavicleShare);
+      const begin = rest(clavicle) ?? lerp(restNeck, tip, clavicleFraction);
       subtract(begin, restNeck, root);
       subtract(tip, begin, along);
     }
@@ -150,7 +150,8 @@ export class RigTrunk {
     const top = joints[this.topVertebra];
     add(top.position, rotate(top.orientation, this.neckOffset, this.reached), this.reached);
     subtract(neck, this.reached, missed);
-    for (const { name, share } of this.links) addScaled(joints[name].position, missed, share, joints[name].position);
+    for (const { name, fraction } of this.links)
+      addScaled(joints[name].position, missed, fraction, joints[name].position);
     copyVec3(neck, joints.neck.position);
     for (const shoulder of this.shoulders) this.applyShoulder(shoulder, joints);
   }

@@ -217,7 +217,6 @@ export class Rig {
     delete this.joints[name];
   }
 
-  /** Clears the drawn joints. */
   forgetJoints(): void {
     for (const name of this.bones.keys()) delete this.joints[name];
   }
@@ -241,7 +240,6 @@ function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number
   return target.scale(scaling.setScalar(uniform));
 }
 
-/** Returns the number of ancestors of a bone's node. */
 function depthOf({ node }: RigBone): number {
   let depth = 0;
   for (let above = node.parent; above; above = above.parent) depth += 1;

@@ -89,18 +89,13 @@ function alongBone(bones: readonly Object3D[], bone: Object3D, next: Object3D): 
   return found;
 }
 
-interface RotationScale {
-  readonly rotation: Quaternion;
-  readonly scale: Vector3;
-}
-
 /** Returns the skin matrix of a bone at rest; the identity where the file rests in its bind pose. */
 function skinMatrix({ bones, boneInverses }: Skeleton, index: number): Matrix4 {
   const [bone, inverse] = [bones[index], boneInverses[index]];
   return bone && inverse ? new Matrix4().multiplyMatrices(bone.matrixWorld, inverse) : new Matrix4();
 }
 
-function rotationScaleOf(matrix: Matrix4): RotationScale {
+function rotationScaleOf(matrix: Matrix4) {
   const [rotation, scale] = [new Quaternion(), new Vector3()];
   matrix.decompose(new Vector3(), rotation, scale);
   return { rotation, scale };
@@ -194,7 +189,6 @@ function addWeightAlong(weights: VertexWeights, row: readonly number[], weight: 
   if (after !== undefined) addWeight(weights, after, weight * (step - index));
 }
 
-/** The weights that a vertex has of one limb. */
 interface LimbWeights {
   readonly limb: LimbIndices;
   readonly upper: number;

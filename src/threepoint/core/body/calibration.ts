@@ -8,7 +8,7 @@ export interface Calibration {
   readonly eyeHeight: number;
   /** Distance [m] from wrist to wrist, arms stretched out sideways. */
   readonly armSpan: number;
-  /** From elbow to wrist [m]. Absent: unknown, and estimated as an average share of the arm. */
+  /** From elbow to wrist [m]. Absent: unknown, and estimated as an average fraction of the arm. */
   readonly forearm?: number | undefined;
   /**
    * How far up [rad] the headset points when its user looks straight ahead: it sits tilted on nearly every user.
@@ -24,8 +24,8 @@ export interface Calibration {
 /** The steepest plausible tilt of a headset [rad]; at a steeper one the user was not looking ahead. */
 export const maxGazePitch = Math.PI / 12;
 
-// Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II
-// agrees within 1 %.
+// Height of the eyes above the floor as a fraction of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR
+// II agrees within 1 %.
 const EYE_HEIGHT_PER_STATURE = 0.936;
 
 // The arms and shoulders of the training data, bone by bone, add up to 0.945 eye heights from wrist to wrist. A tape
@@ -33,7 +33,7 @@ const EYE_HEIGHT_PER_STATURE = 0.936;
 // too short misses the hand.
 const ARM_SPAN_PER_EYE_HEIGHT = 0.945;
 
-// The forearm of an average arm, as a share of the span.
+// The forearm of an average arm, as a fraction of the span.
 const FOREARM_PER_ARM_SPAN = 0.185;
 
 // Fingertip span equals stature within 3 % on average (Drillis & Contini; ANSUR II).
@@ -107,8 +107,8 @@ export function assertCalibration(calibration: Calibration): void {
   if (typeof calibration !== 'object' || calibration === null) {
     throw new RangeError('calibration is no object of measures. Pass {eyeHeight, armSpan} in metres, or “auto”.');
   }
-  const complaint = calibrationProblem(calibration);
-  if (complaint) throw new RangeError(complaint);
+  const problem = calibrationProblem(calibration);
+  if (problem) throw new RangeError(problem);
 }
 
 const metres = (value: number): string => `${value.toFixed(2)} m`;
@@ -130,11 +130,11 @@ function numberProblem(name: string, value: unknown, how: string): string | null
 
 /** Returns why the body's measures are implausible; null: they are plausible. */
 function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * FOREARM_PER_ARM_SPAN }: Calibration): string | null {
-  const complaint =
+  const problem =
     numberProblem('eye height', eyeHeight, 'the height of the eyes above the floor') ??
     numberProblem('arm span', armSpan, 'the distance from wrist to wrist') ??
     numberProblem('forearm', forearm, 'the distance from elbow to wrist');
-  if (complaint) return complaint;
+  if (problem) return problem;
   const stature = metres(statureFromEyeHeight(eyeHeight));
   if (eyeHeight < eyeHeightRange.min || eyeHeight > eyeHeightRange.max) {
     return `A height of ${stature} is outside ${metres(statureRange.min)} to ${metres(statureRange.max)}.${unitHint(eyeHeight)}`;
@@ -146,8 +146,8 @@ function bodyProblem({ eyeHeight, armSpan, forearm = armSpan * FOREARM_PER_ARM_S
   if (ratio < 0.72 || ratio > 1.35) {
     return `An arm span of ${metres(armSpan)} from wrist to wrist does not match a height of ${stature}.`;
   }
-  const share = forearm / armSpan / FOREARM_PER_ARM_SPAN;
-  if (share > 0.65 && share < 1.35) return null;
+  const fraction = forearm / armSpan / FOREARM_PER_ARM_SPAN;
+  if (fraction > 0.65 && fraction < 1.35) return null;
   return `A forearm of ${metres(forearm)} does not match an arm span of ${metres(armSpan)} from wrist to wrist.${unitHint(forearm)}`;
 }
 

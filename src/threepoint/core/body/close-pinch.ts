@@ -52,7 +52,7 @@ const toIndex = vec3(0, 0, 0);
 export function closePinch(shape: MutableHandShape, geometry: HandGeometry): void {
   const { thumb, index, pinch } = shape;
   if (!(pinch > 0)) return;
-  const share = smoothstep(0, wholeFrom, pinch);
+  const fraction = smoothstep(0, wholeFrom, pinch);
   const touching = (1 - pressedIn) * (geometry.thumb.tipRadius + geometry.index.tipRadius);
   let wanted = 0;
   for (let step = 0; step < steps; step++) {
@@ -60,7 +60,7 @@ export function closePinch(shape: MutableHandShape, geometry: HandGeometry): voi
     const indexTip = fingerPoints('index', geometry.index, index, indexPoints)[3];
     const gap = distance(thumbTip, indexTip);
     // In the first step the distance follows from the angles alone.
-    if (step === 0) wanted = gap + (touching + gapOf(Math.min(pinch, 1)) - fullPinchDistance - gap) * share;
+    if (step === 0) wanted = gap + (touching + gapOf(Math.min(pinch, 1)) - fullPinchDistance - gap) * fraction;
     if (Math.abs(gap - wanted) < 2e-4) return;
     normalise(subtract(indexTip, thumbTip, between), up, between);
     addScaled(thumbTip, between, (gap - wanted) / 2, toThumb);

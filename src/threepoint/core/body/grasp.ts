@@ -93,14 +93,14 @@ function closeFinger(
 function bendJoint(
   name: FingerName,
   joint: 0 | 1 | 2,
-  share: number,
+  fraction: number,
   from: MutableFingerBend,
   to: MutableFingerBend,
 ): void {
   const closed = closedHand[name];
   copyBend(from, to);
-  to[joints[joint]] += (closed[joints[joint]] - from[joints[joint]]) * share;
-  if (joint === 0) to.spread += (closed.spread - from.spread) * share;
+  to[joints[joint]] += (closed[joints[joint]] - from[joints[joint]]) * fraction;
+  if (joint === 0) to.spread += (closed.spread - from.spread) * fraction;
 }
 
 function closeJoint(
@@ -116,10 +116,10 @@ function closeJoint(
   if (isClear(surface, name, finger, joint, bent)) free = 1;
   else {
     for (let i = 0; i < halvings; i++) {
-      const share = (free + met) / 2;
-      bendJoint(name, joint, share, bend, bent);
-      if (isClear(surface, name, finger, joint, bent)) free = share;
-      else met = share;
+      const fraction = (free + met) / 2;
+      bendJoint(name, joint, fraction, bend, bent);
+      if (isClear(surface, name, finger, joint, bent)) free = fraction;
+      else met = fraction;
     }
   }
   bendJoint(name, joint, free, bend, bent);

@@ -174,7 +174,6 @@ export function averageHand(eyeHeight: number): HandGeometry {
   });
 }
 
-/** Returns the hand scaled by `size`. */
 export const scaledHand = (hand: HandGeometry, size: number): HandGeometry =>
   recordOf(fingerNames, (name) => {
     const { root, lengths, tipRadius, rootRadius } = hand[name];

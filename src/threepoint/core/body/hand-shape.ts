@@ -133,7 +133,7 @@ interface HandClosing {
   readonly pinch: number;
 }
 
-const share = (value: number): number => (value > 0 ? Math.min(value, 1) : 0);
+const fraction = (value: number): number => (value > 0 ? Math.min(value, 1) : 0);
 
 /** A pinch: thumb and index finger meet in front of the palm, the others stay relaxed. */
 const pinchedThumb = fingerBend(0.82, 0.14, 0.18, 0.42);
@@ -144,10 +144,10 @@ export function handShapeFromClosing(
   closing: HandClosing,
   target: MutableHandShape = makeHandShape(),
 ): MutableHandShape {
-  const rest = share(closing.rest);
-  target.pinch = share(closing.pinch);
-  lerpBend(relaxedHand.thumb, closedHand.thumb, share(closing.thumb), target.thumb);
-  lerpBend(relaxedHand.index, closedHand.index, share(closing.index), target.index);
+  const rest = fraction(closing.rest);
+  target.pinch = fraction(closing.pinch);
+  lerpBend(relaxedHand.thumb, closedHand.thumb, fraction(closing.thumb), target.thumb);
+  lerpBend(relaxedHand.index, closedHand.index, fraction(closing.index), target.index);
   lerpBend(target.thumb, pinchedThumb, target.pinch, target.thumb);
   lerpBend(target.index, pinchedIndex, target.pinch, target.index);
   lerpBend(relaxedHand.middle, closedHand.middle, rest, target.middle);

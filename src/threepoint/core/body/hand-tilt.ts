@@ -9,7 +9,7 @@ import limits from './limb-limits.json' with { type: 'json' };
  * yaw to its left [rad], as the rotation vector (pitch, yaw, 0) that turns −Z to it. People hold controllers, and
  * devices draw hands, in different ways.
  */
-export interface HandTilt {
+interface HandTilt {
   readonly pitch: number;
   readonly yaw: number;
 }
@@ -34,7 +34,6 @@ export function handTiltOf({ x, y, z }: Vec3): HandTilt {
 /** The largest plausible tilt [rad]; a larger one is a bent wrist. */
 export const { steepestHandTilt } = limits;
 
-/** Returns whether a tilt is plausible. */
 export const isPlausibleTilt = ({ pitch, yaw }: HandTilt): boolean => Math.hypot(pitch, yaw) <= steepestHandTilt;
 
 /** Returns the rotation of a hand in its own frame after which its −Z continues the forearm. */

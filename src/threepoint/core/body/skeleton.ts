@@ -3,7 +3,7 @@ import { fromAxisAngle, type Quat } from '../math/quat';
 import type { Side } from '../math/side';
 import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json' with { type: 'json' };
-import type { Calibration } from './calibration';
+import { assertCalibration, type Calibration } from './calibration';
 import type { JointName } from './joints';
 import limbLimits from './limb-limits.json' with { type: 'json' };
 import type { LimbBones } from './two-bone-ik';
@@ -67,10 +67,10 @@ const leanForward = (angle: number, v: Vec3): Vec3 => {
 };
 
 /**
- * Returns the average body of this eye height and span (docs/estimation.md); identity rotations are an upright person
- * in T-pose.
+ * Returns the average body of this eye height and span [m] (docs/estimation.md); identity rotations are an upright
+ * person in T-pose. The measures are not checked.
  */
-export function skeletonFromCalibration(calibration: Calibration): Skeleton {
+export function averageSkeleton(calibration: Calibration): Skeleton {
   const p = proportions;
   const e = calibration.eyeHeight;
   const bones = armBones(calibration);
@@ -103,6 +103,18 @@ export function skeletonFromCalibration(calibration: Calibration): Skeleton {
 }
 
 /**
+ * Returns the average body of this eye height and span [m]; identity rotations are an upright person in T-pose. Throws
+ * a RangeError where the measures are not human: measures in centimetres would give a giant.
+ *
+ * @example
+ * const skeleton = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 });
+ */
+export function skeletonFromCalibration(calibration: Calibration): Skeleton {
+  assertCalibration(calibration);
+  return averageSkeleton(calibration);
+}
+
+/**
  * The measures for inverse kinematics in chest space [m]: y from the chest joint to the neck; arm and shoulder are the
  * right ones.
  */
@@ -119,7 +131,7 @@ export interface ChestSpaceBody {
   readonly clavicleLength: number;
 }
 
-/** Returns the body of `skeletonFromCalibration` before the curve of the standing spine. */
+/** Returns the body of `averageSkeleton` before the curve of the standing spine. */
 export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
   const p = proportions;
   const e = calibration.eyeHeight;

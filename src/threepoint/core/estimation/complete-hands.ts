@@ -57,7 +57,7 @@ const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
  * The time [s] in which confidence falls from 1 to 0 or rises again. It is shorter than the motion to rest, so that
  * later stages follow a guess slowly.
  */
-export const confidenceSeconds = 0.3;
+const confidenceSeconds = 0.3;
 /** The distance [m] from the guess at which a reacquired hand has confidence 0; less for smaller distances. */
 const doubtfulReturn = 0.1;
 
@@ -80,7 +80,6 @@ export interface CompletedHand extends MutablePose<'floor'> {
 export interface CompletedFrame {
   readonly head: Pose<'floor'>;
   readonly headJoint: Vec3;
-  /** The heading of the head. */
   readonly heading: Readonly<Heading>;
   /** The rotation of the body about +Y since the previous frame. */
   readonly bodyTurn: Quat;
@@ -107,7 +106,7 @@ interface HandState {
 }
 
 /** The state of `completeHands` for one user, and the frame it returns. */
-export interface CompleteHandsState {
+interface CompleteHandsState {
   readonly bodyHeading: BodyHeading;
   /** Origin on the floor under the head joint, yaw of the body. */
   readonly floorFromBody: MutableTransform<'floor', 'body'>;
@@ -198,7 +197,6 @@ const inBody = makePose<'body'>();
 const inverse = quat(0, 0, 0, 1);
 const turn = quat(0, 0, 0, 1);
 
-/** Updates a tracked hand. */
 function followSeen(
   state: HandState,
   tracked: TrackedPose,
@@ -244,12 +242,12 @@ function followLost(
   hand.jumped = state.known && !held && hand.source !== 'sinking';
   hand.source = held ? 'held' : 'sinking';
 
-  const share = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
+  const fraction = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
   directionArc(last.direction, resting.direction, viaDirection[side], arc);
-  rotate(alongArc(arc, share, turn), last.direction, inBody.position);
-  scale(inBody.position, last.distance + (resting.distance - last.distance) * share, inBody.position);
+  rotate(alongArc(arc, fraction, turn), last.direction, inBody.position);
+  scale(inBody.position, last.distance + (resting.distance - last.distance) * fraction, inBody.position);
   addScaled(inBody.position, shoulder, 1, inBody.position);
-  slerp(last.orientation, resting.orientation, share, inBody.orientation);
+  slerp(last.orientation, resting.orientation, fraction, inBody.orientation);
   transformPose(floorFromBody, inBody, hand);
   if (held) copyPose(hand, hand.goal);
   else transformPose(floorFromBody, rest, hand.goal);
@@ -294,7 +292,6 @@ export function completeHands(
   return frame;
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetCompleteHands(state: CompleteHandsState): void {
   state.bodyHeading.yaw = Number.NaN;
   state.left.known = false;

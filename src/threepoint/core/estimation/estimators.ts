@@ -1,4 +1,4 @@
-import type { Calibration } from '../body/calibration';
+import { assertCalibration, type Calibration } from '../body/calibration';
 import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
 import { createDeviceSource } from './methods/device';
@@ -12,7 +12,6 @@ import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-e
 /** The methods that cannot work without their network. */
 export type NetworkName = 'paper' | 'learned';
 
-/** Returns whether a method needs a network. */
 export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
 
 /**
@@ -50,13 +49,22 @@ export function createWithNetwork(
   return new Pipeline(name, calibration, source, options);
 }
 
-/** Creates an estimator of a person; see `createEstimator` of the public API. */
+/**
+ * Creates an estimator by its name. Throws an Error for `paper` and `learned` without their regressor; `device` without
+ * that of `learned` falls back on IK. Throws a RangeError for an unknown name, or for measures [m] that no person has.
+ * `pinning` of threepoint/trackers draws the trackers of frames.
+ *
+ * @example
+ * const estimator = createEstimator('learned', calibration, await loadLearned());
+ */
 export function createEstimator(
   name: EstimatorName,
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
-  options?: PipelineOptions,
+  options: PipelineOptions = {},
 ): PoseEstimator {
+  assertCalibration(calibration);
+  options.pinning?.assertOffsets(calibration);
   if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor, options);
   if (name === 'device') {
     const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;

@@ -7,7 +7,7 @@ import smoothing from './smoothing.json' with { type: 'json' };
 
 const { catchUpSpeed, doubtfulSpeed } = smoothing;
 
-export interface LimitJointsState {
+interface LimitJointsState {
   /** False before the first frame, which passes unchanged. */
   known: boolean;
   /** The joints from the headset [m], floor axes. */
@@ -61,7 +61,6 @@ export function limitJoints(
   return state.joints;
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetLimitJoints(state: LimitJointsState): void {
   state.known = false;
 }

@@ -58,8 +58,8 @@ const bendSpeed = 8;
 const bendWay = 0.5;
 /** The fastest change [m/s] of the back's bow: near straight, a millimetre of the hips gives it centimetres. */
 const bowSpeed = 1;
-/** The share of the pelvis's turn against its estimate that the spine joint takes; the chest joint takes the rest. */
-const spineShare = 0.5;
+/** The fraction of the pelvis's turn against its estimate that the spine joint takes; the rest is the chest joint's. */
+const spineFraction = 0.5;
 
 /** A pinned joint of the trunk, and the side to which the joint above it bends the trunk. */
 interface TrunkPin extends Pin {
@@ -69,7 +69,7 @@ interface TrunkPin extends Pin {
   bow: number | null;
 }
 
-export interface PinTrunkState {
+interface PinTrunkState {
   /** False before the first frame. */
   known: boolean;
   readonly hips: TrunkPin;
@@ -127,7 +127,7 @@ export function pinTrunk(
   const seconds = Math.max(deltaSeconds, 0);
   const step = state.known ? seconds / handOverSeconds : 1;
   state.known = true;
-  if (!tracked.hips && !tracked.chest && state.hips.share === 0 && state.chest.share === 0) return;
+  if (!tracked.hips && !tracked.chest && state.hips.fraction === 0 && state.chest.fraction === 0) return;
   copyTrunk(torso, fitted);
   const { headJoint } = frame;
   const chestReach = bones.neckLength + bones.thoraxLength;
@@ -150,11 +150,10 @@ export function pinTrunk(
   carryShoulder('right', torso, frame.rightHand, bones);
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetPinTrunk(state: PinTrunkState): void {
   state.known = false;
   for (const pin of [state.hips, state.chest]) {
-    pin.share = 0;
+    pin.fraction = 0;
     setVec3(pin.bend, 0, 0, 0);
     pin.bow = null;
   }
@@ -247,7 +246,7 @@ function moveHips(torso: TorsoPose, pin: TrunkPin, headJoint: Vec3, bones: Torso
   // The spine joint as it was turned against the hips, and as it was turned: between both.
   multiply(conjugate(before.rotations.hips, inverse), before.rotations.spine, relative);
   multiply(rotations.hips, relative, relative);
-  slerp(before.rotations.spine, relative, spineShare, rotations.spine);
+  slerp(before.rotations.spine, relative, spineFraction, rotations.spine);
   rotate(rotations.spine, restOffsets.chest, boneBefore);
   swingBone(rotations.spine, boneBefore, subtract(chest, spine, bone));
   subtract(before.neck, before.chest, boneBefore);

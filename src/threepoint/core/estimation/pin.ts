@@ -25,7 +25,7 @@ export const confidenceBeyond = (beyond: number): number =>
 /** A joint that a tracker pins, and its way there and back. */
 export interface Pin {
   /** The time that has passed on the way from the estimate to the tracker, as a part of it: 0 to 1. */
-  share: number;
+  fraction: number;
   /** The part that has passed of the time from the last difference before a loss to the tracker's own: 0 to 1. */
   regained: number;
   /** The pinned joint in the frame of the estimated one; keeps its last value while the tracker is lost. */
@@ -34,7 +34,7 @@ export interface Pin {
   readonly target: MutablePose<'floor'>;
 }
 
-export const makePin = (): Pin => ({ share: 0, regained: 0, difference: makePose(), target: makePose() });
+export const makePin = (): Pin => ({ fraction: 0, regained: 0, difference: makePose(), target: makePose() });
 
 const jointFromFloor = makeTransform<'joint', 'floor'>();
 const seen = makePose<'joint'>();
@@ -52,12 +52,12 @@ export function followPin(
 ): number {
   const { difference, target } = pin;
   const counts = pinned && confidence > 0 ? pinned : null;
-  if (pin.share === 0) pin.regained = 1;
+  if (pin.fraction === 0) pin.regained = 1;
   else if (!counts) pin.regained = 0;
   const left = 1 - pin.regained;
   if (counts) pin.regained = Math.min(1, pin.regained + step);
-  pin.share += clamp((counts ? confidence : 0) - pin.share, -step, step);
-  if (pin.share === 0) return 0;
+  pin.fraction += clamp((counts ? confidence : 0) - pin.fraction, -step, step);
+  if (pin.fraction === 0) return 0;
   if (counts) {
     transformPose(invertTransform<'floor', 'joint'>(estimated, jointFromFloor), counts, seen);
     const way = pin.regained === 1 ? 1 : step / left;
@@ -66,5 +66,5 @@ export function followPin(
   }
   if (counts && pin.regained === 1) copyPose(counts, target);
   else transformPose<'floor', 'joint'>(estimated, difference, target);
-  return smoothstep(0, 1, pin.share);
+  return smoothstep(0, 1, pin.fraction);
 }

@@ -54,7 +54,6 @@ export class Pins {
 
 /** The part of a body that draws trackers beyond head and hands. A page without such trackers does without it. */
 export interface Pinning extends TrackerMeasuring {
-  /** Creates the pins of one estimator. */
   create(calibration: Calibration): Pins;
   /** Returns the same part, which passes `report` each tracker that the body does not reach for a second. */
   reportingTo(report: TrackerReport): Pinning;

@@ -2,7 +2,7 @@ import { type MutableUpperBodyPose, makeUpperBodyPose, type TrackedFeet } from '
 import { type Calibration, isSpanMeasured } from '../body/calibration';
 import { type Fingers, unknownFingers } from '../body/hand-shape';
 import { writeLocalRotations } from '../body/local-rotations';
-import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton, chestSpaceBody } from '../body/skeleton';
 import { invertTransform, makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
 import { copyVec3, vec3 } from '../math/vec3';
@@ -33,7 +33,7 @@ const longestGapSeconds = 0.5;
 
 /** Returns the measures of the user's body that the stages need. */
 function measure(calibration: Calibration) {
-  const skeleton = skeletonFromCalibration(calibration);
+  const skeleton = averageSkeleton(calibration);
   return {
     chestSpace: chestSpaceBody(calibration),
     torso: torsoBones(skeleton),
@@ -68,7 +68,7 @@ function makeEstimatorState({ handTilts }: Calibration) {
   };
 }
 
-export type EstimatorState = ReturnType<typeof makeEstimatorState>;
+type EstimatorState = ReturnType<typeof makeEstimatorState>;
 
 /** The head before the first frame. */
 const noHead: TrackedPose = { ...makePose<'floor'>(), tracking: 'emulated' };

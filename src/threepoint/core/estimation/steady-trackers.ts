@@ -47,7 +47,6 @@ export function steadyTrackers(
   return state;
 }
 
-/** Resets the filters: the next frame is the first. */
 export function resetSteadyTrackers(state: SteadyTrackersState): void {
   for (const tracker of trackers) state[tracker].known = false;
 }

@@ -7,7 +7,7 @@ import { validPose } from '../tracking/tracking-gate';
 export type TrackedJoints = Record<TrackerName, MutablePose<'floor'> | null>;
 
 /** The joints of the newest frame, and the buffers that they are written to. */
-export interface TrackedJointsState {
+interface TrackedJointsState {
   readonly joints: TrackedJoints;
   readonly buffers: Readonly<Record<TrackerName, MutablePose<'floor'>>>;
 }

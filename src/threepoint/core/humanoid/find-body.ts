@@ -53,8 +53,8 @@ function bodyOf(tree: JointTree, arms: LimbPair, legs: LimbPair | null): Body | 
   score += Math.max(0, ...trunk.map((joint) => tree.vote(joint, 'spine'))) + tree.vote(trunk[0]!, 'hips');
   if (legs) {
     if (armAncestors.includes(legs.root) && legs.root !== arms.root) score += 0.6;
-    const share = limbLength(tree, legs.limbs[0]) / limbLength(tree, arms.limbs[0]);
-    score += Math.max(0, 1.2 - 1.5 * Math.abs(Math.log(share / legsPerArms)));
+    const fraction = limbLength(tree, legs.limbs[0]) / limbLength(tree, arms.limbs[0]);
+    score += Math.max(0, 1.2 - 1.5 * Math.abs(Math.log(fraction / legsPerArms)));
     score += 0.5 * legsBelow(tree, legs, arms);
   }
   return { arms, legs, trunk, above, score };

@@ -99,16 +99,16 @@ export class JointTree {
   }
 
   /** Returns a score of how much of a limb hangs from a joint: length, and parts by name. */
-  #limbShare(joint: number): number {
-    const share = (this.segments[joint]! + this.heights[joint]!) / (this.size || 1);
-    return share + 0.4 * countBits(this.#parts[joint]!) - (this.auxiliary[joint] ? 0.5 : 0);
+  #limbFraction(joint: number): number {
+    const fraction = (this.segments[joint]! + this.heights[joint]!) / (this.size || 1);
+    return fraction + 0.4 * countBits(this.#parts[joint]!) - (this.auxiliary[joint] ? 0.5 : 0);
   }
 
   /** Returns the joints of a limb from its first along its main chain, `most` of them at most. */
   mainChain(joint: number, most: number): readonly number[] {
     const chain = [joint];
     for (let next = this.#chained[joint]!; next.length > 0 && chain.length < most; next = this.#chained[chain.at(-1)!]!)
-      chain.push(next.reduce((a, b) => (this.#limbShare(b) > this.#limbShare(a) ? b : a)));
+      chain.push(next.reduce((a, b) => (this.#limbFraction(b) > this.#limbFraction(a) ? b : a)));
     return chain;
   }
 

@@ -13,7 +13,7 @@ export interface Limb {
   readonly names: number;
 }
 
-export type LimbKind = 'arm' | 'leg';
+type LimbKind = 'arm' | 'leg';
 
 const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
   arm: ['upperArm', 'lowerArm', 'hand'],
@@ -22,7 +22,7 @@ const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
 
 /** The largest number of joints of a chain that is searched for a limb. */
 const longestChain = 16;
-/** The shortest limb as a share of the skeleton's longest chain. */
+/** The shortest limb as a fraction of the skeleton's longest chain. */
 const shortestLimb = 0.12;
 /** The largest number of pairs that are compared. */
 const maxPairs = 24;
@@ -43,7 +43,7 @@ function isInLine(tree: JointTree, chain: readonly number[], at: number): boolea
 }
 
 /** Returns the three joints of a chain that are most like a limb of this kind; null: the chain is too short. */
-export function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
+function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   const chainOfAll = tree.mainChain(first, longestChain);
   const inside = kind === 'arm' ? 'lowerArm' : 'lowerLeg';
   const fan = chainOfAll.findIndex((joint, i) => i >= 2 && tree.vote(joint, inside) < 0.5 && tree.fansOut(joint));
@@ -112,7 +112,7 @@ export interface LimbPair {
 export const limbLength = (tree: JointTree, { chain, at }: Limb): number =>
   chain.slice(at[0] + 1, at[2] + 1).reduce((sum, joint) => sum + tree.segments[joint]!, 0);
 
-/** Returns how far the lengths of two chains differ, as a share. */
+/** Returns how far the lengths of two chains differ, as a fraction. */
 export function difference(tree: JointTree, a: readonly number[], b: readonly number[]): number {
   const count = Math.min(a.length, b.length);
   let [apart, total] = [0, 0];

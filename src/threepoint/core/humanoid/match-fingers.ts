@@ -15,7 +15,7 @@ interface Branch {
 }
 
 /** A bone of a finger, without its side. */
-export interface FingerMatch {
+interface FingerMatch {
   readonly bone: string;
   readonly joint: number;
   readonly confidence: number;

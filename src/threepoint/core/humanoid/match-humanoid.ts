@@ -19,7 +19,6 @@ import { type Limb, type LimbPair, limbLength, sideByNames } from './limb-pairs'
 import { matchFingers } from './match-fingers';
 import type { Part } from './name-votes';
 
-/** The joint of a bone. */
 export interface BoneMatch {
   /** The index of the joint. */
   readonly joint: number;
@@ -330,14 +329,14 @@ function spread(spines: readonly number[]): readonly (number | undefined)[] {
  *
  * @example
  * const match = matchHumanoid(joints);
- * const complaint = humanoidComplaint(match);
- * if (complaint) throw new Error(complaint);
+ * const problem = humanoidProblem(match);
+ * if (problem) throw new Error(problem);
  * const hips = joints[match.map.hips!.joint];
  */
 export const matchHumanoid = (joints: readonly SkeletonJoint[]): HumanoidMatch => new Matcher(joints).match();
 
 /** Returns why a skeleton is refused, as a sentence with what was found and what is missing; null: it is taken. */
-export function humanoidComplaint({ missing, confidence, found }: HumanoidMatch): string | null {
+export function humanoidProblem({ missing, confidence, found }: HumanoidMatch): string | null {
   if (missing.length > 0) return `its bones could not be matched to a humanoid: ${found}; no ${missing.join(', no ')}`;
   return confidence < minConfidence
     ? `its bones could not be matched to a humanoid with confidence: ${found}, against their names`

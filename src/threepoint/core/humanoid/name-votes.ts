@@ -64,7 +64,7 @@ const auxiliaryWords = new Set([
   ...(
     'twist roll ik pole ctrl control target helper end nub tip site effector prop socket slot attach jiggle dyn phys ' +
     'corrective muscle handle gizmo mch vis tweak heel null offset tongue teeth lip brow cheek nose lid eyelid chin ' +
-    'share bend'
+    'fraction bend'
   ).split(' '),
 ]);
 

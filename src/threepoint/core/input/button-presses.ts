@@ -26,7 +26,7 @@ export const allReleased: HandButtons = { trigger: 0, grip: 0, pinch: 0 };
 export const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 /** The thresholds of a press with hysteresis: pressed at and above the first, released below the second. */
-export const pressedAt = 0.6;
+const pressedAt = 0.6;
 export const releasedBelow = 0.4;
 
 const names: readonly Button[] = ['trigger', 'grip', 'pinch'];
@@ -52,7 +52,6 @@ export interface ButtonPresses {
   changedKind(side: Side): boolean;
 }
 
-/** The presses of one hand, and its input source. */
 class HandPresses {
   changed = false;
   #kind: HandButtons['kind'] = undefined;

@@ -2,8 +2,8 @@ import easing from './easing.json' with { type: 'json' };
 import { lerp, type MutableVec3, type Vec3 } from './vec3';
 
 /**
- * The share of the distance to its goal that exponential smoothing covers in `deltaSeconds`: half in every half-life,
- * at any frame rate. A half-life of 0 arrives at once; a step of no time or less covers nothing.
+ * The fraction of the distance to its goal that exponential smoothing covers in `deltaSeconds`: half in every
+ * half-life, at any frame rate. A half-life of 0 arrives at once; a step of no time or less covers nothing.
  */
 export function smoothingFactor(halfLifeSeconds: number, deltaSeconds: number): number {
   if (deltaSeconds <= 0) return 0;

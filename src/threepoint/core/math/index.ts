@@ -42,11 +42,9 @@ export {
   twistAngle,
   twistOf,
 } from './quat';
-export type { RandomState } from './random';
-export { createNormalRandom, createRandom, nextRandom } from './random';
+export { createNormalRandom, createRandom, nextRandom, type RandomState } from './random';
 export type { Ray } from './ray';
-export type { Side } from './side';
-export { otherSide, sides } from './side';
+export { otherSide, type Side, sides } from './side';
 export { median } from './statistics';
 export { childrenOf } from './tree';
 export type { MutableVec3, Vec3 } from './vec3';

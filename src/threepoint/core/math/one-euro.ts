@@ -7,7 +7,7 @@ import { copyVec3, distance, lerp, type MutableVec3, vec3 } from './vec3';
  * The tuning of a low-pass whose cutoff rises with speed: steady at rest, without lag in motion (Casiez, Roussel and
  * Vogel, “1 € Filter”, CHI 2012).
  */
-export interface OneEuroTuning {
+interface OneEuroTuning {
   /** Cutoff at rest, and of the low-pass on the speed [Hz]. */
   readonly restCutoff: number;
   /** The increase of the cutoff with speed [Hz per m/s]. */
@@ -17,7 +17,6 @@ export interface OneEuroTuning {
 /** Returns the half-life [s] of a first-order low-pass with this cutoff [Hz]. */
 export const halfLifeOfCutoff = (cutoff: number): number => Math.LN2 / (2 * Math.PI * cutoff);
 
-/** The filter's state for one pose. */
 export interface FilteredPose<F extends Frame> {
   /** False before the first sample, which passes unchanged. */
   known: boolean;
@@ -55,9 +54,9 @@ export function filterPose<F extends Frame>(
     const speed = distance(position, sample) / deltaSeconds;
     state.speed = damp(state.speed, speed, halfLifeOfCutoff(restCutoff), deltaSeconds);
     const cutoff = restCutoff + cutoffPerSpeed * state.speed;
-    const share = smoothingFactor(halfLifeOfCutoff(cutoff), deltaSeconds);
-    lerp(value.position, position, share, value.position);
-    slerp(value.orientation, orientation, share, value.orientation);
+    const fraction = smoothingFactor(halfLifeOfCutoff(cutoff), deltaSeconds);
+    lerp(value.position, position, fraction, value.position);
+    slerp(value.orientation, orientation, fraction, value.orientation);
   }
   copyVec3(position, sample);
 }

@@ -5,10 +5,10 @@ export const mean = (values: readonly number[] | Float64Array): number => {
   return sum / values.length;
 };
 
-/** The value below which this share of the values lies, linear between neighbours as numpy's; NaN: there are none. */
-export function quantile(values: readonly number[], share: number): number {
+/** The value below which this fraction of the values lies, linear between neighbours as numpy's; NaN: no values. */
+export function quantile(values: readonly number[], fraction: number): number {
   const sorted = Float64Array.from(values).sort();
-  const at = share * (sorted.length - 1);
+  const at = fraction * (sorted.length - 1);
   const below = sorted[Math.floor(at)] ?? Number.NaN;
   const above = sorted[Math.ceil(at)] ?? Number.NaN;
   return below + (above - below) * (at - Math.floor(at));

@@ -97,17 +97,17 @@ export function* sampledFrames(frameCount: number, most = maxSamples): Generator
 
 /** The statistics of a clip that show its vertical, in floor axes of its rest pose. */
 interface Stance {
-  /** The share of frames in which the trunk stands along an axis, feet below the hips. */
-  readonly shares: Readonly<Record<FileAxis, number>>;
-  /** The share of frames in which trunk and legs stand upright. */
+  /** The fraction of frames in which the trunk stands along an axis, feet below the hips. */
+  readonly fractions: Readonly<Record<FileAxis, number>>;
+  /** The fraction of frames in which trunk and legs stand upright. */
   readonly upright: number;
-  /** The median of the lowest joint along an axis, as a share of the trunk's length. */
+  /** The median of the lowest joint along an axis, as a fraction of the trunk's length. */
   readonly lowest: Readonly<Record<FileAxis, number>>;
 }
 
 function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): Stance {
   const poses = createSkeletonPose(file.names.length);
-  const shares = recordOf(axisNames, () => 0);
+  const fractions = recordOf(axisNames, () => 0);
   const lows = recordOf(axisNames, (): number[] => []);
   const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
     (i) => i >= 0,
@@ -125,13 +125,13 @@ function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): St
     if (way.y > standing && legs.every((leg) => leg.y < -0.5)) upright += 1;
     for (const axis of axisNames) {
       const above = directions[axis];
-      if (dot(way, above) > standing && legs.every((leg) => dot(leg, above) < 0)) shares[axis] += 1;
+      if (dot(way, above) > standing && legs.every((leg) => dot(leg, above) < 0)) fractions[axis] += 1;
       lows[axis].push(Math.min(...places.map((place) => dot(place, above))) / size);
     }
   }
-  for (const axis of axisNames) shares[axis] /= count;
+  for (const axis of axisNames) fractions[axis] /= count;
   const lowest = recordOf(axisNames, (axis) => median(lows[axis]));
-  return { shares, lowest, upright: upright / count };
+  return { fractions, lowest, upright: upright / count };
 }
 
 /**
@@ -140,10 +140,10 @@ function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): St
  * be on the other floor, lies.
  */
 export function otherUp(file: ImportedMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
-  const { shares, lowest, upright } = stanceOf(file, floor, joints);
-  const best = axisNames.reduce((a, b) => (shares[b] > shares[a] ? b : a));
+  const { fractions, lowest, upright } = stanceOf(file, floor, joints);
+  const best = axisNames.reduce((a, b) => (fractions[b] > fractions[a] ? b : a));
   // A person who also stands at times lies down in the other frames.
-  if (best === '+y' || shares[best] <= 0.5 || upright > 0.05) return null;
+  if (best === '+y' || fractions[best] <= 0.5 || upright > 0.05) return null;
   const liesOnFloor = Math.abs(lowest['+y']) < 0.4;
   const standsOnOther = Math.abs(lowest[best]) < 0.5;
   return liesOnFloor && !standsOnOther ? null : best;

@@ -1,5 +1,5 @@
 import { type BoneMap, type BoneName, neededBones } from '../humanoid/bones';
-import { type BoneMatch, type HumanoidMatch, humanoidComplaint, matchHumanoid } from '../humanoid/match-humanoid';
+import { type BoneMatch, type HumanoidMatch, humanoidProblem, matchHumanoid } from '../humanoid/match-humanoid';
 import { type FileBones, fileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
 import { type Side, sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
@@ -23,11 +23,11 @@ import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from
 import { type Limbs, straightHands, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
-/** The share of the trunk above which its only joint is a chest, and below which it is a spine. */
-const chestShare = 0.42;
+/** The fraction of the trunk above which its only joint is a chest, and below which it is a spine. */
+const chestFraction = 0.42;
 
-/** The height of a neck as a share of the way from between the shoulders to the head joint. */
-const neckShare = 0.25;
+/** The height of a neck as a fraction of the way from between the shoulders to the head joint. */
+const neckFraction = 0.25;
 
 /** A motion with the skeleton that was found in it. */
 export interface MatchedMotion {
@@ -58,27 +58,27 @@ function jointsOf(match: Match, file: ImportedMotion) {
       neck: {
         near: ['leftUpperArm', 'rightUpperArm'],
         far: ['head'],
-        share: neckShare,
+        fraction: neckFraction,
         carrier: file.parents[joints.head!]!,
       },
     });
     notes.push('it has no neck; one between shoulders and head is assumed');
   }
-  if (joints.chest === undefined && !match.upperChest && shareOfTrunk(file.rest, joints) > chestShare) {
+  if (joints.chest === undefined && !match.upperChest && fractionOfTrunk(file.rest, joints) > chestFraction) {
     joints.chest = joints.spine!;
     delete joints.spine;
     notes.push('it has one joint between hips and neck; it was taken as the chest');
   }
   if (joints.chest === undefined) {
-    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], share: 0.5, carrier: joints.spine! } });
+    Object.assign(between, { chest: { near: ['spine'], far: ['neck'], fraction: 0.5, carrier: joints.spine! } });
     notes.push('it has no chest; one in the middle of spine and neck is assumed');
   }
-  if (joints.spine === undefined) Object.assign(between, { spine: { near: ['hips'], far: ['chest'], share: 0.5 } });
+  if (joints.spine === undefined) Object.assign(between, { spine: { near: ['hips'], far: ['chest'], fraction: 0.5 } });
   return { joints, between, notes };
 }
 
-/** Returns the height of the spine's only joint as a share of the trunk. */
-function shareOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperArm }: Joints): number {
+/** Returns the height of the spine's only joint as a fraction of the trunk. */
+function fractionOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperArm }: Joints): number {
   const [low, at, top] = [hips, spine, neck ?? leftUpperArm].map((joint) => rest[joint!]!) as [Vec3, Vec3, Vec3];
   const trunk = subtract(top, low);
   return dot(subtract(at, low), trunk) / (dot(trunk, trunk) || 1);
@@ -188,7 +188,7 @@ const jointsAt = ({ names, parents }: ImportedMotion, positions: readonly Vec3[]
     ...(names[i]!.endsWith(':end') && { end: true }),
   }));
 
-/** Returns the second extent of positions as a share of the greatest, which is small for a folded skeleton. */
+/** Returns the second extent of positions as a fraction of the greatest, which is small for a folded skeleton. */
 function spreadOf(positions: readonly Vec3[]): number {
   const extents = (['x', 'y', 'z'] as const).map((axis) => {
     const values = positions.map((position) => position[axis]);
@@ -219,10 +219,10 @@ function mappedJoints({ names }: ImportedMotion, map: BoneMap): Match {
 /** Matches joints, left and right by where the toes point. Throws UnknownBonesError where they do not match. */
 function matchSides(file: ImportedMotion): { readonly match: Match; readonly notes: string[] } {
   const found = matchHumanoid(jointsAt(file, file.rest));
-  const complaint = humanoidComplaint(found);
-  if (complaint)
+  const problem = humanoidProblem(found);
+  if (problem)
     throw new UnknownBonesError(
-      `${complaint}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
+      `${problem}. A map of it, a .json that is dropped too, says which joint is which: docs/accuracy.md`,
       fileBones(jointsToDraw(file), found.map),
     );
   const hands = Object.entries(handsOfCmuconvert(file.names)).map(([bone, name]): readonly [string, BoneMatch] => [

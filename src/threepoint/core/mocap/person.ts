@@ -32,7 +32,6 @@ function* heightsOf(motion: TruthMotion, pieces: readonly Piece[], joint: TruthJ
     for (let frame = from; frame < to; frame++) yield positionAt(motion, frame, joint).y;
 }
 
-/** Returns the calibration of the person in a motion. */
 export function measuresOf(motion: TruthMotion, pieces: readonly Piece[]): Calibration {
   const { rest } = motion;
   const eyesInMotion = () => quantile([...heightsOf(motion, pieces, 'head')], 0.9) + eyesFromHeadJoint[1]!;

@@ -169,8 +169,8 @@ function personOf(name: string): string {
 }
 
 /**
- * Reads a file's motion in our joints. Yields the share [0, 1] that is done. `notes`: what was put right or assumed, a
- * sentence each. Throws a sentence that begins with the file's name.
+ * Reads a file's motion in our joints. Yields the fraction [0, 1] that is done. `notes`: what was put right or assumed,
+ * a sentence each. Throws a sentence that begins with the file's name.
  */
 export function* readTruthMotion(source: MocapSource): Generator<number, ReadMocap> {
   try {
@@ -192,7 +192,7 @@ export function* readTruthMotion(source: MocapSource): Generator<number, ReadMoc
 
 /**
  * Simulates what a headset and two hands would have seen of the person in a file, as the evaluation does
- * (docs/accuracy.md). Where the motion leaps it is cut. Yields the share [0, 1] that is done. Throws a sentence that
+ * (docs/accuracy.md). Where the motion leaps it is cut. Yields the fraction [0, 1] that is done. Throws a sentence that
  * begins with the file's name.
  */
 export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
@@ -208,8 +208,8 @@ function* clipsOf(name: string, { motion, notes, doubts, bones }: ReadMocap): Ge
   const { cuts, pieces } = splitAtJumps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);
-  const complaint = calibrationProblem(calibration);
-  if (complaint) throw new Error(complaint);
+  const problem = calibrationProblem(calibration);
+  if (problem) throw new Error(problem);
   const neutral = neutralHead(motion, pieces);
   const floor = floorHeight(motion, pieces);
   const clips: MocapClip[] = [];

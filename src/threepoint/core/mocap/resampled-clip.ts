@@ -57,17 +57,17 @@ export function resampleClip(motion: TruthMotion, { from, to }: Piece, floor: nu
   for (let frame = 0; frame < frameCount; frame++) {
     const time = every ? frame * every : (frame / rateHz) * rate;
     const before = Math.min(Math.floor(time), Math.max(0, length - 2));
-    const share = time - before;
+    const fraction = time - before;
     const [first, second] = [from + before, from + Math.min(before + 1, length - 1)];
     for (let i = 0; i < positionsWidth; i++) {
       const value =
-        positions[first * positionsWidth + i]! * (1 - share) + positions[second * positionsWidth + i]! * share;
+        positions[first * positionsWidth + i]! * (1 - fraction) + positions[second * positionsWidth + i]! * fraction;
       clip.positions[frame * positionsWidth + i] = i % 3 === 1 ? value - floor : value;
     }
     for (let joint = 0; joint < trackedJoints.length; joint++) {
       rotationAt(motion, first, joint, rotationBefore);
       rotationAt(motion, second, joint, rotationAfter);
-      const turn = slerp(rotationBefore, rotationAfter, share, rotationBefore);
+      const turn = slerp(rotationBefore, rotationAfter, fraction, rotationBefore);
       if (joint === 0) multiply(turn, back, turn);
       writeQuat(turn, clip.rotations, frame * rotationsWidth + 4 * joint);
     }

@@ -17,13 +17,12 @@ const trunk = [
 ] as const;
 
 /**
- * The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
+ * The ankle's height above the sole as a fraction of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature).
  */
 const soleOfLeg = 0.039 / 0.491;
 
 const between = (rest: RestJoints, a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
 
-/** Returns the length of an arm from shoulder to wrist. */
 export const armAtRest = (rest: RestJoints, side: Side): number =>
   between(rest, `${side}UpperArm`, `${side}LowerArm`) + between(rest, `${side}LowerArm`, `${side}Hand`);
 

@@ -18,7 +18,7 @@ export const bodyJoints = [
   'rightHand',
 ] as const;
 /** The joints that a file may lack. */
-export const legJoints = [
+const legJoints = [
   'leftUpperLeg',
   'leftLowerLeg',
   'leftFoot',
@@ -30,11 +30,9 @@ export const legJoints = [
 ] as const;
 /** All joints of the truth, in the order of its numbers. */
 export const truthJoints = [...bodyJoints, ...legJoints] as const;
-/** See truthJoints. */
 export type TruthJoint = (typeof truthJoints)[number];
 /** The source joint for each tracker's rotation. */
 export const trackedJoints = ['head', 'leftHand', 'rightHand'] as const satisfies readonly TruthJoint[];
-/** See trackedJoints. */
 export type TrackedJoint = (typeof trackedJoints)[number];
 
 /** The mapping from a file's joints to the skeleton's. */
@@ -64,11 +62,11 @@ export type FileAxis = '+x' | '-x' | '+y' | '-y' | '+z' | '-z';
 /** Joints that every map has. */
 export const neededJoints: readonly TruthJoint[] = bodyJoints.filter((joint) => joint !== 'spine');
 
-/** A joint that a file lacks: at a share of the way from the middle of some joints to that of others. */
+/** A joint that a file lacks: at a fraction of the way from the middle of some joints to that of others. */
 export interface BetweenJoints {
   readonly near: readonly TruthJoint[];
   readonly far: readonly TruthJoint[];
-  readonly share: number;
+  readonly fraction: number;
   /** The index of the file's joint that carries it; absent: it follows the joints that it lies between. */
   readonly carrier?: number;
 }
@@ -98,7 +96,7 @@ export function mappedSkeleton(names: readonly string[], map: SkeletonMap, floor
     ...{ joints, columns, floor, motionFloor: floor },
     ...(scale !== undefined && { scale }),
     turning: trackedJoints.map((joint) => names.indexOf(rotations?.[joint] ?? joints[joint]!)),
-    between: joints.spine === undefined ? { spine: { near: ['hips'], far: ['chest'], share: 0.5 } } : {},
+    between: joints.spine === undefined ? { spine: { near: ['hips'], far: ['chest'], fraction: 0.5 } } : {},
   };
 }
 

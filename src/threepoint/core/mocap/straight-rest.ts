@@ -6,7 +6,7 @@ import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../m
 import { downward, outward, sampledFrames } from './body-axes';
 
 /** A limb's joints by their index, from the trunk outwards; −1: the file has no such joint. */
-export type LimbJoints = readonly number[];
+type LimbJoints = readonly number[];
 
 /** The limbs of a body: arms from the clavicle to the hand, legs from the hip to the foot. */
 export interface Limbs {

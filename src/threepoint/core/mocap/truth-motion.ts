@@ -56,7 +56,6 @@ export interface TruthMotion {
 
 /** The number of values of a frame. */
 export const positionsWidth = 3 * truthJoints.length;
-/** See positionsWidth. */
 export const rotationsWidth = 4 * trackedJoints.length;
 
 /** Positions and rotations as `TruthMotion` has them, in either precision. */
@@ -106,10 +105,14 @@ function wristFromRest(side: 'left' | 'right', rest: RestJoints): Quat {
 const assumed = ['neck', 'chest', 'spine'] as const;
 
 /** Writes the position of an assumed joint. */
-function placeBetween({ near, far, share }: BetweenJoints, at: (joint: TruthJoint) => Vec3, target: MutableVec3): Vec3 {
+function placeBetween(
+  { near, far, fraction }: BetweenJoints,
+  at: (joint: TruthJoint) => Vec3,
+  target: MutableVec3,
+): Vec3 {
   const middle = (joints: readonly TruthJoint[]): Vec3 =>
     joints.reduce((sum, joint) => addScaled(sum, at(joint), 1 / joints.length), zero);
-  return lerp(middle(near), middle(far), share, target);
+  return lerp(middle(near), middle(far), fraction, target);
 }
 
 /** Returns the joints at rest [m], floor frame. */
@@ -132,7 +135,7 @@ function restInMetres(file: ImportedMotion, skeleton: MappedSkeleton, unit: numb
 }
 
 /** Returns why height and arm span of joints at rest [m] are no person's; null: they are, or there are no legs. */
-function bodyComplaint(rest: RestJoints): string | null {
+function bodyProblem(rest: RestJoints): string | null {
   const eyeHeight = eyeHeightAtRest(rest);
   return eyeHeight === null ? null : calibrationProblem({ eyeHeight, armSpan: armSpanAtRest(rest) });
 }
@@ -141,7 +144,7 @@ function bodyComplaint(rest: RestJoints): string | null {
 function isPersonSized(rest: RestJoints): boolean {
   const [least, most] = armLength as [number, number];
   const arm = armAtRest(rest, 'left');
-  return least < arm && arm < most && bodyComplaint(rest) === null;
+  return least < arm && arm < most && bodyProblem(rest) === null;
 }
 
 /** The unit of a file, and a note if it was assumed; null: metres, centimetres or the map's. */
@@ -161,9 +164,9 @@ function averageUnit(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit {
       ? [arm / armAtRest(rest, 'left'), `arms of ${arm.toFixed(2)} m`]
       : [(eyeHeight - eyesFromHeadJoint[1]!) / head, `a height of ${statureFromEyeHeight(eyeHeight).toFixed(2)} m`];
   if (!(metres > 0 && metres < Infinity)) throw new Error('its bones have no length');
-  const complaint = bodyComplaint(restInMetres(file, skeleton, metres));
-  if (complaint)
-    throw new Error(`its unit is unknown, and its body is no person’s when it is scaled to ${size}: ${complaint}`);
+  const problem = bodyProblem(restInMetres(file, skeleton, metres));
+  if (problem)
+    throw new Error(`its unit is unknown, and its body is no person’s when it is scaled to ${size}: ${problem}`);
   return { metres, note: `its unit is unknown: its body was scaled to ${size}` };
 }
 
@@ -180,7 +183,7 @@ export function unitOf(file: ImportedMotion, skeleton: MappedSkeleton): FileUnit
 }
 
 /**
- * Converts a file's motion to the joints of the truth; `unit`: its unit [m]. Yields the share [0, 1] that is done.
+ * Converts a file's motion to the joints of the truth; `unit`: its unit [m]. Yields the fraction [0, 1] that is done.
  * Throws a sentence where its skeleton is no person's.
  */
 export function* toTruthMotion(

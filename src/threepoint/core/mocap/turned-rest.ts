@@ -7,7 +7,7 @@ import { type StandingJoints, sampledFrames, trunkDirection } from './body-axes'
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
-/** The largest deviation of the hips' height of a standing body from that at rest, as a share. */
+/** The largest deviation of the hips' height of a standing body from that at rest, as a fraction. */
 const nearHeight = 0.2;
 
 /**

@@ -39,7 +39,7 @@ const maxNodes = 5000;
 const maxKeySeconds = 10;
 const shortClipSeconds = 600;
 
-/** By how much a time in single precision may be too small, as a share of it. */
+/** By how much a time in single precision may be too small, as a fraction of it. */
 const precision = 2 ** -23;
 
 type Path = 'translation' | 'rotation';
@@ -51,7 +51,7 @@ interface Track {
 }
 
 /** A node and its animation tracks. */
-export interface Node {
+interface Node {
   parent: number;
   readonly translation: Vec3;
   readonly rotation: Quat;
@@ -176,23 +176,23 @@ function sample({ path, times, values, interpolation }: Track, time: number, tar
   const index = lastBefore(times, time);
   const next = Math.min(index + 1, times.length - 1);
   const span = times[next]! - times[index]!;
-  const share = span > 0 ? Math.max(0, Math.min(1, (time - times[index]!) / span)) : 0;
+  const fraction = span > 0 ? Math.max(0, Math.min(1, (time - times[index]!) / span)) : 0;
   const at = (key: number, part: number, i: number): number => values[(spline ? 3 * key + part : key) * size + i]!;
   for (let i = 0; i < size; i++) {
     [before[i], after[i]] = [at(index, 1, i), at(next, 1, i)];
     if (interpolation === 'STEP') target[i] = before[i]!;
-    else if (!spline) target[i] = before[i]! + (after[i]! - before[i]!) * share;
+    else if (!spline) target[i] = before[i]! + (after[i]! - before[i]!) * fraction;
     else {
-      const [t2, t3] = [share * share, share ** 3];
+      const [t2, t3] = [fraction * fraction, fraction ** 3];
       const [leaving, arriving] = [span * at(index, 2, i), span * at(next, 0, i)];
       const ends = (2 * t3 - 3 * t2 + 1) * before[i]! + (3 * t2 - 2 * t3) * after[i]!;
-      target[i] = ends + (t3 - 2 * t2 + share) * leaving + (t3 - t2) * arriving;
+      target[i] = ends + (t3 - 2 * t2 + fraction) * leaving + (t3 - t2) * arriving;
     }
   }
   if (path === 'translation' || interpolation === 'STEP') return;
   const { x, y, z, w } = spline
     ? normaliseQuat(readQuat(target, 0))
-    : slerp(readQuat(before, 0), readQuat(after, 0), share);
+    : slerp(readQuat(before, 0), readQuat(after, 0), fraction);
   [target[0], target[1], target[2], target[3]] = [x, y, z, w];
 }
 

@@ -65,9 +65,7 @@ export function addClip(
 
 /** The first word of a GLB file, and the kinds of its two chunks. */
 export const glbMagic = 0x46546c67;
-/** See glbMagic. */
 export const jsonChunk = 0x4e4f534a;
-/** See glbMagic. */
 export const binaryChunk = 0x004e4942;
 
 /** Returns a value as JSON in ASCII, with escapes for all other characters, padded to four bytes. */

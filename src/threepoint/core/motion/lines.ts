@@ -30,8 +30,8 @@ export class Lines {
     this.#separator = this.text.includes('\n') ? '\n' : '\r';
   }
 
-  /** The share [0, 1] of the text that was read. */
-  get share(): number {
+  /** The fraction [0, 1] of the text that was read. */
+  get fraction(): number {
     return this.text.length === 0 ? 1 : Math.min(1, this.#next / this.text.length);
   }
 
@@ -122,7 +122,6 @@ export class Rows {
     return at;
   }
 
-  /** Removes the last row. */
   drop(): void {
     this.count -= 1;
   }

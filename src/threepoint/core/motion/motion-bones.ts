@@ -4,7 +4,7 @@ import { averageHand, fingerPoints, type HandGeometry, makeFingerPoints, mirrorP
 import { type FingerBend, type FingerName, fingerNames } from '../body/hand-shape';
 import { type JointName, jointNames, parentOf } from '../body/joints';
 import { legProportions } from '../body/leg-proportions';
-import { type Skeleton, sideSign, skeletonFromCalibration, wristFromHandBone } from '../body/skeleton';
+import { averageSkeleton, type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
 import { type MutableQuat, type Quat, rotateInverse, setQuat } from '../math/quat';
 import { type Side, sides } from '../math/side';
 import { add, type MutableVec3, setVec3, subtract, type Vec3, vec3 } from '../math/vec3';
@@ -92,7 +92,7 @@ function addLeg(builder: Builder, side: Side, eyeHeight: number, hipsHeight: num
  */
 export function motionSkeleton(calibration: Calibration): readonly MotionBone[] {
   const { eyeHeight } = calibration;
-  const skeleton: Skeleton = skeletonFromCalibration(calibration);
+  const skeleton: Skeleton = averageSkeleton(calibration);
   const hand = averageHand(eyeHeight);
   const builder = new Builder();
   const crown = add(skeleton.eyesInHead, vec3(0, statureFromEyeHeight(eyeHeight) - eyeHeight, -skeleton.eyesInHead.z));

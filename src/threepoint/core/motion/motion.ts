@@ -68,8 +68,8 @@ const maxFrames = 1_080_000;
 const framesPerStep = 64;
 
 /**
- * Interpolates the motion at an even rate [Hz]. Yields the share [0, 1] that is done. Throws a sentence where the rate
- * is invalid, or the motion would have more frames than a file can hold.
+ * Interpolates the motion at an even rate [Hz]. Yields the fraction [0, 1] that is done. Throws a sentence where the
+ * rate is invalid, or the motion would have more frames than a file can hold.
  */
 export function* resampleMotion(motion: Motion, rateHz: number): Generator<number, Motion> {
   const { times } = motion;
@@ -101,19 +101,19 @@ function mixFrame(
   motion: Motion,
   before: number,
   after: number,
-  share: number,
+  fraction: number,
   { into, frame }: { readonly into: Motion; readonly frame: number },
 ): void {
-  const hips = lerp(hipsAt(motion, before, hipsBefore), hipsAt(motion, after, hipsAfter), share, hipsBefore);
+  const hips = lerp(hipsAt(motion, before, hipsBefore), hipsAt(motion, after, hipsAfter), fraction, hipsBefore);
   writeVec3(hips, into.hips, 3 * frame);
   for (let bone = 0; bone < motion.measured; bone++) {
     const rotation = slerp(
       rotationAt(motion, before, bone, rotationBefore),
       rotationAt(motion, after, bone, rotationAfter),
-      share,
+      fraction,
       rotationBefore,
     );
     writeQuat(rotation, into.rotations, 4 * (frame * motion.measured + bone));
   }
-  into.seen[frame] = motion.seen[share < 0.5 ? before : after]!;
+  into.seen[frame] = motion.seen[fraction < 0.5 ? before : after]!;
 }

@@ -30,7 +30,7 @@ function columnsOf({ rootFreedoms, bones }: AsfSkeleton): {
 }
 
 /**
- * Reads the text of an AMC file of a skeleton, which lies in the file of this name. Yields the share [0, 1] that was
+ * Reads the text of an AMC file of a skeleton, which lies in the file of this name. Yields the fraction [0, 1] that was
  * read. Throws a sentence with line and column where the text is none, or of another skeleton.
  */
 export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: string): Generator<number, ImportedMotion> {
@@ -58,7 +58,7 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
       close();
       at = rows.add();
       seen.clear();
-      if (rows.count % framesPerStep === 0) yield lines.share;
+      if (rows.count % framesPerStep === 0) yield lines.fraction;
       continue;
     }
     const bone = columns.get(found);

@@ -3,7 +3,7 @@ import { backward, normalise, readVec3, right, scale, up, type Vec3, zero } from
 import { Lines, shown, type Word } from './lines';
 
 /** A bone at rest, which starts at the end of its parent; in the file's unit and axes. */
-export interface AsfBone {
+interface AsfBone {
   readonly name: string;
   /** The vector from its start to its end. */
   readonly way: Vec3;

@@ -4,7 +4,7 @@ import type { ImportedMotion, SkeletonPose } from './imported-motion';
 import { Lines, Rows, shown, type Word } from './lines';
 
 type Axis = 'x' | 'y' | 'z';
-export interface BvhChannel {
+interface BvhChannel {
   /** `unused`: a position that only repeats the joint's offset, or none at all. */
   readonly kind: 'position' | 'rotation' | 'unused';
   readonly axis: Axis;
@@ -143,9 +143,9 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
 }
 
 /**
- * Reads the text of a BVH file. Yields the share [0, 1] that was read. Throws a sentence with line and column where the
- * text is none: cut short, counts that do not agree, numbers that are none. A count of frames that is off by one and a
- * last row that is cut are put right.
+ * Reads the text of a BVH file. Yields the fraction [0, 1] that was read. Throws a sentence with line and column where
+ * the text is none: cut short, counts that do not agree, numbers that are none. A count of frames that is off by one
+ * and a last row that is cut are put right.
  */
 export function* readBvh(text: string): Generator<number, BvhMotion> {
   const lines = new Lines(text);
@@ -170,7 +170,7 @@ export function* readBvh(text: string): Generator<number, BvhMotion> {
         throw new Error(`line ${number}, column 1: a frame has ${count} numbers, the hierarchy has ${width} channels`);
       };
     }
-    if (rows.count % linesPerStep === 0) yield lines.share;
+    if (rows.count % linesPerStep === 0) yield lines.fraction;
   }
   if (cut) {
     // One row alone, or one too long, is no file that was cut at its end.

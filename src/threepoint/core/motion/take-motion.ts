@@ -148,8 +148,8 @@ export class MotionTaker {
 const hipsOfBody = vec3(0, 0, 0);
 
 /**
- * Estimates the motion of a recording frame by frame, awaiting each answer of a network. Yields the share [0, 1] that
- * is done. Throws a sentence where the estimator fails or has no body.
+ * Estimates the motion of a recording frame by frame, awaiting each answer of a network. Yields the fraction [0, 1]
+ * that is done. Throws a sentence where the estimator fails or has no body.
  */
 export async function* estimateMotion(
   recording: Replayable,

@@ -1,5 +1,5 @@
 /**
- * Long work in pieces. It yields the share [0, 1] that is done, so that its caller can show progress, yield to other
+ * Long work in pieces. It yields the fraction [0, 1] that is done, so that its caller can show progress, yield to other
  * tasks or stop.
  */
 export type Work<Result> = Generator<number, Result> | AsyncGenerator<number, Result>;
@@ -76,8 +76,8 @@ export async function runInTurns<Step, Result>(
 }
 
 /**
- * Returns the estimated seconds left of work whose share [0, 1] took `elapsedSeconds`; null: too little is done for an
- * estimate. Exact for work at an even pace.
+ * Returns the estimated seconds left of work whose fraction [0, 1] took `elapsedSeconds`; null: too little is done for
+ * an estimate. Exact for work at an even pace.
  */
-export const secondsLeft = (share: number, elapsedSeconds: number): number | null =>
-  share >= 0.02 && elapsedSeconds > 0 ? (elapsedSeconds * (1 - share)) / share : null;
+export const secondsLeft = (fraction: number, elapsedSeconds: number): number | null =>
+  fraction >= 0.02 && elapsedSeconds > 0 ? (elapsedSeconds * (1 - fraction)) / fraction : null;

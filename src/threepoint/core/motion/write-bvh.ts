@@ -19,7 +19,7 @@ const locked = 1 - 5e-9;
  * Writes the angles [rad] about x, y, z of Ry·Rx·Rz. At gimbal lock (x is a quarter turn) only the sum or difference of
  * the others is defined: y takes all of it.
  */
-export function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
+function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
   const sine = 2 * (q.x * q.w - q.y * q.z);
   if (Math.abs(sine) < locked) return toEulerYxz(q, target);
   const y = Math.atan2(2 * (q.y * q.w - q.x * q.z), 1 - 2 * (q.y * q.y + q.z * q.z));
@@ -55,7 +55,7 @@ function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string): s
 }
 
 /** Returns the bones in depth-first order, in which a file lists them. */
-export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
+function fileOrder(bones: readonly MotionBone[]): readonly number[] {
   const order: number[] = [];
   const visit = (index: number): void => {
     order.push(index);
@@ -66,13 +66,13 @@ export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
 }
 
 const framesPerStep = 64;
-/** The share of the work that resampling takes. */
+/** The fraction of the work that resampling takes. */
 const resampling = 0.3;
 
 /**
  * Writes the text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z,
- * an even rate. Bones that are not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence
- * where the rate or the unit is none.
+ * an even rate. Bones that are not measured have no channels. Yields the fraction [0, 1] that is done. Throws a
+ * sentence where the rate or the unit is none.
  */
 export function* writeBvh(
   motion: Motion,

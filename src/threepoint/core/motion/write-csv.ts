@@ -8,7 +8,7 @@ const framesPerStep = 64;
 /**
  * Writes a table of joints, in parts: a row per frame with its time [s], whether each hand was seen (1, 0), and the
  * position of every measured joint [m, floor frame: +Y up, −Z forward]. Joints that are not measured (legs) have no
- * columns. Yields the share [0, 1] that is done.
+ * columns. Yields the fraction [0, 1] that is done.
  */
 export function* writeCsv(motion: Motion): Generator<number, readonly string[]> {
   const { bones, times, seen } = motion;

@@ -3,7 +3,7 @@ import { type Vec3, vec3, writeVec3 } from '../math/vec3';
 import { addClip, type Clip, type GltfDescription, type NodeTrack, packGlb } from './gltf';
 import { hipsAt, type Motion, rotationAt } from './motion';
 
-export const generator = 'threepoint';
+const generator = 'threepoint';
 const array = ({ x, y, z }: Vec3): number[] => [x, y, z];
 
 /** Returns the clip of a motion without its tracks; it names the bones that are not measured. */
@@ -34,7 +34,7 @@ function next(value: number): number {
 /**
  * Writes the bytes of a VRM Animation 1.0 (.vrma), in parts: T-pose at rest facing +Z, rotations against it,
  * translation of the hips alone. Legs are in it, as the format wants them, at rest: `extras.notMeasured` of the
- * animation names them. Yields the share [0, 1] that is done.
+ * animation names them. Yields the fraction [0, 1] that is done.
  */
 export function* writeVrma(motion: Motion): Generator<number, readonly Uint8Array<ArrayBuffer>[]> {
   const { bones, times } = motion;

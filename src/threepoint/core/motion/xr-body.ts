@@ -49,10 +49,10 @@ class Joints {
     return next === null ? (end ?? up) : this.#bones[this.index(next)]!.offset;
   }
 
-  /** Adds a joint at a share of the way along a bone. */
-  add(name: string, bone: string, next: string | null, above: Vec3, share = 0): void {
+  /** Adds a joint at a fraction of the way along a bone. */
+  add(name: string, bone: string, next: string | null, above: Vec3, fraction = 0): void {
     const along = this.along(bone, next);
-    this.list.push({ name, bone: this.index(bone), at: scale(along, share), rest: axesAlong(along, above) });
+    this.list.push({ name, bone: this.index(bone), at: scale(along, fraction), rest: axesAlong(along, above) });
   }
 }
 
@@ -74,7 +74,7 @@ function addArm(joints: Joints, side: Side): void {
   joints.add(`${side}-hand-wrist-twist`, `${side}LowerArm`, `${side}Hand`, up, 0.9);
 }
 
-/** The start of the palm's bones, which are not modelled [share of the way from the wrist to the knuckle]. */
+/** The start of the palm's bones, which are not modelled [fraction of the way from the wrist to the knuckle]. */
 const palmBegins = 0.3;
 
 function addHand(joints: Joints, side: Side): void {

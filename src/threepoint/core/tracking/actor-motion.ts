@@ -136,8 +136,8 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
   while (next < keys.length - 1 && keys[next]!.time <= time) next += 1;
   const from = keys[next - 1] as Key;
   const to = keys[next] as Key;
-  const share = minimumJerk(clamp((time - from.time) / (to.time - from.time), 0, 1));
-  const mixed = (a = 0, b = 0): number => a + (b - a) * share;
+  const fraction = minimumJerk(clamp((time - from.time) / (to.time - from.time), 0, 1));
+  const mixed = (a = 0, b = 0): number => a + (b - a) * fraction;
 
   const body = bodyOf(calibration);
   const e = calibration.eyeHeight;
@@ -154,7 +154,7 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
   setVec3(neck, 0, -body.eyesInHead.y - body.neckToHead.y, -body.eyesInHead.z);
   add(eyes, rotate(trunk, neck, neck), neck);
 
-  const moment = { from, to, share, timeSeconds, body, shoulderAhead: 0.01 * e };
+  const moment = { from, to, fraction, timeSeconds, body, shoulderAhead: 0.01 * e };
   return {
     time: timeSeconds,
     head: { position: eyes, orientation, tracking: 'tracked' },
@@ -167,7 +167,7 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
 interface KeyInterpolation {
   readonly from: Key;
   readonly to: Key;
-  readonly share: number;
+  readonly fraction: number;
   readonly timeSeconds: number;
   readonly body: ChestSpaceBody;
   /** The offset of the shoulders behind the neck [m]. */
@@ -191,7 +191,7 @@ const turnedFrom = quat(0, 0, 0, 1);
 const turnedTo = quat(0, 0, 0, 1);
 
 function handAt(which: Side, moment: KeyInterpolation): TrackedPose {
-  const { from, to, share, timeSeconds, body } = moment;
+  const { from, to, fraction, timeSeconds, body } = moment;
   const sigma = sideSign(which);
   setVec3(shoulder, sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, moment.shoulderAhead);
   outward(sigma, from[which].at, reachFrom);
@@ -199,14 +199,14 @@ function handAt(which: Side, moment: KeyInterpolation): TrackedPose {
   outward(sigma, to[which].at, reachTo);
   addScaled(shoulder, reachTo, body.arm * 0.97, reachTo);
   // On long paths hands swing forward a little, so that they do not pass through the trunk.
-  const bulge = -0.22 * distance(reachFrom, reachTo) * Math.sin(Math.PI * share) ** 2;
+  const bulge = -0.22 * distance(reachFrom, reachTo) * Math.sin(Math.PI * fraction) ** 2;
   setVec3(
     tremor,
     0.005 * Math.sin(timeSeconds * 1.1 + sigma),
     0.004 * Math.sin(timeSeconds * 1.5),
     0.005 * Math.sin(timeSeconds * 0.9 + 2 * sigma) + bulge,
   );
-  const position = lerp(reachFrom, reachTo, share);
+  const position = lerp(reachFrom, reachTo, fraction);
   add(position, tremor, position);
   const far = distance(position, shoulder);
   const longest = body.arm * 0.985;
@@ -215,7 +215,7 @@ function handAt(which: Side, moment: KeyInterpolation): TrackedPose {
   const orientation = slerp(
     handOrientation(sigma, from[which], turnedFrom),
     handOrientation(sigma, to[which], turnedTo),
-    share,
+    fraction,
   );
   return { position, orientation: multiply(trunk, orientation, orientation), tracking: 'tracked' };
 }

@@ -55,13 +55,13 @@ export type SharedJoint = keyof typeof places;
 export const deviceJoint = (body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 =>
   readVec3(body, places[joint], target);
 
-/** Interpolates between two bodies, joint by joint; `share` 0: the first. */
+/** Interpolates between two bodies, joint by joint; `fraction` 0: the first. */
 export function mixDeviceBodies(
   a: DeviceBody,
   b: DeviceBody,
-  share: number,
+  fraction: number,
   target: DeviceBody = new Float32Array(deviceBodySize),
 ): DeviceBody {
-  for (let i = 0; i < deviceBodySize; i++) target[i] = a[i]! + (b[i]! - a[i]!) * share;
+  for (let i = 0; i < deviceBodySize; i++) target[i] = a[i]! + (b[i]! - a[i]!) * fraction;
   return target;
 }

@@ -1,6 +1,6 @@
 import { type Calibration, calibrationProblem, maxGazePitch } from '../body/calibration';
 import { type HandTilts, handTiltOf, isPlausibleTilt } from '../body/hand-tilt';
-import { sideSign, skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton, sideSign } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import { type Pose, transformTracked } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
@@ -17,7 +17,7 @@ import { assertPinning, type TrackingFrame } from './tracking-frame';
  * The person stands straight, looks ahead and stretches both arms for this long: forward, sideways, or down and out by
  * about 45° (A-pose).
  */
-export const measuringSeconds = 2;
+const measuringSeconds = 2;
 /** The longest measuring time [s], for pages with a low frame rate. */
 const longestMeasuringSeconds = 6;
 
@@ -227,10 +227,10 @@ function measure(samples: readonly Sample[], pinning?: TrackerMeasuring): Guided
   };
   const trackers = samples.map((sample) => sample.trackers);
   const calibration = { ...measured, ...pinning?.measure(trackers, measured, head.height) };
-  const complaint = calibrationProblem(calibration);
-  return complaint === null
+  const problem = calibrationProblem(calibration);
+  return problem === null
     ? { kind: 'done', calibration }
-    : { kind: 'failed', fault: 'unlikely', reason: `${complaint} ${calibrationFaults.unlikely}` };
+    : { kind: 'failed', fault: 'unlikely', reason: `${problem} ${calibrationFaults.unlikely}` };
 }
 
 /**
@@ -286,7 +286,7 @@ function looksAhead(wrists: readonly Vec3[]): boolean {
  */
 function restShoulder(side: Side, eyeHeight: number): Vec3 {
   // The span does not matter for shoulders.
-  const { restOffsets, eyesInHead } = skeletonFromCalibration({ eyeHeight, armSpan: eyeHeight });
+  const { restOffsets, eyesInHead } = averageSkeleton({ eyeHeight, armSpan: eyeHeight });
   const head = subtract(vec3(0, eyeHeight, 0), eyesInHead);
   const upperChest = subtract(subtract(head, restOffsets.head), restOffsets.neck);
   return add(upperChest, add(restOffsets[`${side}Shoulder`], restOffsets[`${side}UpperArm`]));

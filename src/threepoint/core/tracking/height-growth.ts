@@ -5,7 +5,7 @@ import {
   eyeHeightRange,
   withEyeHeight,
 } from '../body/calibration';
-import { skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton } from '../body/skeleton';
 import { isTracked } from '../math/pose';
 import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
@@ -15,14 +15,14 @@ import type { TrackingFrame } from './tracking-frame';
 const provingSeconds = 1.25;
 /** The range [m] within which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
-/** The ignored excess as a share of the eye height: shoes, and a headset that sits differently. */
+/** The ignored excess as a fraction of the eye height: shoes, and a headset that sits differently. */
 const deadZone = 0.02;
 /**
  * The ignored excess once the calibration has grown: the measured one was wrong, and a user who straightens up is
  * followed.
  */
 const grownDeadZone = 0.005;
-/** The largest growth as a share of the measured eye height: a user who rises further stands on something. */
+/** The largest growth as a fraction of the measured eye height: a user who rises further stands on something. */
 const maxGrowth = 0.08;
 /** The longest gap between two frames [s] without an unobserved motion. */
 const longestGap = 0.5;
@@ -54,7 +54,7 @@ export function createGrowthDetector() {
     measured = calibration.eyeHeight;
     // The height of a user with the default body is unknown if they have been sitting: any height is possible.
     highest = calibration === defaultCalibration ? eyeHeightRange.max : measured * (1 + maxGrowth);
-    const { eyesInHead } = skeletonFromCalibration(calibration);
+    const { eyesInHead } = averageSkeleton(calibration);
     eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
     levelRise = eyesInHead.y;
     stand = null;

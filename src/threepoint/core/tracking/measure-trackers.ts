@@ -1,6 +1,6 @@
 import type { Calibration } from '../body/calibration';
 import { legProportions } from '../body/leg-proportions';
-import { skeletonFromCalibration } from '../body/skeleton';
+import { averageSkeleton } from '../body/skeleton';
 import { isPlausibleOffset, type TrackerName, type TrackerOffset, trackerNames } from '../body/tracker-offsets';
 import {
   invertTransform,
@@ -19,8 +19,8 @@ import type { TrackingFrame } from './tracking-frame';
 /** The trackers of one frame; null or absent: not seen. */
 export type TrackerSample = { readonly [Name in TrackerName]?: Pose<'heading'> | null };
 
-/** The share of the frames in which a tracker must be seen. */
-const seenShare = 0.7;
+/** The fraction of the frames in which a tracker must be seen. */
+const seenFraction = 0.7;
 /** The largest mean distance of a tracker at rest from its middle [m]. */
 const trackerSway = 0.03;
 /** The smallest length of the mean of its rotations, as unit quaternions: within some 15° of each other. */
@@ -64,12 +64,11 @@ function measureTrackers(
 
 /** Measures how trackers are worn, in a guided calibration. */
 export const trackerMeasuring = { sample: sampleTrackers, measure: measureTrackers } as const;
-/** See trackerMeasuring. */
 export type TrackerMeasuring = typeof trackerMeasuring;
 
 /** Returns a function for the joints of a person who stands straight, heading frame; null: unknown. */
 function restJointsOf(calibration: Calibration, headHeight: number): (name: TrackerName, tracker: Vec3) => Vec3 | null {
-  const { restOffsets, eyesInHead } = skeletonFromCalibration(calibration);
+  const { restOffsets, eyesInHead } = averageSkeleton(calibration);
   const head = subtract(vec3(0, headHeight, 0), eyesInHead);
   const neck = subtract(head, restOffsets.head);
   const chest = subtract(subtract(neck, restOffsets.neck), restOffsets.upperChest);
@@ -85,7 +84,7 @@ function restJointsOf(calibration: Calibration, headHeight: number): (name: Trac
 /** Returns the mean of the poses of a tracker at rest; null: it moved, or was not seen most of the time. */
 function meanPose(poses: readonly (Pose<'heading'> | null)[]): MutablePose<'heading'> | null {
   const seen = poses.filter((pose) => pose !== null);
-  if (seen.length === 0 || seen.length < seenShare * poses.length) return null;
+  if (seen.length === 0 || seen.length < seenFraction * poses.length) return null;
   const mean = makePose<'heading'>();
   const position = scale(
     seen.reduce((sum, pose) => add(sum, pose.position), vec3(0, 0, 0)),
@@ -103,8 +102,8 @@ function meanPose(poses: readonly (Pose<'heading'> | null)[]): MutablePose<'head
   return mean;
 }
 
-/** Adds a share of a rotation to a sum; q and −q are the same rotation. */
-function addRotation(sum: Quat, q: Quat, share: number): Quat {
-  const sign = sum.x * q.x + sum.y * q.y + sum.z * q.z + sum.w * q.w < 0 ? -share : share;
+/** Adds a fraction of a rotation to a sum; q and −q are the same rotation. */
+function addRotation(sum: Quat, q: Quat, fraction: number): Quat {
+  const sign = sum.x * q.x + sum.y * q.y + sum.z * q.z + sum.w * q.w < 0 ? -fraction : fraction;
   return { x: sum.x + sign * q.x, y: sum.y + sign * q.y, z: sum.z + sign * q.z, w: sum.w + sign * q.w };
 }

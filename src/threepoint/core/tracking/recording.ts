@@ -277,27 +277,27 @@ export function sampleRecording({ frames }: Replayable, time: number): TrackingF
   const low = indexAt(frames, time);
   const before = frames.at(low)!;
   const after = frames.at(Math.min(low + 1, frames.length - 1))!;
-  const share = after.time > before.time ? (time - before.time) / (after.time - before.time) : 0;
-  if (share <= 0) return { ...before, time };
-  const hand = (a: TrackedPose | null, b: TrackedPose | null) => a && b && interpolate(a, b, share);
+  const fraction = after.time > before.time ? (time - before.time) / (after.time - before.time) : 0;
+  if (fraction <= 0) return { ...before, time };
+  const hand = (a: TrackedPose | null, b: TrackedPose | null) => a && b && interpolate(a, b, fraction);
   return {
     time,
-    head: interpolate(before.head, after.head, share),
+    head: interpolate(before.head, after.head, fraction),
     leftHand: hand(before.leftHand, after.leftHand),
     rightHand: hand(before.rightHand, after.rightHand),
-    ...(before.fingers && { fingers: mixFingers(before.fingers, after.fingers ?? before.fingers, share) }),
+    ...(before.fingers && { fingers: mixFingers(before.fingers, after.fingers ?? before.fingers, fraction) }),
     ...(before.deviceBody &&
-      after.deviceBody && { deviceBody: mixDeviceBodies(before.deviceBody, after.deviceBody, share) }),
+      after.deviceBody && { deviceBody: mixDeviceBodies(before.deviceBody, after.deviceBody, fraction) }),
   };
 }
 
-function mixFingers(a: Fingers, b: Fingers, share: number): Fingers {
-  const hand = (from: HandShape | null, to: HandShape | null) => from && to && lerpHandShape(from, to, share);
+function mixFingers(a: Fingers, b: Fingers, fraction: number): Fingers {
+  const hand = (from: HandShape | null, to: HandShape | null) => from && to && lerpHandShape(from, to, fraction);
   return { left: hand(a.left, b.left), right: hand(a.right, b.right) };
 }
 
-const interpolate = (a: TrackedPose, b: TrackedPose, share: number): TrackedPose => ({
-  position: lerp(a.position, b.position, share),
-  orientation: slerp(a.orientation, b.orientation, share),
+const interpolate = (a: TrackedPose, b: TrackedPose, fraction: number): TrackedPose => ({
+  position: lerp(a.position, b.position, fraction),
+  orientation: slerp(a.orientation, b.orientation, fraction),
   tracking: a.tracking === 'tracked' && b.tracking === 'tracked' ? 'tracked' : 'emulated',
 });

@@ -23,7 +23,6 @@ export const maxLatencyMs = 200;
 const kept = 64;
 const handOf = { left: 'leftHand', right: 'rightHand' } as const;
 
-/** A buffered hand of a frame. */
 class BufferedHand {
   readonly pose = makeTrackedPose();
   readonly shape = makeHandShape();
@@ -43,7 +42,6 @@ function keepPose(pose: TrackedPose, target: MutableTrackedPose): void {
   target.tracking = pose.tracking;
 }
 
-/** A buffered frame. */
 class BufferedFrame {
   time = 0;
   readonly head = makeTrackedPose();
@@ -159,25 +157,25 @@ export class TrackingDegradation {
     const older = this.#frameBefore(steps);
     const newer = this.#frameBefore(Math.max(0, steps - 1));
     const span = newer.time - older.time;
-    const share = span > 0 ? Math.min(1, Math.max(0, (time - older.time) / span)) : 0;
-    mixPose(older.head, newer.head, share, this.#head);
+    const fraction = span > 0 ? Math.min(1, Math.max(0, (time - older.time) / span)) : 0;
+    mixPose(older.head, newer.head, fraction, this.#head);
     const written = this.#written;
     written.fingers = older.hasFingers ? this.#fingers : undefined;
     written.deviceBody = older.hasDeviceBody ? this.#deviceBody : undefined;
     const after = newer.hasDeviceBody ? newer : older;
-    if (older.hasDeviceBody) mixDeviceBodies(older.deviceBody, after.deviceBody, share, this.#deviceBody);
-    for (let i = 0; i < sides.length; i++) this.#delayHand(sides[i]!, older, newer, share, written);
+    if (older.hasDeviceBody) mixDeviceBodies(older.deviceBody, after.deviceBody, fraction, this.#deviceBody);
+    for (let i = 0; i < sides.length; i++) this.#delayHand(sides[i]!, older, newer, fraction, written);
     return written;
   }
 
-  #delayHand(side: Side, older: BufferedFrame, newer: BufferedFrame, share: number, written: WrittenFrame): void {
+  #delayHand(side: Side, older: BufferedFrame, newer: BufferedFrame, fraction: number, written: WrittenFrame): void {
     const before = older.hands[side];
     const after = newer.hands[side].seen ? newer.hands[side] : before;
     const pose = this.#hands[side];
-    if (before.seen) mixPose(before.pose, after.pose, share, pose);
+    if (before.seen) mixPose(before.pose, after.pose, fraction, pose);
     written[handOf[side]] = before.seen ? pose : null;
     const shape = this.#shapes[side];
-    if (before.shapeKnown) lerpHandShape(before.shape, (after.shapeKnown ? after : before).shape, share, shape);
+    if (before.shapeKnown) lerpHandShape(before.shape, (after.shapeKnown ? after : before).shape, fraction, shape);
     this.#fingers[side] = before.shapeKnown ? shape : null;
   }
 

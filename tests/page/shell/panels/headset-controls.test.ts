@@ -13,7 +13,7 @@ import { activities as registered } from '../../../../src/page/shell/activity-re
 import type { CalibrationControl } from '../../../../src/page/shell/input/calibration-control';
 import type { InputParts } from '../../../../src/page/shell/input/input-parts';
 import { HeadsetControls } from '../../../../src/page/shell/panels/headset-controls';
-import type { PanelActions } from '../../../../src/page/shell/panels/panel';
+import type { PanelActions } from '../../../../src/page/shell/panels/panel-actions';
 import {
   type ComfortActions,
   type ComfortState,

@@ -12,8 +12,8 @@ import type { CalibrationControl } from '../../../../src/page/shell/input/calibr
 import type { InputParts } from '../../../../src/page/shell/input/input-parts';
 import { TrackingSource } from '../../../../src/page/shell/input/tracking-source';
 import type { Controls } from '../../../../src/page/shell/panels/controls';
+import { menuStateOf } from '../../../../src/page/shell/panels/headset-controls';
 import { menuButtons, type VrMenuActions } from '../../../../src/page/shell/panels/vr-menu/menu-buttons';
-import { menuStateOf } from '../../../../src/page/shell/panels/vr-menu/menu-state';
 import { FrameTiming } from '../../../../src/page/shell/session/frame-timing';
 import { SessionChanges } from '../../../../src/page/shell/session-changes';
 import { Activities, type ActivitiesOptions } from '../../../../src/page/shell/stage/activities';
@@ -55,11 +55,13 @@ function page(listed: readonly Activity[] = registered) {
     seed: 5,
     stage: {
       studio: {
+        ...services.stage.studio,
         setMarkVisible(visible) {
           seen.mark = visible;
         },
       },
       view: {
+        ...services.stage.view,
         setScene(scene: CameraScene) {
           seen.scene = scene;
         },
@@ -73,13 +75,14 @@ function page(listed: readonly Activity[] = registered) {
     },
     mouse,
     avatar: {
+      ...services.avatar,
       setSeatPalette(palette: string | null) {
         seen.palette = palette;
       },
     },
     onArrival: () => undefined,
   });
-  const activities = new Activities({ ...options, services, activities: listed, recorder });
+  const activities = new Activities({ ...options, activities: listed, recorder });
   const parts = fake<StageParts>({ settings, headset, ...noSession, recorder, activities, study });
   const source = new TrackingSource(parts, noPointers, createActor());
   const tracked = (time: number) => source.read(time, undefined);

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
 import { jointNames, parentOf } from '../../../../src/threepoint/core/body/joints';
-import { armBones, armLength, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { armBones, armLength, averageSkeleton } from '../../../../src/threepoint/core/body/skeleton';
 import { fromAxisAngle, identity, type Quat } from '../../../../src/threepoint/core/math/quat';
 import { add, distance, length, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { evenly, rotation, seed, vector } from '../arbitraries';
@@ -28,7 +28,7 @@ describe('the calibrated skeleton', () => {
   test('stands upright at rest in T-pose: eyes at eye height, arms at span, face to −Z', () => {
     fc.assert(
       fc.property(body, (calibration) => {
-        const skeleton = skeletonFromCalibration(calibration);
+        const skeleton = averageSkeleton(calibration);
         const joints = forwardKinematics(skeleton, {
           hipsPosition: skeleton.restOffsets.hips,
           localRotations: pose(() => identity),
@@ -48,7 +48,7 @@ describe('the calibrated skeleton', () => {
   });
 
   test('left and right are mirror images', () => {
-    const { restOffsets } = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 });
+    const { restOffsets } = averageSkeleton({ eyeHeight: 1.6, armSpan: 1.5 });
     for (const joint of ['Shoulder', 'UpperArm', 'LowerArm', 'Hand'] as const) {
       const { x, y, z } = restOffsets[`left${joint}`];
       expect(distance(vec3(-x, y, z), restOffsets[`right${joint}`])).toBeLessThan(1e-12);
@@ -56,18 +56,18 @@ describe('the calibrated skeleton', () => {
   });
 
   test('everything but the arms grows with the eye height alone, the arms with the span', () => {
-    const small = skeletonFromCalibration({ eyeHeight: 1, armSpan: 1 }).restOffsets;
-    const tall = skeletonFromCalibration({ eyeHeight: 2, armSpan: 2 }).restOffsets;
+    const small = averageSkeleton({ eyeHeight: 1, armSpan: 1 }).restOffsets;
+    const tall = averageSkeleton({ eyeHeight: 2, armSpan: 2 }).restOffsets;
     for (const joint of jointNames) expect(length(tall[joint])).toBeCloseTo(2 * length(small[joint]), 12);
-    const wide = skeletonFromCalibration({ eyeHeight: 1, armSpan: 1.1 }).restOffsets;
+    const wide = averageSkeleton({ eyeHeight: 1, armSpan: 1.1 }).restOffsets;
     expect(wide.leftUpperArm).toEqual(small.leftUpperArm);
     expect(length(wide.leftLowerArm)).toBeGreaterThan(length(small.leftLowerArm));
   });
 
   test('a measured forearm divides the arm half-way from average to measure, and moves nothing else', () => {
     const told = { eyeHeight: 1.6, armSpan: 1.5, forearm: 0.25 };
-    const average = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 }).restOffsets;
-    const { restOffsets } = skeletonFromCalibration(told);
+    const average = averageSkeleton({ eyeHeight: 1.6, armSpan: 1.5 }).restOffsets;
+    const { restOffsets } = averageSkeleton(told);
     for (const joint of jointNames) {
       if (!/LowerArm|Hand/.test(joint)) expect(restOffsets[joint]).toEqual(average[joint]);
     }
@@ -94,7 +94,7 @@ describe('forward kinematics', () => {
   test('no rotation changes the length of a bone', () => {
     fc.assert(
       fc.property(body, fc.array(rotation, { minLength: 14, maxLength: 14 }), vector(5), (calibration, turns, hips) => {
-        const skeleton = skeletonFromCalibration(calibration);
+        const skeleton = averageSkeleton(calibration);
         let next = 0;
         const joints = forwardKinematics(skeleton, { hipsPosition: hips, localRotations: pose(() => turns[next++]!) });
         expect(joints.hips.position).toEqual(hips);
@@ -110,7 +110,7 @@ describe('forward kinematics', () => {
   });
 
   test('turning the hips by a quarter to the left points the left arm backward', () => {
-    const skeleton = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 });
+    const skeleton = averageSkeleton({ eyeHeight: 1.6, armSpan: 1.5 });
     const joints = forwardKinematics(skeleton, {
       hipsPosition: skeleton.restOffsets.hips,
       localRotations: pose((joint) => (joint === 'hips' ? fromAxisAngle(up, Math.PI / 2) : identity)),

@@ -1,13 +1,13 @@
 import { describe, expect, test } from 'vitest';
 import { tiltRotation } from '../../../../src/threepoint/core/body/hand-tilt';
 import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
-import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { averageSkeleton, chestSpaceBody } from '../../../../src/threepoint/core/body/skeleton';
 import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { paperFeatures } from '../../../../src/threepoint/core/estimation/methods/paper';
 import { chestFeatureCount, chestFeatures } from '../../../../src/threepoint/core/estimation/networks/chest-features';
 import { FeatureWindow } from '../../../../src/threepoint/core/estimation/networks/feature-window';
 import { featureCount, frameFeatures } from '../../../../src/threepoint/core/estimation/networks/frame-features';
-import { paperFeatures } from '../../../../src/threepoint/core/estimation/networks/paper-features';
 import {
   estimateHandTilts,
   makeHandTiltsState,
@@ -37,7 +37,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
   const body = chestSpaceBody(golden.calibration);
 
   test('the calibrated skeleton', () => {
-    const { restOffsets, eyesInHead } = skeletonFromCalibration(golden.calibration);
+    const { restOffsets, eyesInHead } = averageSkeleton(golden.calibration);
     for (const [joint, offset] of Object.entries(golden.restOffsets)) {
       const ours = joint === 'eyesInHead' ? eyesInHead : restOffsets[joint as JointName];
       expectNear([ours.x, ours.y, ours.z], offset, joint);

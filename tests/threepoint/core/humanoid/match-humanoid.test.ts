@@ -2,11 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { neededBones } from '../../../../src/threepoint/core/humanoid/bones';
 import type { SkeletonJoint } from '../../../../src/threepoint/core/humanoid/joint-tree';
-import {
-  humanoidComplaint,
-  matchHumanoid,
-  minConfidence,
-} from '../../../../src/threepoint/core/humanoid/match-humanoid';
+import { humanoidProblem, matchHumanoid, minConfidence } from '../../../../src/threepoint/core/humanoid/match-humanoid';
 import { normaliseQuat, quat, rotate } from '../../../../src/threepoint/core/math/quat';
 import { distance, lerp, scale } from '../../../../src/threepoint/core/math/vec3';
 import { rigs } from './rigs';
@@ -27,7 +23,7 @@ describe.each(rigs)('the skeleton of $name', ({ name, joints, bones }) => {
   test('has its bones', () => {
     const match = matchHumanoid(joints);
     expect(named(joints)).toMatchObject(expected);
-    expect(humanoidComplaint(match)).toBeNull();
+    expect(humanoidProblem(match)).toBeNull();
     expect(match.notes).toEqual([]);
     expect(match.confidence).toBeGreaterThan(minConfidence + 0.1);
   });
@@ -204,7 +200,7 @@ describe('what is no humanoid is refused with what was found and what is missing
     ],
   ])('%s', (_, joints, sentence) => {
     const match = matchHumanoid(joints);
-    expect(humanoidComplaint(match)).toMatch(sentence);
+    expect(humanoidProblem(match)).toMatch(sentence);
     expect(match.missing.length).toBeGreaterThan(0);
     expect(match.confidence).toBe(0);
   });
@@ -220,7 +216,7 @@ describe('what is no humanoid is refused with what was found and what is missing
       for (const x of [-8, 8])
         for (const [i, y] of [58, 30, 3].entries())
           joints.push({ name: `e${joints.length}`, parent: i === 0 ? root : joints.length - 1, position: { x, y, z } });
-    expect(humanoidComplaint(matchHumanoid(joints))).toMatch(/none of its 16 joints/);
+    expect(humanoidProblem(matchHumanoid(joints))).toMatch(/none of its 16 joints/);
   });
 
   test('a bird, whose wings are where a human has arms', () => {
@@ -230,7 +226,7 @@ describe('what is no humanoid is refused with what was found and what is missing
       name.replace(/(?<=^Left|^Right)(Shoulder|Arm|ForeArm|Hand)$/, (part) => `Wing${wings.indexOf(part)}`),
     );
     const match = matchHumanoid(bird);
-    expect(humanoidComplaint(match)).toMatch(/no leftUpperArm, no leftLowerArm, no leftHand/);
+    expect(humanoidProblem(match)).toMatch(/no leftUpperArm, no leftLowerArm, no leftHand/);
     expect(match.map.leftFoot).toBeDefined();
   });
 
@@ -245,12 +241,12 @@ describe('what is no humanoid is refused with what was found and what is missing
   test('arms that end without hands, and everything else is found', () => {
     const match = matchHumanoid(without(/Hand|Shoulder/));
     expect(match.missing).toEqual(['leftHand', 'rightHand']);
-    expect(humanoidComplaint(match)).toMatch(/found hips \(q0\), spine .* no leftHand, no rightHand/);
+    expect(humanoidProblem(match)).toMatch(/found hips \(q0\), spine .* no leftHand, no rightHand/);
     expect(Object.keys(match.map)).toEqual(expect.arrayContaining(['head', 'leftLowerArm', 'rightFoot']));
   });
 
   test('one pair of limbs without names, which may be arms or legs', () => {
-    expect(humanoidComplaint(matchHumanoid(without(/Leg|Foot|Toes/)))).toMatch(/none of its \d+ joints/);
+    expect(humanoidProblem(matchHumanoid(without(/Leg|Foot|Toes/)))).toMatch(/none of its \d+ joints/);
   });
 
   test('any tree of joints gets an answer within a second', () => {

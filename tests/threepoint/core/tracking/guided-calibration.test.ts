@@ -4,7 +4,7 @@ import type { Calibration } from '../../../../src/threepoint/core/body/calibrati
 import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
 import { jointNames } from '../../../../src/threepoint/core/body/joints';
 import { legProportions } from '../../../../src/threepoint/core/body/leg-proportions';
-import { armLength, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { armLength, averageSkeleton } from '../../../../src/threepoint/core/body/skeleton';
 import { trackerNames } from '../../../../src/threepoint/core/body/tracker-offsets';
 import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
 import { pinning } from '../../../../src/threepoint/core/estimation/pinning';
@@ -35,7 +35,7 @@ function stretched(
   direction: 'forward' | 'sideways' | 'down and out',
   bentTo = 1,
 ): Omit<TrackingFrame, 'time'> {
-  const skeleton = skeletonFromCalibration(calibration);
+  const skeleton = averageSkeleton(calibration);
   const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
     (typeof jointNames)[number],
     Quat
@@ -268,7 +268,7 @@ describe('the guided calibration', () => {
   });
 
   describe('the offsets of trackers', () => {
-    const skeleton = skeletonFromCalibration(person);
+    const skeleton = averageSkeleton(person);
     const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
       (typeof jointNames)[number],
       Quat

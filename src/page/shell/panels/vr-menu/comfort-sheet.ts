@@ -8,7 +8,6 @@ import {
   menuWidth,
 } from '../../../activity/activity-menu';
 
-/** What the comfort sheet shows. */
 export interface ComfortState {
   /** The user can be turned and raised: not in a room that is seen. */
   readonly moves: boolean;

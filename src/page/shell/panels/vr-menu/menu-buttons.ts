@@ -22,13 +22,11 @@ import { home } from '../../activity-registry';
 import { estimatorOrder, estimatorTexts } from '../../session/estimator-texts';
 import { exitLabel } from '../panel-state';
 
-/** What the menu in the headset shows. */
 export interface VrMenuState {
   readonly estimator: EstimatorName;
   readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
   readonly calibration: CalibrationStep | null;
   readonly overlay: boolean;
-  /** The headset's body tracking is used. */
   readonly deviceBody: boolean;
   /** The next session shows the room around the user; null: the headset cannot. */
   readonly nextPassthrough: boolean | null;

@@ -23,9 +23,7 @@ export class VrMenu {
   readonly #actions: VrMenuActions;
   #state: VrMenuState | null = null;
   #buttons: readonly MenuButton[] = [];
-  /** The buttons that can be pressed. */
   #usable: readonly MenuButton[] = [];
-  /** The button that a hand points at. */
   #hovered: string | null = null;
   #brought = false;
   /** What the sheet shows, as a text that changes with it. */
@@ -40,12 +38,10 @@ export class VrMenu {
     this.object.visible = false;
   }
 
-  /** A hand points at one of the buttons. */
   get isPointedAt(): boolean {
     return this.object.visible && this.#hovered !== null;
   }
 
-  /** The menu was brought before the user. */
   get isBrought(): boolean {
     return this.#brought;
   }

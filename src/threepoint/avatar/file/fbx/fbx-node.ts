@@ -1,8 +1,6 @@
-/** A list of numbers of an FBX file. */
 export type FbxNumbers = Float64Array | Float32Array | Int32Array;
 export type FbxValue = number | string | Uint8Array | FbxNumbers;
 
-/** A node of an FBX file. */
 export interface FbxNode {
   readonly name: string;
   readonly values: readonly FbxValue[];

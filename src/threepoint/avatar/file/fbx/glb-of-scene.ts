@@ -249,7 +249,6 @@ class GlbWriter {
     return 'meshes' in this.#json;
   }
 
-  /** Returns the file. */
   file(root: number): Promise<ArrayBuffer> {
     const description = {
       asset: { version: '2.0', generator: 'threepoint' },

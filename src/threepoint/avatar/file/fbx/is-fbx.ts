@@ -1,7 +1,6 @@
 const latin = new TextDecoder('latin1');
 const magic = 'Kaydara FBX Binary  \0';
 
-/** Returns whether a file is binary FBX. */
 export const isBinaryFbx = (bytes: Uint8Array): boolean => latin.decode(bytes.subarray(0, magic.length)) === magic;
 
 /** Returns whether a file is FBX. FBX as text has no signature, and a converted file keeps its name. */

@@ -3,7 +3,6 @@ import { FbxLimits, type FbxNode, type FbxValue } from './fbx-node';
 /** A comment, a text, the name of a node, a brace, or a number or word. */
 const token = /;[^\r\n]*|"([^"]*)"|([A-Za-z_]\w*):|([{}])|([^\s,{}"]+)/g;
 
-/** A node that is being read. */
 interface OpenNode extends FbxNode {
   readonly values: FbxValue[];
   readonly children: OpenNode[];

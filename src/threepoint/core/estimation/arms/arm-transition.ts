@@ -34,7 +34,7 @@ const [hurrySeconds, longestSeconds] = [0.7, 0.9];
 const allButStraight = 0.1;
 /** The number of steps in which a path is sampled; progress is found to a sixty-fourth of a step. */
 const pathSteps = 8;
-const shareHalvings = 6;
+const fractionHalvings = 6;
 
 /** The unit directions of an arm's bones and of the elbow's hinge, floor frame. */
 export interface ArmDirections {
@@ -113,9 +113,9 @@ function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: ArmGoal
 }
 
 /** Places `elbow` and `wrist` at a fraction of the arcs. */
-function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, share: number): void {
-  rotate(alongArc(upperArm, share, turn), drawn.upperArm, bone);
-  rotate(alongArc(forearm, share, turn), drawn.forearm, unbent);
+function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, fraction: number): void {
+  rotate(alongArc(upperArm, fraction, turn), drawn.upperArm, bone);
+  rotate(alongArc(forearm, fraction, turn), drawn.forearm, unbent);
   placeJoints(bone, unbent, wanted);
 }
 
@@ -132,8 +132,8 @@ function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: Arm
 }
 
 /** Returns the larger distance [m] of elbow and wrist from their drawn positions, at a fraction of the arcs. */
-function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, share: number): number {
-  placeAt(transition, drawn, wanted, share);
+function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, fraction: number): number {
+  placeAt(transition, drawn, wanted, fraction);
   return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
 }
 
@@ -152,19 +152,18 @@ function progressWithin(transition: ArmTransition, drawn: ArmDirections, wanted:
       least = off;
     }
   }
-  let share = nearest / pathSteps;
-  if (least > metres || nearest === pathSteps) return share;
+  let fraction = nearest / pathSteps;
+  if (least > metres || nearest === pathSteps) return fraction;
   // Bisection written out: a predicate for `bisect` would be a new closure in every frame.
   let tooFar = (nearest + 1) / pathSteps;
-  for (let i = 0; i < shareHalvings; i++) {
-    const middle = (share + tooFar) / 2;
+  for (let i = 0; i < fractionHalvings; i++) {
+    const middle = (fraction + tooFar) / 2;
     if (distanceAt(transition, drawn, wanted, middle) > metres) tooFar = middle;
-    else share = middle;
+    else fraction = middle;
   }
-  return share;
+  return fraction;
 }
 
-/** Starts a transition from the drawn arm to its target. */
 export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
   directionArc(drawn.upperArm, wanted.upperArm, wanted.outside, transition.upperArm);
   directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);
@@ -216,31 +215,36 @@ export function followTransition(
   retargetArc(forearm, drawn.forearm, wanted.forearm);
   const toGo = pathLength(transition, drawn, wanted);
   const step = stepOf(transition, toGo, wanted, passed);
-  // Minimum share per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus the
-  // catch-up ramp.
+  // Minimum fraction per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus
+  // the catch-up ramp.
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry =
     wanted.minDuration === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
-  const share = Math.max(hurry, least, progressWithin(transition, drawn, wanted, step));
-  if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
-  advanceArcs(transition, wanted, drawn, share);
+  const fraction = Math.max(hurry, least, progressWithin(transition, drawn, wanted, step));
+  if (fraction === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
+  advanceArcs(transition, wanted, drawn, fraction);
   storeDrawn(transition, drawn, wanted);
 }
 
 /** Rotates the drawn bones by a fraction of the arcs, and the hinge with them. */
-function advanceArcs({ upperArm, forearm }: ArmTransition, wanted: ArmGoal, drawn: ArmDirections, share: number): void {
-  if (share === 1) {
+function advanceArcs(
+  { upperArm, forearm }: ArmTransition,
+  wanted: ArmGoal,
+  drawn: ArmDirections,
+  fraction: number,
+): void {
+  if (fraction === 1) {
     copyArmDirections(wanted, drawn);
     return;
   }
   copyVec3(drawn.upperArm, bone);
-  rotate(alongArc(upperArm, share, turn), drawn.upperArm, drawn.upperArm);
-  rotate(alongArc(forearm, share, turn), drawn.forearm, drawn.forearm);
-  advanceArc(upperArm, share);
-  advanceArc(forearm, share);
+  rotate(alongArc(upperArm, fraction, turn), drawn.upperArm, drawn.upperArm);
+  rotate(alongArc(forearm, fraction, turn), drawn.forearm, drawn.forearm);
+  advanceArc(upperArm, fraction);
+  advanceArc(forearm, fraction);
   // The hinge is normal to the bones; for an almost straight arm it is interpolated from the drawn to the goal hinge.
   rotate(rotationBetween(bone, drawn.upperArm, turn), drawn.hinge, unbent);
-  lerp(unbent, wanted.hinge, share, unbent);
+  lerp(unbent, wanted.hinge, fraction, unbent);
   cross(drawn.upperArm, drawn.forearm, drawn.hinge);
   const isBent = dot(drawn.upperArm, drawn.forearm) < 0;
   const straightness = isBent ? 0 : Math.max(0, allButStraight - length(drawn.hinge));

@@ -16,7 +16,7 @@ export interface DirectionArc {
   readonly first: MutableQuat;
   readonly second: MutableQuat;
   /** The length of the first leg as a fraction of the whole path. */
-  share: number;
+  fraction: number;
   /** Intermediate direction, unit; used only while `roundabout`. */
   readonly via: MutableVec3;
   roundabout: boolean;
@@ -25,7 +25,7 @@ export interface DirectionArc {
 export const makeDirectionArc = (): DirectionArc => ({
   first: quat(0, 0, 0, 1),
   second: quat(0, 0, 0, 1),
-  share: Number.NaN,
+  fraction: Number.NaN,
   via: vec3(0, 0, 0),
   roundabout: false,
 });
@@ -71,19 +71,19 @@ export function retargetArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionA
   const { first, second, via, roundabout } = arc;
   const a = angleBetween(identity, rotationBetween(from, roundabout ? via : to, first));
   const b = roundabout ? angleBetween(identity, rotationBetween(via, to, second)) : 0;
-  arc.share = a + b > 0 ? a / (a + b) : 1;
+  arc.fraction = a + b > 0 ? a / (a + b) : 1;
   return arc;
 }
 
 /** Drops the via point once progress in [0, 1] has passed the first leg. */
 export function advanceArc(arc: DirectionArc, progress: number): void {
-  if (progress >= arc.share) arc.roundabout = false;
+  if (progress >= arc.fraction) arc.roundabout = false;
 }
 
 /** Returns the rotation from the arc's start to `progress` in [0, 1] of its path. */
 export function alongArc(arc: DirectionArc, progress: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
-  const { first, second, share } = arc;
-  if (progress <= share)
-    return share > 0 ? slerp(identity, first, Math.min(1, progress / share), target) : copyQuat(identity, target);
-  return multiply(slerp(identity, second, (progress - share) / (1 - share), target), first, target);
+  const { first, second, fraction } = arc;
+  if (progress <= fraction)
+    return fraction > 0 ? slerp(identity, first, Math.min(1, progress / fraction), target) : copyQuat(identity, target);
+  return multiply(slerp(identity, second, (progress - fraction) / (1 - fraction), target), first, target);
 }

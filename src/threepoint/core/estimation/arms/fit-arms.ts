@@ -80,7 +80,7 @@ interface ArmState extends SwivelState {
   forearmTwist: number;
 }
 
-export interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
+interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
 
 const makeArmState = (): ArmState => ({
   known: false,
@@ -130,7 +130,6 @@ const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(
 /** The pole of IK, then the fallback poles. */
 const ikPoles: [Vec3, Vec3] = [fallbackPoles[0], fallbackPoles[0]];
 const estimated: Record<'shoulder' | 'elbow' | 'wrist', Vec3> = { shoulder: zero, elbow: zero, wrist: zero };
-/** The context of the current arm. */
 const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose | null } = {
   side: 'left',
   torso: null,
@@ -272,7 +271,6 @@ function limitWrist(lowerArm: Quat, along: Vec3, target: MutableQuat): void {
   multiply(lowerArm, target, target);
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetFitArms(state: FitArmsState): void {
   for (const arm of [state.left, state.right]) {
     arm.known = false;

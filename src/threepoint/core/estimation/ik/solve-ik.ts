@@ -59,7 +59,7 @@ export interface ChestAxes {
 }
 
 // The order differs from a vector: see `Vec3` for why an object that contains vectors must not have the same shape.
-export const makeChestAxes = (): ChestAxes => ({ z: vec3(0, 0, 0), y: vec3(0, 0, 0), x: vec3(0, 0, 0) });
+const makeChestAxes = (): ChestAxes => ({ z: vec3(0, 0, 0), y: vec3(0, 0, 0), x: vec3(0, 0, 0) });
 
 /** The result of inverse kinematics, heading frame. */
 export interface IkSolution {

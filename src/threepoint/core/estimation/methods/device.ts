@@ -31,7 +31,7 @@ const isNear = (body: DeviceBody, joint: SharedJoint, tracked: Vec3, most: numbe
 export function createDeviceSource(otherwise: JointSource): JointSource {
   /** The offset of the device's joints from the other source's [m], heading frame, and its weight [0, 1]. */
   const differences = makeJoints();
-  const shares = mapJoints(() => 0);
+  const fractions = mapJoints(() => 0);
   let known = false;
 
   function isPlausible(joint: EstimatedJoint, { deviceBody, completed }: SolvedFrame): boolean {
@@ -60,8 +60,8 @@ export function createDeviceSource(otherwise: JointSource): JointSource {
           subtract(deviceJoint(solved.deviceBody, joint, place), target[joint], place);
           rotateInverse(orientation, place, difference);
         }
-        shares[joint] = sees ? Math.min(1, shares[joint] + step) : Math.max(0, shares[joint] - step);
-        addScaled(target[joint], rotate(orientation, difference, place), shares[joint], target[joint]);
+        fractions[joint] = sees ? Math.min(1, fractions[joint] + step) : Math.max(0, fractions[joint] - step);
+        addScaled(target[joint], rotate(orientation, difference, place), fractions[joint], target[joint]);
       }
     },
   };

@@ -104,10 +104,10 @@ class Residual implements JointSource, JointNetwork {
     }
     const { ik, floorFromHeading } = solved;
     // Without a result the correction fades to zero.
-    const share = smoothingFactor(correctionHalfLife, deltaSeconds);
+    const fraction = smoothingFactor(correctionHalfLife, deltaSeconds);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;
-      const residual = lerp(this.#damped[joint], this.#newest[joint], share, this.#damped[joint]);
+      const residual = lerp(this.#damped[joint], this.#newest[joint], fraction, this.#damped[joint]);
       headingFromChest(ik.chest, residual, target[joint]);
       transformPoint(floorFromHeading, add(ik.joints[joint], target[joint], target[joint]), target[joint]);
     }

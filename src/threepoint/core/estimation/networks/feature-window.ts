@@ -52,10 +52,10 @@ export class FeatureWindow {
       const late = frames[after]!;
       const early = frames[Math.max(0, after - 1)]!;
       const gap = late.time - early.time;
-      const share = gap > 0 ? (wanted - early.time) / gap : 1;
+      const fraction = gap > 0 ? (wanted - early.time) / gap : 1;
       const from = slot * width;
       for (let i = 0; i < width; i++) {
-        target[from + i] = early.features[i]! * (1 - share) + late.features[i]! * share;
+        target[from + i] = early.features[i]! * (1 - fraction) + late.features[i]! * fraction;
       }
     }
   }

@@ -1,5 +1,5 @@
 /** One tensor of a model, as its contract file states it. */
-export interface TensorContract {
+interface TensorContract {
   readonly name: string;
   readonly shape: readonly number[];
   /** A description of the numbers: quantities, frames, order. */

@@ -5,10 +5,10 @@ import type { CompletedFrame } from '../complete-hands';
 import type { SolvedFrame } from '../joint-source';
 import headsetRise from './headset-rise.json' with { type: 'json' };
 
-const { furthest, hanging, share, speed, unremarkable, usualReach } = headsetRise;
+const { furthest, hanging, share: fraction, speed, unremarkable, usualReach } = headsetRise;
 
 /** The estimate of the headset's rise above its nominal position on the head. */
-export interface HeadsetRiseState {
+interface HeadsetRiseState {
   /** Tracked quantile of the shoulder–wrist distance while the arm hangs [arm lengths]. */
   readonly reach: Record<Side, number>;
   /** [m] */
@@ -57,7 +57,7 @@ export function estimateHeadsetRise(
     const far = length(fromShoulder);
     if (-fromShoulder.y <= hanging * far) continue;
     const { reach } = state;
-    reach[side] += speed * deltaSeconds * (far > reach[side] * arm ? share : share - 1);
+    reach[side] += speed * deltaSeconds * (far > reach[side] * arm ? fraction : fraction - 1);
   }
   const further = (state.reach.left + state.reach.right) / 2 - usualReach;
   const beyond = further - clamp(further, -unremarkable, unremarkable);

@@ -49,11 +49,11 @@ const turnSpeed = 12;
  * it.
  */
 const shoulderLineHalfLife = 0.15;
-/** Confidence in the shoulder line rises from 0 to 1 between these shoulder distances [share of rest width]. */
+/** Confidence in the shoulder line rises from 0 to 1 between these shoulder distances [fraction of rest width]. */
 const [undefinedLine, definedLine] = [0.2, 0.7];
 /** The highest speed of the hips about the chest joint [rad/s]: 4 cm in a frame at 60 Hz. */
 const hipsTurnSpeed = 6;
-/** Share of the turn from the pelvis to the shoulders' line that the lower back has made [1]. */
+/** Fraction of the turn from the pelvis to the shoulders' line that the lower back has made [1]. */
 const spineToShoulders = 0.35;
 /** The height [m] of the hip joints' middle when sitting on the floor. */
 const lowestHips = 0.09;
@@ -73,7 +73,7 @@ export interface TorsoPose {
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
 
-export interface FitTorsoState {
+interface FitTorsoState {
   /** False before the first frame. */
   known: boolean;
   readonly pose: TorsoPose;
@@ -193,14 +193,14 @@ function followShoulderLine(
   normalise(line, before, line);
   if (!known) return;
   const confidence = smoothstep(undefinedLine, definedLine, apart / shoulderWidth);
-  const share = smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds);
-  turnTowards(line, before, share, turnSpeed * Math.max(deltaSeconds, 0));
+  const fraction = smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds);
+  turnTowards(line, before, fraction, turnSpeed * Math.max(deltaSeconds, 0));
 }
 
-/** Turns `before` towards `wanted` by min(share·angle, most) [rad] and writes the result into `wanted`; all unit. */
-function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: number): void {
+/** Turns `before` towards `wanted` by min(fraction·angle, most) [rad] and writes the result into `wanted`; all unit. */
+function turnTowards(wanted: MutableVec3, before: Vec3, fraction: number, most: number): void {
   const angle = Math.atan2(length(cross(before, wanted, turnAxis)), dot(before, wanted));
-  const turn = Math.min(angle * share, most);
+  const turn = Math.min(angle * fraction, most);
   if (angle - turn < 1e-9) return;
   normalise(cross(turnAxis, before, turnAxis), headingRight, turnAxis);
   scale(before, Math.cos(turn), wanted);
@@ -362,7 +362,6 @@ function hangHips(
   normalise(subtract(hips, chest, towards), down, towards);
 }
 
-/** Resets the state: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
 }

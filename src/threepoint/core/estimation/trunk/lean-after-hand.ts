@@ -50,7 +50,6 @@ export const makeLean = (): Lean => ({
 
 const towards = vec3(0, 0, 0);
 
-/** Starts a frame without a lean. */
 export function startLeanFrame(lean: Lean): void {
   setVec3(lean.wanted, 0, 0, 0);
   lean.extremity = 0;

@@ -1,6 +1,6 @@
 import { createEstimator, skeletonFromCalibration } from 'threepoint';
 import { expect, test } from 'vitest';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
+import { defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
 
 const centimetres = { eyeHeight: 165, armSpan: 156 };
 

@@ -5,5 +5,5 @@
  */
 export const startValidator = async (): Promise<Worker | null> =>
   globalThis.Worker?.prototype instanceof EventTarget
-    ? new Worker(new URL('../avatar/file/avatar-check-worker.ts', import.meta.url), { type: 'module' })
+    ? new Worker(new URL('../../avatar/file/avatar-check-worker.ts', import.meta.url), { type: 'module' })
     : null;

@@ -1,7 +1,7 @@
 import { type BuiltInBody, type EstimatorName, TrackingDegradation } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import type { Settings } from '../../../../src/page/shell/session/settings';
-import { embody } from '../../../../src/page/shell/stage/embody';
+import { embody } from '../../../../src/page/shell/stage/join-study';
 import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { fake } from '../fake';
 
