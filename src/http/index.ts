@@ -29,7 +29,7 @@ export type { SitePolicy } from './site-policy';
 export { createSitePolicy } from './site-policy';
 export type { Software } from './software-version';
 export { readSoftwareVersion } from './software-version';
-export { answerCalls, logFrom, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
+export { answerCalls, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
 export type { Credentials, UpgradeListener } from './web-server';
 export {
   answering,

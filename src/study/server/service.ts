@@ -71,7 +71,7 @@ class StudyThread {
     const { directory, token, software, secret, now, log, thread } = this.#options;
     this.#startedAt = performance.now();
     const worker = startThread(thread);
-    const calls = new ThreadCalls<StudyThreadApi>(worker, limits, log);
+    const calls = new ThreadCalls<StudyThreadApi>(worker, limits);
     this.#worker = worker;
     this.#calls = calls;
     let shortage: string | null = null;
@@ -79,9 +79,9 @@ class StudyThread {
       shortage = shortageOf(error);
       log(shortage === null ? `study, a fault: ${error.stack ?? error.message}` : `study: ${shortage}`);
     });
+    worker.on('message', log);
     worker.once('exit', () => {
       if (this.#worker === worker) this.#worker = this.#calls = null;
-      calls.end();
     });
     const asked = [{ directory, token, software, secret }, now()] as const;
     try {

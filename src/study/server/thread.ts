@@ -1,7 +1,7 @@
 import { join } from 'node:path';
 import type { MessagePort } from 'node:worker_threads';
 import { reasonOf } from 'threepoint/core';
-import { answerCalls, ConfigurationError, type FailedAttempt, logFrom } from 'threepoint-http';
+import { answerCalls, ConfigurationError, type FailedAttempt } from 'threepoint-http';
 import { createExporter } from './export/exporter';
 import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
 import type { StudyRequest, StudyRoute } from './routes/route';
@@ -86,7 +86,7 @@ export type CreateSignSeat = (secret: string, now: () => number) => SignSeat;
 
 /** Answers the calls on the port of this thread until the process ends. */
 export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat): void {
-  const log = logFrom(port);
+  const log = (line: string) => port.postMessage(line);
   let serving: OpenFolder | null = null;
   // The time of the newest request, because the main thread has the clock of the process.
   let newest = 0;
