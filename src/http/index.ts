@@ -8,13 +8,14 @@ export { ConfigurationError } from './configuration-error';
 export { ConnectionLimiter, createSlotCounter } from './connection-limiter';
 export { GroupCommit } from './group-commit';
 export { guarded } from './guarded';
-export { HttpError } from './http-error';
+export { HttpError, internalError } from './http-error';
 export { consumePoint, tooManyRequests } from './rate-limit';
 export { readBody } from './request-body';
 export { parseRequestTarget } from './request-target';
 export { shortageOf } from './resource-shortage';
 export type { HttpResponse } from './response';
 export {
+  errorResponse,
   jsonResponse,
   noContent,
   sendError,

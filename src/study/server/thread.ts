@@ -1,10 +1,10 @@
 import { join } from 'node:path';
 import type { MessagePort } from 'node:worker_threads';
 import { reasonOf } from 'threepoint/core';
-import { answerCalls, ConfigurationError, type FailedAttempt } from 'threepoint-http';
+import { answerCalls, ConfigurationError, type FailedAttempt, type HttpResponse } from 'threepoint-http';
 import { createExporter } from './export/exporter';
-import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
-import type { StudyRequest, StudyRoute } from './routes/route';
+import { StudyDispatcher } from './routes/dispatcher';
+import type { RouteHead, StudyRequest } from './routes/route';
 import { createStudySeats, type SignSeat } from './routes/seats';
 import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/study-folder';
 import type { StudyStore } from './storage/study-store';
@@ -20,7 +20,7 @@ export interface StudyThreadOptions extends StudyFolderOptions {
 export type OpenedStudies =
   | { readonly problem: string }
   | {
-      readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+      readonly routes: readonly RouteHead[];
       /** The file with the generated token; null: the token was given. */
       readonly tokenFile: string | null;
     };
@@ -29,8 +29,8 @@ export type OpenedStudies =
 export type StudyThreadApi = {
   /** Opens the studies, before any other call. */
   open(options: StudyThreadOptions, at: number): OpenedStudies;
-  admit(route: number, request: StudyRequest): Promise<StudyOutcome>;
-  handle(route: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome>;
+  admit(request: StudyRequest): Promise<HttpResponse | undefined>;
+  handle(request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<HttpResponse>;
   /** Deletes what is past its retention date. */
   expire(at: number): void;
   close(): void;
@@ -121,13 +121,13 @@ export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat):
 
   answerCalls<StudyThreadApi>(port, {
     open,
-    admit(route, request) {
+    admit(request) {
       newest = request.at;
-      return opened().dispatcher.admit(route, request);
+      return opened().dispatcher.admit(request);
     },
-    handle(route, request, body) {
+    handle(request, body) {
       newest = request.at;
-      return opened().dispatcher.handle(route, request, body);
+      return opened().dispatcher.handle(request, body);
     },
     expire: (at) => expire(opened().folder.store, at, log),
     close() {

@@ -11,8 +11,12 @@ export const bodyLimits = { json: 512 * 1024, motion: maxMotionBytes } as const;
 
 const prefix = '/api/studies';
 
+/** A route without its function, which stays in the thread of the database. */
+export type RouteHead = Omit<StudyRoute, 'handle'>;
+
 /** A request to a route of the studies, as it is sent from the thread of the sockets to that of the database. */
 export interface StudyRequest {
+  readonly route: RouteHead;
   /** The time of the request in seconds since 1970. */
   readonly at: number;
   readonly token: string | null;
