@@ -106,9 +106,9 @@ const modelRooms = {
   results: ['questionnaires', 'plan', 'records', 'tables'],
 };
 const studyServerRooms = {
-  storage: [],
-  export: ['storage'],
-  routes: ['storage', 'export'],
+  sqlite: [],
+  export: ['sqlite'],
+  routes: ['sqlite', 'export'],
 };
 const shellRooms = {
   session: [],
@@ -249,7 +249,7 @@ export default {
       name: 'sqlite-stores',
       comment: 'The database stands behind StudyStore: another one replaces files of this folder alone.',
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/study/server/storage/' },
+      from: { path: '^(src|server)/', pathNot: '^src/study/server/sqlite/' },
       to: { path: packagePath('@photostructure/sqlite') },
     },
     {

@@ -6,8 +6,8 @@ import { createExporter } from './export/exporter';
 import { StudyDispatcher } from './routes/dispatcher';
 import type { RouteHead, StudyRequest } from './routes/route';
 import { createStudySeats, type SignSeat } from './routes/seats';
-import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/study-folder';
-import type { StudyStore } from './storage/study-store';
+import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './sqlite/study-folder';
+import type { StudyStore } from './sqlite/study-store';
 
 // The thread of the studies has their database, their secrets and their access rules. Slow work and a hanging disk do
 // not block the thread of the sockets.

@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
-import { normalisedCode } from '../../../src/study/server/storage/schema';
+import { normalisedCode } from '../../../src/study/server/sqlite/schema';
 import { now } from './running-studies';
 import { completed, withPaperStudy } from './stored-studies';
 

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { unpacked } from '../../../src/study/server/storage/study-motion';
+import { unpacked } from '../../../src/study/server/sqlite/study-motion';
 import { paperPlan } from '../model/studies';
 import { now } from './running-studies';
 import { completed, opened, withPaperStudy } from './stored-studies';

@@ -1,7 +1,7 @@
 import { checked, identifier, participantId } from 'threepoint/core';
 import { errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStore } from '../sqlite/study-store';
 import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';

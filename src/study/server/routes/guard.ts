@@ -11,8 +11,8 @@ import {
   tooManyRequests,
 } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
-import { normalisedCode } from '../storage/schema';
-import type { StudyStore } from '../storage/study-store';
+import { normalisedCode } from '../sqlite/schema';
+import type { StudyStore } from '../sqlite/study-store';
 
 /**
  * The access to a route. participant: the token of this participant or of an experimenter; invited: the invitation to

@@ -8,7 +8,7 @@ import { commandSchema, playedTogetherSchema } from '../../model/progress/study-
 import { profileFrom } from '../../model/records/participant-profile';
 import { refuseUnscheduled, refuseUnscheduledTrial } from '../../model/records/scheduled-record';
 import { checkedRecord, within } from '../../model/records/study-record';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStore } from '../sqlite/study-store';
 import { bodyLimits, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
 import { exportOf } from './study-routes';
 

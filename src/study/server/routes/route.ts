@@ -1,7 +1,7 @@
 import type { ClientAddress, HttpResponse, Route, Software } from 'threepoint-http';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStore } from '../sqlite/study-store';
 import type { Effect } from './effect';
 import type { RouteAccess, Sender, StudyGuard } from './guard';
 import type { StudySeats } from './seats';

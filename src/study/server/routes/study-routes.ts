@@ -4,7 +4,7 @@ import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { exportName } from '../export/export-zip';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStore } from '../sqlite/study-store';
 import { bodyLimits, route, type StudyParts, type StudyRoute } from './route';
 
 const newStudySchema = v.strictObject({
