@@ -108,7 +108,7 @@ const modelRooms = {
 const studyServerRooms = {
   sqlite: [],
   export: ['sqlite'],
-  routes: ['sqlite', 'export'],
+  routes: ['export'],
 };
 const shellRooms = {
   session: [],
@@ -247,7 +247,7 @@ export default {
     },
     {
       name: 'sqlite-stores',
-      comment: 'The database stands behind StudyStore: another one replaces files of this folder alone.',
+      comment: 'The database stands behind StudyStorage, which routes import: another one is a folder beside this one.',
       severity: 'error',
       from: { path: '^(src|server)/', pathNot: '^src/study/server/sqlite/' },
       to: { path: packagePath('@photostructure/sqlite') },

@@ -8,6 +8,7 @@ import type { RouteHead, StudyRequest } from './routes/route';
 import { createStudySeats, type SignSeat } from './routes/seats';
 import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './sqlite/study-folder';
 import type { StudyStore } from './sqlite/study-store';
+import type { StudyStorage } from './study-storage';
 
 // The thread of the studies has their database, their secrets and their access rules. Slow work and a hanging disk do
 // not block the thread of the sockets.
@@ -32,7 +33,7 @@ export type StudyThreadApi = {
   admit(request: StudyRequest): Promise<HttpResponse | undefined>;
   handle(request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<HttpResponse>;
   /** Deletes what is past its retention date. */
-  expire(at: number): void;
+  expire(at: number): Promise<void>;
   close(): void;
 };
 
@@ -45,10 +46,10 @@ const failedAttemptLine = ({ what, of, address, failures }: FailedAttempt): stri
 type Log = (line: string) => void;
 
 /** Deletes what is past its retention date. A full disk or a locked database must not end a server that others use. */
-function expire(store: StudyStore, at: number, log: Log): void {
+async function expire(store: StudyStorage, at: number, log: Log): Promise<void> {
   const again = 'which is tried again within the hour';
   try {
-    const receipts = store.deletion.deleteExpired(at, ({ study, participant }, error) => {
+    const receipts = await store.deletion.deleteExpired(at, ({ study, participant }, error) => {
       const failed = 'is past the retention date and could not be deleted';
       log(`study "${study}": ${participant} ${failed}, ${again}: ${reasonOf(error)}`);
     });

@@ -1,7 +1,7 @@
 import { checked, identifier, participantId } from 'threepoint/core';
 import { errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
-import type { StudyStore } from '../sqlite/study-store';
+import type { StudyStorage } from '../study-storage';
 import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';
@@ -59,7 +59,7 @@ export const faultLine = (error: unknown): string =>
   `study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`;
 
 export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, StudyGuardOptions {
-  readonly store: StudyStore;
+  readonly store: StudyStorage;
   readonly log: (line: string) => void;
 }
 
@@ -71,7 +71,7 @@ export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, Study
 export class StudyDispatcher {
   readonly routes: readonly StudyRoute[];
   readonly #guard: StudyGuard;
-  readonly #store: StudyStore;
+  readonly #store: StudyStorage;
   readonly #log: (line: string) => void;
   #lastChange: Promise<unknown> = Promise.resolve();
   #logged = Number.NEGATIVE_INFINITY;

@@ -1,7 +1,7 @@
 import type { ClientAddress, HttpResponse, Route, Software } from 'threepoint-http';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
-import type { StudyStore } from '../sqlite/study-store';
+import type { StudyStorage } from '../study-storage';
 import type { Effect } from './effect';
 import type { RouteAccess, Sender, StudyGuard } from './guard';
 import type { StudySeats } from './seats';
@@ -44,7 +44,7 @@ export interface StudyRoute extends Omit<Route<RouteAccess>, 'handle'> {
 
 /** The parts of the server that routes use. */
 export interface StudyParts {
-  readonly store: StudyStore;
+  readonly store: StudyStorage;
   readonly guard: StudyGuard;
   /** Signs participants into the rooms of their trials. */
   readonly seats: StudySeats;
