@@ -106,9 +106,9 @@ const modelRooms = {
   results: ['questionnaires', 'plan', 'records', 'tables'],
 };
 const studyServerRooms = {
-  storage: [],
-  export: ['storage'],
-  routes: ['storage', 'export'],
+  sqlite: [],
+  export: ['sqlite'],
+  routes: ['export'],
 };
 const shellRooms = {
   session: [],
@@ -247,9 +247,9 @@ export default {
     },
     {
       name: 'sqlite-stores',
-      comment: 'The database stands behind StudyStore: another one replaces files of this folder alone.',
+      comment: 'The database stands behind StudyStorage, which routes import: another one is a folder beside this one.',
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/study/server/storage/' },
+      from: { path: '^(src|server)/', pathNot: '^src/study/server/sqlite/' },
       to: { path: packagePath('@photostructure/sqlite') },
     },
     {

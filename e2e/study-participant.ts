@@ -1,4 +1,5 @@
 import type { Page } from '@playwright/test';
+import type { StudyPlan } from '../src/study/model/plan/plan';
 import type { StudyRecord } from '../src/study/model/records/study-record';
 import type { StudyProbe } from '../src/study/participant/study-run';
 import { type EmulatedHeadset, emulatedHeadset } from './emulated-headset';
@@ -98,6 +99,21 @@ export async function takePart(page: Page, origin: string, id: string, participa
 export async function headsetOf(page: Page): Promise<EmulatedHeadset> {
   await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 60_000 });
   return emulatedHeadset(page);
+}
+
+/**
+ * Opens the page at a step of a study without a headset, as another device that continues a session. It is the first
+ * participant's, who has consented before.
+ */
+export async function continueAtDesk(page: Page, origin: string, plan: StudyPlan, step: string): Promise<void> {
+  const experimenting = experimenter(origin);
+  await experimenting.begin(plan, false);
+  await experimenting.consented(plan, 'P01');
+  await experimenting.report(plan, 'P01', step);
+  await experimenting.ask(`/${plan.id}/participants/P01/release`, 'POST');
+  await page.goto(await experimenting.link(plan.id, 'P01', '&quality=low'));
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
 }
 
 /** Fills in the demographic questions; does not submit them. */

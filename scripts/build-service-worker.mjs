@@ -5,7 +5,7 @@ import { packageCollector } from './licences.mjs';
 import { root } from './run-command.mjs';
 
 /** The pages that are not cached, because they need their server. */
-const otherPages = ['experimenter.html', 'preview.html', 'results.html', 'withdraw.html'];
+const otherPages = ['experimenter.html', 'results.html', 'withdraw.html'];
 
 /**
  * Files that the cached page never requests: files for the server, the library's weights for pages without the runtime,

@@ -13,7 +13,6 @@ const sources = [
   'check.html',
   'results.html',
   'experimenter.html',
-  'preview.html',
   'withdraw.html',
   'vite.config.ts',
   'tsconfig.json',

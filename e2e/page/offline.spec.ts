@@ -149,9 +149,7 @@ test('nothing is kept of a server, and a study is served by it as ever @full', a
   await isKept(page);
   const stored = await storedPaths(page);
   expect(stored).toContain('/index.html');
-  expect(
-    stored.filter((path) => /^\/(api|studies|relay)|experimenter|preview-|results|webgpu|asyncify/.test(path)),
-  ).toEqual([]);
+  expect(stored.filter((path) => /^\/(api|studies|relay)|experimenter|results|webgpu|asyncify/.test(path))).toEqual([]);
 
   const from = async (address: string) => (await page.goto(address))?.fromServiceWorker();
   expect(await from('?quality=low')).toBe(true);

@@ -162,7 +162,7 @@ for (const play of ['studio', 'archery', 'ball'] as const)
     }
   });
 
-test('axe finds nothing at the mirror, its controls, the games or the preview of a study @full', async ({ page }) => {
+test('axe finds nothing at the mirror, its controls or the games @full', async ({ page }) => {
   test.setTimeout(90_000);
   await drawSeldom(page, 3_600_000);
   const found: string[] = [];
@@ -183,8 +183,5 @@ test('axe finds nothing at the mirror, its controls, the games or the preview of
     await expect(page.locator('#play .round:not([hidden])')).toBeVisible({ timeout: 60_000 });
     await check(play);
   }
-  await page.goto('/preview.html');
-  await expect(page.getByRole('button').first()).toBeVisible({ timeout: 60_000 });
-  await check('preview');
   expect(found).toEqual([]);
 });

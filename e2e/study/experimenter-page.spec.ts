@@ -89,11 +89,11 @@ test('a study stays marked as simulated when its first file was wrong @full', as
     page
       .getByLabel('Study file', { exact: true })
       .setInputFiles({ name: 'mine.json', mimeType: 'application/json', buffer: Buffer.from(text) });
-  await page.getByLabel('simulated: a program takes part').check();
+  await page.getByLabel('simulated: to try it, or for a program').check();
   await choose(JSON.stringify({ ...plan('second-try'), participants: 0 }));
   await expect(page.getByRole('alert')).toContainText('participants');
   await choose(JSON.stringify(plan('second-try')));
-  await expect(page.getByText('SIMULATED: a program takes part in this study')).toBeVisible();
+  await expect(page.getByText('SIMULATED: a copy to try')).toBeVisible();
   await expect(page.getByText('second-try-simulated · ')).toBeVisible();
 });
 

@@ -1,26 +1,71 @@
-import { expect } from '../page-fixture';
-import { test } from '../study-participant';
+import { readFileSync } from 'node:fs';
+import type { Locator } from '@playwright/test';
+import { parsePlan } from '../../src/study/model/plan/plan';
+import { expect, keepPicture } from '../page-fixture';
+import { continueAtDesk, reaches, test } from '../study-participant';
+
+/** A shipped plan under an id of its own. */
+const shipped = (name: string, id: string) => ({
+  ...parsePlan(readFileSync(`public/studies/${name}`, 'utf8'), name),
+  id,
+});
 
 test('the keyboard stays within the card when another question replaces one that was answered @full', async ({
   page,
   origin,
 }) => {
-  await page.goto(`${origin}/preview?plan=/studies/paper.json#archery/1/questionnaire/Q5`);
-  await page.getByRole('button', { name: 'At the desk' }).click();
+  await continueAtDesk(page, origin, shipped('paper.json', 'focus'), 'archery/1/questionnaire');
   const card = page.locator('.study-card');
-  const answer = async (question: RegExp, last: boolean) => {
-    await expect(card.getByRole('group', { name: question })).toBeVisible();
+  for (const [id, next] of [
+    ['Q1', 'Q2'],
+    ['Q2', 'Q3'],
+  ] as const) {
+    await reaches(page, `question-${id}`);
     await card.getByRole('radio').first().focus();
     await page.keyboard.press('Space');
-    await card.getByRole('button', { name: last ? 'Submit' : 'Next' }).focus();
+    await card.getByRole('button', { name: 'Next' }).focus();
     await page.keyboard.press('Enter');
-  };
-  for (const id of ['Q6', 'Q7']) {
-    await answer(/./, false);
-    await expect(page).toHaveURL(new RegExp(`/${id}$`));
+    await reaches(page, `question-${next}`);
     // The words of the question are read out, and its first answer is one key away.
     await expect(card.locator('legend')).toBeFocused();
     await page.keyboard.press('Tab');
     await expect(card.getByRole('radio').first()).toBeFocused();
   }
 });
+
+test('the line of an unanswered slider is the same on either side of its middle @full', async ({ page, origin }) => {
+  await continueAtDesk(page, origin, shipped('example.json', 'slider'), 'archery/1/questionnaire');
+  for (let question = 0; question < 2; question++) {
+    await page.getByRole('radio').first().check();
+    await page.getByRole('button', { name: 'Next' }).click();
+  }
+  const line = page.getByRole('slider');
+  await expect(line).toHaveClass('open');
+  expect(await unevenPixels(line)).toBe(0);
+  await keepPicture(page, 'study-slider-open');
+  await line.press('Home');
+  for (let steps = 0; steps < 30; steps++) await line.press('ArrowRight');
+  expect(await unevenPixels(line)).toBeGreaterThan(100);
+});
+
+/** How many pixels of the left half of an element's picture are not as those of its mirrored right half. */
+async function unevenPixels(element: Locator): Promise<number> {
+  const picture = (await element.screenshot()).toJSON().data;
+  return element.page().evaluate(async (bytes) => {
+    const image = await createImageBitmap(new Blob([new Uint8Array(bytes)]));
+    const { width, height } = image;
+    const context = new OffscreenCanvas(width, height).getContext('2d') as OffscreenCanvasRenderingContext2D;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    const pixel = (x: number, y: number) => data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3);
+    let uneven = 0;
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width / 2; x++) {
+        const mirrored = pixel(width - 1 - x, y);
+        // The rounding of an edge may fall otherwise on one side.
+        if (pixel(x, y).some((value, index) => Math.abs(value - (mirrored[index] as number)) > 40)) uneven += 1;
+      }
+    }
+    return uneven;
+  }, picture);
+}

@@ -36,7 +36,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   await keepPicture(page, 'study-simulation-dialog');
   await page.getByRole('button', { name: 'Simulate', exact: true }).click();
   await expect(page.getByText('Effects: answers −1.2 points under "late-200"')).toBeVisible({ timeout: 90_000 });
-  await expect(page.getByText('SIMULATED: a program takes part in this study')).toBeVisible();
+  await expect(page.getByText('SIMULATED: a copy to try')).toBeVisible();
   await expect(page.locator('.badge', { hasText: 'finished' })).toHaveCount(18);
   await page.getByRole('link', { name: 'Results' }).last().click();
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
@@ -52,6 +52,46 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   const names = studies.map(({ id }) => id);
   expect(names).toEqual(expect.arrayContaining(['uneven', 'latency']));
   expect(names).not.toContain('latency-simulated');
+});
+
+test('mistakes of a plan are named as study:check names them @full', async ({ page, origin }) => {
+  const { conditions } = plan();
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  await choose(page, plan({ seed: -1, conditions: [{ ...conditions[0], latencyMs: 900 }, ...conditions.slice(1)] }));
+  await expect(page.getByRole('alert')).toContainText(/^mine\.json: seed: /);
+  await expect(page.getByRole('alert')).toContainText(
+    /\nmine\.json: conditions\[0\]\.latencyMs: expected a number from 0 to 200/,
+  );
+  await keepPicture(page, 'study-mistakes');
+});
+
+test('the records of a plan that is tried are deleted by the next try @full', async ({ page, origin }) => {
+  await experimenter(origin).begin(plan({ id: 'tried' }), false);
+  await page.goto(`${origin}/experimenter?study=tried`);
+  await signIn(page);
+  const recorded = async (id: string) =>
+    ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: object[] }).records.length;
+  const tryIt = async () => {
+    await page.getByRole('button', { name: 'Try it' }).click();
+    await expect(page.getByRole('status')).toContainText('Open the page of a participant to try “tried-simulated”');
+  };
+  await tryIt();
+  const opening = page.context().waitForEvent('page');
+  await page.getByRole('row', { name: /^P01 / }).getByRole('link', { name: 'open' }).click();
+  const participant = await opening;
+  await participant.getByLabel(/I have read this/).check();
+  await keepPicture(participant, 'study-tried');
+  await participant.getByRole('button', { name: 'I agree' }).click();
+  await expect.poll(() => recorded('tried-simulated')).toBe(1);
+  await keepPicture(page, 'study-copy-to-try');
+  await participant.close();
+
+  await page.goto(`${origin}/experimenter?study=tried`);
+  await tryIt();
+  await expect(page.getByRole('row', { name: /^P01 / })).toContainText('free');
+  expect(await recorded('tried-simulated')).toBe(0);
+  expect(await recorded('tried')).toBe(0);
 });
 
 test('a plan with participants changes as a new version: the experimenter sees it, results separate it @full', async ({

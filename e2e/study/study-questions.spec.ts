@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
+import { english } from '../../src/study/model/phrases/english';
 import { parsePlan } from '../../src/study/model/plan/plan';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
@@ -30,6 +31,45 @@ function shortExample(id: string) {
     })),
   };
 }
+
+/** What the page says in English in more than one word, each up to the first gap. */
+const ofEnglish = Object.values(english)
+  .flatMap((phrase) => (typeof phrase === 'string' ? [phrase] : Object.values(phrase)))
+  .flatMap((phrase) => phrase.split(/\{\w+\}/))
+  .map((part) => part.trim())
+  .filter((part) => /\w{2,} \w{2,}/.test(part));
+
+declare global {
+  interface Window {
+    /** What screens showed, and what the sheet of the headset drew. */
+    read: Set<string>;
+    /** The labels of buttons that were cut off. */
+    cut: Set<string>;
+  }
+}
+
+/** Keeps, from now on, what stands on the card and what is written on the sheet of the headset, which is a picture. */
+const readScreens = (page: Page): Promise<void> =>
+  page.evaluate(() => {
+    window.read = new Set();
+    window.cut = new Set();
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (text, x, y, most) {
+      window.read.add(text);
+      if (most === undefined) fillText.call(this, text, x, y);
+      else fillText.call(this, text, x, y, most);
+    };
+    const read = () => {
+      for (const card of document.querySelectorAll<HTMLElement>('.study-card')) {
+        window.read.add(card.textContent);
+        for (const { ariaLabel } of card.querySelectorAll('[aria-label]')) window.read.add(ariaLabel ?? '');
+        for (const { scrollWidth, clientWidth, textContent } of card.querySelectorAll('button')) {
+          if (scrollWidth > clientWidth + 1) window.cut.add(textContent);
+        }
+      }
+    };
+    new MutationObserver(read).observe(document.body, { subtree: true, childList: true, characterData: true });
+  });
 
 /** Consents, confirms the code and submits the demographic questions, in German. */
 async function consentAndFillInInGerman(page: Page): Promise<void> {
@@ -68,6 +108,7 @@ test('questions of every kind are answered alike in headset and at the desk, in 
   const headset = await takePart(page, origin, 'every-kind', 'P01');
   await page.getByLabel('Language').selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
+  await readScreens(page);
   await keepPicture(page, 'study-consent-language');
   await consentAndFillInInGerman(page);
 
@@ -130,6 +171,11 @@ test('questions of every kind are answered alike in headset and at the desk, in 
   await reaches(page, 'end');
   await expect.poll(async () => (await study(page)).unsent).toBe(0);
   await keepPicture(page, 'study-end');
+  const { read, cut } = await page.evaluate(() => ({ read: [...window.read], cut: [...window.cut] }));
+  expect(cut).toEqual([]);
+  const text = read.join('\n');
+  for (const phrase of ['Weiter', 'Entspannen Sie Ihre Arme.']) expect(text).toContain(phrase);
+  expect(ofEnglish.filter((phrase) => text.includes(phrase))).toEqual([]);
 
   const records = await recordsOf(origin, 'every-kind');
   const trials = records.flatMap((record) => (record.kind === 'trial' ? [record.body] : []));

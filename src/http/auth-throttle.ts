@@ -39,7 +39,7 @@ export interface AuthThrottle {
    * synchronous; if it throws, no attempt is counted. A repeated wrong secret counts once. A secret that was right
    * before is never delayed.
    */
-  attempt(guess: AuthAttempt, isRight: () => boolean): Promise<boolean>;
+  attempt(guess: AuthAttempt, isRight: () => boolean | Promise<boolean>): Promise<boolean>;
 }
 
 /** Failures are kept for this long [s]. */
@@ -107,7 +107,7 @@ export function createAuthThrottle(onWrong: (guess: FailedAttempt) => void): Aut
       }
       let opens: boolean;
       try {
-        opens = isRight();
+        opens = await isRight();
       } catch (error) {
         await Promise.all([byAddress.giveBack(network), byStudy.giveBack(study)]);
         throw error;

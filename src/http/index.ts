@@ -6,18 +6,26 @@ export { ConfigurationError } from './configuration-error';
 export { ConnectionLimiter, createSlotCounter } from './connection-limiter';
 export { GroupCommit } from './group-commit';
 export { guarded } from './guarded';
-export { HttpError } from './http-error';
+export { HttpError, internalError } from './http-error';
 export { consumePoint, tooManyRequests } from './rate-limit';
 export { readBody } from './request-body';
 export { parseRequestTarget } from './request-target';
 export { shortageOf } from './resource-shortage';
-export { type HttpResponse, jsonResponse, noContent, sendError, sendResponse, textResponse } from './response';
+export {
+  errorResponse,
+  type HttpResponse,
+  jsonResponse,
+  noContent,
+  sendError,
+  sendResponse,
+  textResponse,
+} from './response';
 export { type Call, createRouter, jsonOf, noPage, type Route, refusalOf, type Service, textOf } from './router';
 export { secretWeakness } from './secret-strength';
 export { contentSecurityPolicy, permissionsPolicy } from './security-headers';
 export { createSitePolicy, type SitePolicy } from './site-policy';
 export { readSoftwareVersion, type Software } from './software-version';
-export { answerCalls, logFrom, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
+export { answerCalls, startThread, ThreadCalls, ThreadUnavailable } from './thread-calls';
 export type { Credentials, UpgradeListener } from './web-server';
 export {
   answering,

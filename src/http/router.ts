@@ -30,10 +30,11 @@ export interface Route<Access extends string = string> {
 /** A set of routes with common access rules and errors. */
 export interface Service<Access extends string = string> {
   readonly routes: readonly Route<Access>[];
-  /** Throws an HttpError if the request may not use the route. Called before the body is read. */
-  admit(route: Route<Access>, call: Omit<Call, 'body'>): void | Promise<void>;
-  /** Returns what the client receives for an error of this service; null: an internal error. */
-  refusalOf(error: unknown): HttpError | null;
+  /**
+   * Called before the body is read. Returns the answer to a request that may not use the route, or throws an HttpError;
+   * undefined: the request may use it.
+   */
+  admit(route: Route<Access>, call: Omit<Call, 'body'>): HttpResponse | undefined | Promise<HttpResponse | undefined>;
   /** Called with each internal error; the client receives status 500 without details. */
   onFault(error: unknown): void;
 }
@@ -81,7 +82,8 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       return found && Object.fromEntries(names.map((name, i) => [name, decodeURIComponent(found[i + 1] as string)]));
     },
     async answer(call: Omit<Call, 'body'>): Promise<HttpResponse> {
-      await service.admit(route, call);
+      const refused = await service.admit(route, call);
+      if (refused) return refused;
       if (route.bodyLimit === 0) return route.handle({ ...call, body: new Uint8Array() });
       if (!/^application\/json(;|$)/i.test(call.request.headers['content-type'] ?? '')) {
         throw new HttpError(415, 'the content type must be application/json');
@@ -89,7 +91,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       return route.handle({ ...call, body: await readWholeBody(call.request, route.bodyLimit) });
     },
     answerTo(error: unknown): HttpResponse {
-      const known = refusalOf(error) ?? service.refusalOf(error);
+      const known = refusalOf(error);
       if (known) return errorResponse(known);
       service.onFault(error);
       return errorResponse(internalError());

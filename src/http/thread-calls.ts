@@ -1,4 +1,4 @@
-import { type MessagePort, Worker } from 'node:worker_threads';
+import { MessageChannel, type MessagePort, Worker } from 'node:worker_threads';
 
 /** The functions of a thread. Arguments and results are copied; bytes that fill their buffer are transferred. */
 type ThreadApi = { readonly [name: string]: (...args: never[]) => unknown };
@@ -27,23 +27,15 @@ export class ThreadUnavailable extends Error {
 }
 
 interface CallMessage {
-  readonly id: number;
   readonly name: string;
   readonly args: readonly unknown[];
   /** Deadline by `clockMs`, after which the thread skips the call; null: none. */
   readonly until: number | null;
+  /** The port on which the thread answers this call; it closes when the thread ends. */
+  readonly port: MessagePort;
 }
 
-type Message =
-  | { readonly id: number; readonly result: unknown }
-  | { readonly id: number; readonly fault: string }
-  | { readonly log: string };
-
-interface Waiting {
-  readonly bytes: number;
-  resolve(result: unknown): void;
-  reject(error: Error): void;
-}
+type Answer = { readonly result: unknown } | { readonly error: unknown };
 
 /** Returns the time of a monotonic clock that all threads of the process share [ms]. */
 const clockMs = (): number => Number(process.hrtime.bigint() / 1_000_000n);
@@ -67,28 +59,24 @@ const buffersIn = (values: readonly unknown[]): ArrayBuffer[] =>
 export const startThread = (script: URL, workerData?: object): Worker =>
   new Worker(script, { workerData, execArgv: [] });
 
-/** Calls the functions of a thread, within limits: if the thread hangs, callers wait for `deadlineMs` at most. */
+/**
+ * Calls the functions of a thread, within limits: if the thread hangs, callers wait for `deadlineMs` at most. Each call
+ * has its own channel, so that a thread that ends rejects all of them.
+ */
 export class ThreadCalls<Api extends ThreadApi> {
   readonly #worker: Worker;
   readonly #limits: ThreadLimits;
-  readonly #waiting = new Map<number, Waiting>();
+  #unfinished = 0;
   #bytes = 0;
-  #last = 0;
 
-  /** `log` receives the lines of the thread's log. */
-  constructor(worker: Worker, limits: ThreadLimits, log: (line: string) => void) {
+  constructor(worker: Worker, limits: ThreadLimits) {
     this.#worker = worker;
     this.#limits = limits;
-    worker.on('message', (message: Message) => {
-      if ('log' in message) log(message.log);
-      else this.#settle(message);
-    });
-    worker.on('messageerror', (error) => log(`a message of the thread could not be read: ${error.message}`));
   }
 
   /**
-   * Calls a function. Rejects with ThreadUnavailable if the thread is full or late, and with the text of an error that
-   * the function throws.
+   * Calls a function. Rejects with ThreadUnavailable if the thread is full, late or ended, and with a copy of an error
+   * that the function throws.
    */
   call<Name extends keyof Api & string>(
     name: Name,
@@ -97,12 +85,12 @@ export class ThreadCalls<Api extends ThreadApi> {
   ): Promise<Awaited<ReturnType<Api[Name]>>> {
     const { maxCalls, maxBytes, deadlineMs } = this.#limits;
     const bytes = bytesIn(args).reduce((sum, { byteLength }) => sum + byteLength, 0);
-    if (this.#waiting.size >= maxCalls || this.#bytes + bytes > maxBytes) {
+    if (this.#unfinished >= maxCalls || this.#bytes + bytes > maxBytes) {
       return Promise.reject(new ThreadUnavailable('full'));
     }
-    this.#last += 1;
-    const id = this.#last;
+    this.#unfinished += 1;
     this.#bytes += bytes;
+    const { port1: answers, port2: port } = new MessageChannel();
     return new Promise((resolve, reject) => {
       const until = patient ? null : clockMs() + deadlineMs;
       // Timers count from the start of the event loop's turn: an early one would reject a call that is still run.
@@ -111,55 +99,31 @@ export class ThreadCalls<Api extends ThreadApi> {
         else reject(new ThreadUnavailable('late'));
       };
       let timer = patient ? undefined : setTimeout(expire, deadlineMs);
-      this.#waiting.set(id, {
-        bytes,
-        resolve(result) {
-          clearTimeout(timer);
-          resolve(result as Awaited<ReturnType<Api[Name]>>);
-        },
-        reject(error) {
-          clearTimeout(timer);
-          reject(error);
-        },
-      });
-      const question: CallMessage = { id, name, args, until };
-      this.#worker.postMessage(question, buffersIn(args));
+      const finish = (answer: Answer): void => {
+        answers.off('close', end).close();
+        clearTimeout(timer);
+        this.#unfinished -= 1;
+        this.#bytes -= bytes;
+        if ('error' in answer) reject(answer.error);
+        else resolve(answer.result as Awaited<ReturnType<Api[Name]>>);
+      };
+      const end = () => finish({ error: new ThreadUnavailable('ended') });
+      answers.once('message', finish).once('close', end);
+      const message: CallMessage = { name, args, until, port };
+      this.#worker.postMessage(message, [port, ...buffersIn(args)]);
     });
-  }
-
-  /** Rejects all unfinished calls, after the thread has ended. */
-  end(): void {
-    for (const { reject } of this.#waiting.values()) reject(new ThreadUnavailable('ended'));
-    this.#waiting.clear();
-    this.#bytes = 0;
-  }
-
-  #settle(message: Exclude<Message, { readonly log: string }>): void {
-    const waiting = this.#waiting.get(message.id);
-    if (!waiting) return;
-    this.#waiting.delete(message.id);
-    this.#bytes -= waiting.bytes;
-    if ('fault' in message) waiting.reject(new Error(message.fault));
-    else waiting.resolve(message.result);
   }
 }
 
-/** Answers, in the thread, the calls that arrive at this port. A call past its deadline is skipped. */
-export function answerCalls<Api extends ThreadApi>(port: MessagePort, api: Api): void {
-  const answer = async ({ id, name, args, until }: CallMessage): Promise<void> => {
+/** Answers, in the thread, the calls that arrive at its port. A call past its deadline is skipped. */
+export function answerCalls<Api extends ThreadApi>(calls: MessagePort, api: Api): void {
+  calls.on('message', async ({ name, args, until, port }: CallMessage) => {
     try {
       const late = until !== null && clockMs() > until;
       const result = late ? undefined : await api[name as keyof Api]?.(...(args as never[]));
-      port.postMessage({ id, result } satisfies Message, buffersIn([result]));
+      port.postMessage({ result } satisfies Answer, buffersIn([result]));
     } catch (error) {
-      port.postMessage({ id, fault: error instanceof Error ? (error.stack ?? error.message) : String(error) });
+      port.postMessage({ error } satisfies Answer);
     }
-  };
-  port.on('message', (question: CallMessage) => void answer(question));
+  });
 }
-
-/** Returns a function that sends a line from the thread to the log of the process. */
-export const logFrom =
-  (port: MessagePort) =>
-  (line: string): void =>
-    port.postMessage({ log: line } satisfies Message);

@@ -1,5 +1,4 @@
 import type { ButtonHTMLAttributes, ComponentChildren, InputHTMLAttributes } from 'preact';
-import type { Choice } from './fields';
 
 /** A button that cannot submit anything. */
 export const Button = ({ label, ...attributes }: ButtonHTMLAttributes & { readonly label: string }) => (
@@ -22,6 +21,12 @@ export const Labelled = ({ label, children }: { readonly label: string; readonly
     {children}
   </label>
 );
+
+/** An entry of a list. */
+export interface Choice {
+  readonly id: string;
+  readonly label: string;
+}
 
 export interface ChooserProps {
   readonly name: string;

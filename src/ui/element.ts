@@ -25,6 +25,10 @@ export function button(label: string, onClick: () => void, attributes: Attribute
   return node;
 }
 
+/** Returns a field with its label. */
+export const labelled = (label: string, field: HTMLElement): HTMLElement =>
+  element('label', {}, element('span', {}, label), field);
+
 /** A list of sentences, such as the rules of a game. */
 export const sentenceList = (sentences: readonly string[]): HTMLUListElement =>
   element('ul', { class: 'rules' }, ...sentences.map((sentence) => element('li', {}, sentence)));

@@ -2,9 +2,9 @@
 export type { CalibrationDialog, CalibrationStep } from './calibration-dialog';
 export { calibrationHeadline, calibrationInstruction, createCalibrationDialog } from './calibration-dialog';
 export { type CalibrationGuide, createCalibrationGuide } from './calibration-guide';
-export { button, element, pageElement, sentenceList } from './element';
+export { button, element, labelled, pageElement, sentenceList } from './element';
 export { createEnterButton, type EnterButton } from './enter-button';
-export { type Choice, chooser, fileButton, fileField, labelled, toggle } from './fields';
+export { fileButton, toggle } from './fields';
 export type { FrameReport } from './frame-times-overlay';
 export { createFrameTimesOverlay, differenceLines, milliseconds, missedFrames } from './frame-times-overlay';
 export { createInvitation, createRoomLink, type Invitation, linkTo, type RoomLink } from './invitation';
@@ -12,7 +12,6 @@ export { type FileKind, fileNameOf, offerDownload, readLimited } from './limited
 export { createMouseAim, isTouchFirst, type MouseAim } from './mouse-aim';
 export { createNotices, formatSentence, type Notices } from './notices';
 export { pageFolder } from './page-folder';
-export { loadPreviewPlan, storePreviewPlan } from './preview-plan';
 export { drawQrCode, type QrCode, qrCode } from './qr-code';
 export { ServerPresence, type ServerState } from './server-presence';
 export { listenToShortcuts, type Shortcuts } from './shortcuts';

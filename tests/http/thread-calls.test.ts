@@ -6,8 +6,7 @@ const roomy = { maxCalls: 10, maxBytes: 100, deadlineMs: 60_000 };
 
 function started(limits: Partial<ThreadLimits> = {}) {
   const worker = startThread(new URL('./obedient-worker.mjs', import.meta.url));
-  const calls = new ThreadCalls<ObedientApi>(worker, { ...roomy, ...limits }, () => undefined);
-  worker.once('exit', () => calls.end());
+  const calls = new ThreadCalls<ObedientApi>(worker, { ...roomy, ...limits });
   const memory = new SharedArrayBuffer(4);
   const release = () => {
     Atomics.store(new Int32Array(memory), 0, 1);

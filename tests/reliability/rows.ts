@@ -237,8 +237,8 @@ export const promiseRows = {
     shows: ['written while playing', 'poses handed out after 2 s'],
     tests: [
       'tests/server/privacy.test.ts',
-      'tests/study/server/study-deletion.test.ts',
-      'tests/study/server/study-motion.test.ts',
+      'tests/study/server/study-storage.test.ts',
+      'tests/study/server/study-store.test.ts',
     ],
   },
 } as const satisfies Readonly<Record<string, Row>>;
@@ -446,7 +446,7 @@ export const attackRows = {
     sees: 'Each is refused with a sentence',
     target: '0 places taken',
     shows: ['places taken by 300 claims in a loop'],
-    tests: ['tests/study/server/study-entry.test.ts', 'tests/study/server/study-places.test.ts'],
+    tests: ['tests/study/server/study-entry.test.ts', 'tests/study/server/study-storage.test.ts'],
   },
   'other-sites': {
     inject: 'Requests with foreign origins or names that point at this machine',

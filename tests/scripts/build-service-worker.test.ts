@@ -8,7 +8,6 @@ const built = {
   'index.html': '<title>page</title>',
   'results.html': '<title>results</title>',
   'experimenter.html': '<title>experimenter</title>',
-  'preview.html': '<title>preview</title>',
   'withdraw.html': '<title>withdraw</title>',
   'api/rooms': '{"rooms":null}',
   'studies/paper.json': '{}',
@@ -20,7 +19,6 @@ const built = {
   'assets/archery-2.js': 'later',
   'assets/shared-3.js': 'of two pages',
   'assets/results-4.js': 'charts',
-  'assets/preview-8.js': 'a study, screen by screen',
   'assets/withdraw-9.js': 'a code and a receipt',
   'assets/worker-5.js': 'in no manifest',
   'assets/ort.webgpu.bundle.min-6.js': 'webgpu',
@@ -32,7 +30,6 @@ const manifest = {
   _shared: { file: 'assets/shared-3.js' },
   'results.html': { file: 'assets/results-4.js', imports: ['_shared'] },
   'experimenter.html': { file: 'assets/results-4.js' },
-  'preview.html': { file: 'assets/preview-8.js', imports: ['_shared'] },
   'withdraw.html': { file: 'assets/withdraw-9.js', imports: ['_shared'] },
 };
 

@@ -14,7 +14,7 @@ import { RoomTokens } from '../../src/rooms/server/access/room-tokens';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { begin } from '../../src/study/model/progress/progress';
 import { checkedRecord } from '../../src/study/model/records/study-record';
-import { openStudyStore } from '../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../src/study/server/sqlite/study-store';
 import { reportFigures } from '../reliability/report-figures';
 import {
   poseBytes,

@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { expect, onTestFinished, test } from 'vitest';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
-import { openStudyStore } from '../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../src/study/server/sqlite/study-store';
 import { reportFigures } from '../reliability/report-figures';
 import { fists, releaseOf } from '../rooms/client/people';
 import { createTestRoom } from '../rooms/room/test-room';

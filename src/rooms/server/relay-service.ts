@@ -160,8 +160,8 @@ export function createRelayService(context: RelayContext, options: RelayServiceO
       if (access === 'this-machine' && !isOnThisMachine(request)) {
         throw new HttpError(403, 'only programs on this machine may use this address');
       }
+      return undefined;
     },
-    refusalOf: () => null,
     onFault: (error) => log.error({ error: String(error) }, 'request failed'),
   };
 }

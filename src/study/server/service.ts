@@ -6,7 +6,6 @@ import {
   ConfigurationError,
   findClientAddress,
   HttpError,
-  type HttpResponse,
   type Route,
   type Service,
   shortageOf,
@@ -14,10 +13,10 @@ import {
   ThreadCalls,
   ThreadUnavailable,
 } from 'threepoint-http';
-import { retryAfterSeconds, type StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
+import { faultLine, retryAfterSeconds, type StudyDispatcher } from './routes/dispatcher';
 import { failureSentence } from './routes/effect';
 import type { RouteAccess } from './routes/guard';
-import type { StudyRequest, StudyRoute } from './routes/route';
+import type { RouteHead, StudyRequest } from './routes/route';
 import type { OpenedStudies, StudyThreadApi, StudyThreadOptions } from './thread';
 
 export interface StudyServiceOptions extends StudyThreadOptions {
@@ -71,7 +70,7 @@ class StudyThread {
     const { directory, token, software, secret, now, log, thread } = this.#options;
     this.#startedAt = performance.now();
     const worker = startThread(thread);
-    const calls = new ThreadCalls<StudyThreadApi>(worker, limits, log);
+    const calls = new ThreadCalls<StudyThreadApi>(worker, limits);
     this.#worker = worker;
     this.#calls = calls;
     let shortage: string | null = null;
@@ -79,9 +78,9 @@ class StudyThread {
       shortage = shortageOf(error);
       log(shortage === null ? `study, a fault: ${error.stack ?? error.message}` : `study: ${shortage}`);
     });
+    worker.on('message', log);
     worker.once('exit', () => {
       if (this.#worker === worker) this.#worker = this.#calls = null;
-      calls.end();
     });
     const asked = [{ directory, token, software, secret }, now()] as const;
     try {
@@ -107,9 +106,9 @@ class StudyThread {
   /** Runs a request in the thread; rejects with an HttpError 503 if the thread is overloaded, late or ended. */
   async request<Name extends 'admit' | 'handle'>(
     name: Name,
-    args: Parameters<StudyThreadApi[Name]>,
-    { effect, isPatient }: Pick<StudyRoute, 'effect' | 'isPatient'>,
-  ): Promise<StudyOutcome> {
+    ...args: Parameters<StudyThreadApi[Name]>
+  ): Promise<Awaited<ReturnType<StudyThreadApi[Name]>>> {
+    const { effect, isPatient } = args[0].route;
     try {
       return await this.call(name, args, { patient: isPatient && name === 'handle' });
     } catch (error) {
@@ -158,46 +157,30 @@ async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Prom
   }
 }
 
-/** Returns the answer of an outcome; throws a refusal or a fault. */
-function answerOf(outcome: StudyOutcome): HttpResponse {
-  if ('answer' in outcome) return outcome.answer;
-  if ('fault' in outcome) throw new Error(outcome.fault);
-  const { status, message, ...rest } = outcome.refused;
-  throw new HttpError(status, message, rest);
-}
-
 export interface ServiceOptions extends Pick<StudyServiceOptions, 'now' | 'trustProxy' | 'log'> {
-  readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+  readonly routes: readonly RouteHead[];
   /** Runs the requests, in this thread or another one. */
   readonly dispatcher: Pick<StudyDispatcher, 'admit' | 'handle'>;
 }
 
 /** Returns the service of the studies: all routes below /api/studies. */
 export function createStudyService({ routes, dispatcher, now, trustProxy, log }: ServiceOptions): Service<RouteAccess> {
-  const requestOf = ({ request, names, query }: Omit<Call, 'body'>): StudyRequest => ({
-    ...{ at: now(), token: bearerOf(request), address: findClientAddress(request, trustProxy) },
+  const requestOf = (route: RouteHead, { request, names, query }: Omit<Call, 'body'>): StudyRequest => ({
+    ...{ route, at: now(), token: bearerOf(request), address: findClientAddress(request, trustProxy) },
     ...{ names, query: query.toString() },
   });
-  const table = routes.map((route, index): Route<RouteAccess> => {
-    const { method, path, access, bodyLimit } = route;
-    return {
-      ...{ method, path, access, bodyLimit },
-      async handle(call) {
-        const outcome = dispatcher.handle(index, requestOf(call), call.body);
-        return answerOf(await (route.isPatient ? awaited(call.request, outcome) : outcome));
-      },
-    };
-  });
   return {
-    routes: table,
-    async admit(route, call) {
-      // Without a body, admission and handling are one call to the thread.
-      if (route.bodyLimit === 0) return;
-      answerOf(await dispatcher.admit(table.indexOf(route), requestOf(call)));
-    },
-    refusalOf: () => null,
-    onFault: (error) =>
-      log(`study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
+    routes: routes.map((head) => ({
+      ...{ ...head, head },
+      handle(call) {
+        const answer = dispatcher.handle(requestOf(head, call), call.body);
+        return head.isPatient ? awaited(call.request, answer) : answer;
+      },
+    })),
+    // Without a body, admission and handling are one call to the thread.
+    admit: ({ head }: Route<RouteAccess> & { readonly head: RouteHead }, call) =>
+      head.bodyLimit === 0 ? undefined : dispatcher.admit(requestOf(head, call)),
+    onFault: (error) => log(faultLine(error)),
   };
 }
 
@@ -214,8 +197,8 @@ export async function openStudyService(options: StudyServiceOptions): Promise<St
   const service = createStudyService({
     ...{ routes, now, trustProxy, log },
     dispatcher: {
-      admit: (index, request) => thread.request('admit', [index, request], routes[index] as StudyRoute),
-      handle: (index, request, body) => thread.request('handle', [index, request, body], routes[index] as StudyRoute),
+      admit: (request) => thread.request('admit', request),
+      handle: (request, body) => thread.request('handle', request, body),
     },
   });
   return {

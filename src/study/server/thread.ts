@@ -1,13 +1,14 @@
 import { join } from 'node:path';
 import type { MessagePort } from 'node:worker_threads';
 import { reasonOf } from 'threepoint/core';
-import { answerCalls, ConfigurationError, type FailedAttempt, logFrom } from 'threepoint-http';
+import { answerCalls, ConfigurationError, type FailedAttempt, type HttpResponse } from 'threepoint-http';
 import { createExporter } from './export/exporter';
-import { StudyDispatcher, type StudyOutcome } from './routes/dispatcher';
-import type { StudyRequest, StudyRoute } from './routes/route';
+import { StudyDispatcher } from './routes/dispatcher';
+import type { RouteHead, StudyRequest } from './routes/route';
 import { createStudySeats, type SignSeat } from './routes/seats';
-import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './storage/study-folder';
-import type { StudyStore } from './storage/study-store';
+import { openStudyFolder, type StudyFolder, type StudyFolderOptions } from './sqlite/study-folder';
+import type { StudyStore } from './sqlite/study-store';
+import type { StudyStorage } from './study-storage';
 
 // The thread of the studies has their database, their secrets and their access rules. Slow work and a hanging disk do
 // not block the thread of the sockets.
@@ -20,7 +21,7 @@ export interface StudyThreadOptions extends StudyFolderOptions {
 export type OpenedStudies =
   | { readonly problem: string }
   | {
-      readonly routes: readonly Omit<StudyRoute, 'handle'>[];
+      readonly routes: readonly RouteHead[];
       /** The file with the generated token; null: the token was given. */
       readonly tokenFile: string | null;
     };
@@ -29,10 +30,10 @@ export type OpenedStudies =
 export type StudyThreadApi = {
   /** Opens the studies, before any other call. */
   open(options: StudyThreadOptions, at: number): OpenedStudies;
-  admit(route: number, request: StudyRequest): Promise<StudyOutcome>;
-  handle(route: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome>;
+  admit(request: StudyRequest): Promise<HttpResponse | undefined>;
+  handle(request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<HttpResponse>;
   /** Deletes what is past its retention date. */
-  expire(at: number): void;
+  expire(at: number): Promise<void>;
   close(): void;
 };
 
@@ -45,10 +46,10 @@ const failedAttemptLine = ({ what, of, address, failures }: FailedAttempt): stri
 type Log = (line: string) => void;
 
 /** Deletes what is past its retention date. A full disk or a locked database must not end a server that others use. */
-function expire(store: StudyStore, at: number, log: Log): void {
+async function expire(store: StudyStorage, at: number, log: Log): Promise<void> {
   const again = 'which is tried again within the hour';
   try {
-    const receipts = store.deletion.deleteExpired(at, ({ study, participant }, error) => {
+    const receipts = await store.deletion.deleteExpired(at, ({ study, participant }, error) => {
       const failed = 'is past the retention date and could not be deleted';
       log(`study "${study}": ${participant} ${failed}, ${again}: ${reasonOf(error)}`);
     });
@@ -86,7 +87,7 @@ export type CreateSignSeat = (secret: string, now: () => number) => SignSeat;
 
 /** Answers the calls on the port of this thread until the process ends. */
 export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat): void {
-  const log = logFrom(port);
+  const log = (line: string) => port.postMessage(line);
   let serving: OpenFolder | null = null;
   // The time of the newest request, because the main thread has the clock of the process.
   let newest = 0;
@@ -121,13 +122,13 @@ export function serveStudies(port: MessagePort, createSignSeat: CreateSignSeat):
 
   answerCalls<StudyThreadApi>(port, {
     open,
-    admit(route, request) {
+    admit(request) {
       newest = request.at;
-      return opened().dispatcher.admit(route, request);
+      return opened().dispatcher.admit(request);
     },
-    handle(route, request, body) {
+    handle(request, body) {
       newest = request.at;
-      return opened().dispatcher.handle(route, request, body);
+      return opened().dispatcher.handle(request, body);
     },
     expire: (at) => expire(opened().folder.store, at, log),
     close() {

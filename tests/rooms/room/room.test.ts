@@ -78,22 +78,23 @@ describe('seats', () => {
       testRoom.pose('ann', 0, fists(releaseOf(0)));
       testRoom.pose('cal', 2, holding(opening));
     };
+    const phase = () => testRoom.room.match.phase;
     const play = (clients: readonly string[]) => {
       testRoom.ready(clients);
       testRoom.tick();
       testRoom.tick();
-      return testRoom.room.match.phase;
+      return phase();
     };
     testRoom.pass(seatHoldSeconds + 1, seen);
     expect(testRoom.room.match.players.map(({ present }) => present)).toEqual([true, true, true]);
-    while (testRoom.room.match.phase === 'running') testRoom.pass(1, seen);
+    while (phase() === 'running') testRoom.pass(1, seen);
     testRoom.pass(1, seen);
     expect(play(['ann', 'cal'])).toBe('running');
     expect(presence(testRoom, 1)).toBe('away');
     testRoom.say('ben', { type: 'away', away: false });
     testRoom.tick();
     expect(testRoom.room.match.players[1]?.present).toBe(true);
-    while (testRoom.room.match.phase === 'running') testRoom.pass(1, testRoom.stand);
+    while (phase() === 'running') testRoom.pass(1, testRoom.stand);
     expect(play(['ann', 'cal'])).toBe('over');
     expect(play(['ben'])).toBe('running');
   });

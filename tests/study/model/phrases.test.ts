@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import { english, type Phrase } from '../../../src/study/model/phrases/english';
-import { german } from '../../../src/study/model/phrases/german';
+import german from '../../../src/study/model/phrases/german.json' with { type: 'json' };
 import {
   missingKeys,
   PhrasedError,

@@ -5,7 +5,7 @@ import { serve, type WebServer } from '../../../src/http/web-server';
 import { createExperimenterClient } from '../../../src/study/client/study-client';
 import type { StudyPlan } from '../../../src/study/model/plan/plan';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
-import { openStudyStore } from '../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../src/study/server/sqlite/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { experimenter, studiesInThisThread } from '../server/running-studies';

@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { gunzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, test } from 'vitest';
-import { openStudyStore } from '../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../src/study/server/sqlite/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { type Anything, servedStudies } from './running-studies';
 import { asSent } from './stored-studies';

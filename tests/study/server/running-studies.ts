@@ -9,7 +9,7 @@ import { createExporter } from '../../../src/study/server/export/exporter';
 import { StudyDispatcher } from '../../../src/study/server/routes/dispatcher';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { createStudyService, openStudyService } from '../../../src/study/server/service';
-import { openStudyStore, type StudyStore } from '../../../src/study/server/storage/study-store';
+import { openStudyStore, type StudyStore } from '../../../src/study/server/sqlite/study-store';
 import { isNightly } from '../../nightly';
 import { forkServer } from '../../server/server-child';
 import { testSecret } from '../../server/started-server';

@@ -2,7 +2,7 @@ import { join } from 'node:path';
 import { onTestFinished } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { StoredRecord, StudyRecord } from '../../../src/study/model/records/study-record';
-import { openStudyStore, type StudyStore } from '../../../src/study/server/storage/study-store';
+import { openStudyStore, type StudyStore } from '../../../src/study/server/sqlite/study-store';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan, session } from '../model/studies';
 import { now } from './running-studies';

@@ -2,7 +2,7 @@ import { statSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { openStudyStore } from '../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../src/study/server/sqlite/study-store';
 import { hasFileModes } from '../../platform';
 import { until } from '../../rooms/server/running-relay';
 import { directoryWith } from '../../temporary-directory';

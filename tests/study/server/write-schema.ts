@@ -8,7 +8,7 @@ import { gzipSync } from 'node:zlib';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { checkedRecord } from '../../../src/study/model/records/study-record';
-import { openStudyStore } from '../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../src/study/server/sqlite/study-store';
 import { latencyPlan, session } from '../model/studies';
 
 const now = 1_800_000_000;

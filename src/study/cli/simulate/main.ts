@@ -9,7 +9,7 @@ import { compareCohorts } from '../../model/results/compare-cohorts';
 import { compareConditions } from '../../model/results/compare-conditions';
 import { measuresIn, overallComparisons, type StudyMeasures } from '../../model/results/exported-results';
 import { exportFiles, exportName, exportZip } from '../../server/export/export-zip';
-import { openStudyStore } from '../../server/storage/study-store';
+import { openStudyStore } from '../../server/sqlite/study-store';
 import { effectsInWords, modelsWith, simulatedPlan, simulateStudy } from '../../simulation/simulate-study';
 
 const root = fileURLToPath(new URL('../../../..', import.meta.url));

@@ -1,5 +1,5 @@
 import { type Catalogue, english, type GivenPhrases, type PhraseKey } from './english';
-import { german } from './german';
+import german from './german.json' with { type: 'json' };
 
 type TextsOf<Said> = Said extends string ? Said : Said[keyof Said];
 type NamesIn<Text> = Text extends `${string}{${infer Name}}${infer Rest}` ? Name | NamesIn<Rest> : never;

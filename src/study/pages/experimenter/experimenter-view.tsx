@@ -1,6 +1,6 @@
 import './experimenter.css';
 import { signal } from '@preact/signals';
-import { pageFolder, storePreviewPlan } from 'threepoint-ui';
+import { pageFolder } from 'threepoint-ui';
 import { Button, FileField, Tick } from 'threepoint-ui/controls';
 import { studyTitle } from '../../model/plan/plan';
 import { remarksOn } from '../../model/plan/plan-remarks';
@@ -8,7 +8,7 @@ import { Table } from '../table';
 import { type OpenStudy, refreshedAt } from './experimenter-state';
 import { download, receiptText } from './participant-actions';
 import { participantColumns, participantLook, shownParticipants } from './participant-row';
-import { addStudy, deleteSimulated, simulate } from './study-actions';
+import { addStudy, deleteSimulated, simulate, tryOut } from './study-actions';
 
 /** Returns a sentence about the versions of the plan, or null if there is only one. */
 function versionsText({ versions }: OpenStudy): string | null {
@@ -57,7 +57,7 @@ function StudyHead({ study }: { readonly study: OpenStudy }) {
   return (
     <>
       {simulated && (
-        <p class="simulated">SIMULATED: a program takes part in this study. Its data say nothing about people.</p>
+        <p class="simulated">SIMULATED: a copy to try, or a program takes part. Its data say nothing about people.</p>
       )}
       <h2>{studyTitle(plan)}</h2>
       <p class="soft">
@@ -74,13 +74,13 @@ function StudyHead({ study }: { readonly study: OpenStudy }) {
           />
         ))}
         <a href={`./results.html?study=${plan.id}`}>Results</a>
-        <a href="./preview.html" onClick={() => storePreviewPlan(plan)}>
-          Preview
-        </a>
         {simulated ? (
           <Button label="Delete this simulated study …" class="danger" onClick={() => deleteSimulated(plan.id)} />
         ) : (
-          <Button label="Simulate …" onClick={() => simulate(plan)} />
+          <>
+            <Button label="Try it" onClick={() => tryOut(plan)} />
+            <Button label="Simulate …" onClick={() => simulate(plan)} />
+          </>
         )}
       </div>
     </>
@@ -119,9 +119,8 @@ export function NewStudy() {
           accept=".json,application/json"
           open={(file) => begin(file.name, () => file.text())}
         />
-        <a href="./preview.html">Preview a study file first</a>
         <Tick
-          label="simulated: a program takes part"
+          label="simulated: to try it, or for a program"
           checked={simulated}
           onChange={({ currentTarget }) => {
             simulated.value = currentTarget.checked;

@@ -17,19 +17,30 @@ export interface StoredSimulationOptions extends Simulation {
 
 const secondsPerParticipant = 7200;
 
+type SimulatingClient = Pick<ExperimenterClient, 'studies' | 'addStudy' | 'addSimulated' | 'deleteSimulated'>;
+
+/** Adds a simulated study with this plan in place of an earlier one; resolves with its plan. */
+export async function replaceSimulated(
+  client: Omit<SimulatingClient, 'addSimulated'>,
+  plan: StudyPlan,
+): Promise<StudyPlan> {
+  const simulated = checkedPlan(simulatedPlan(plan));
+  if ((await client.studies()).some(({ id }) => id === simulated.id)) await client.deleteSimulated(simulated.id);
+  await client.addStudy(simulated, true);
+  return simulated;
+}
+
 /**
  * Stores simulated participants, who go through a plan to its end, in a separate study, which replaces that of an
  * earlier simulation. Resolves with the id of that study.
  */
 export async function storeSimulation(
-  client: Pick<ExperimenterClient, 'studies' | 'addStudy' | 'addSimulated' | 'deleteSimulated'>,
+  client: SimulatingClient,
   plan: StudyPlan,
   { seed, effects, at, onProgress = () => undefined }: StoredSimulationOptions,
 ): Promise<string> {
-  const simulated = checkedPlan(simulatedPlan(plan));
-  const models = modelsWith(simulated, effects);
-  if ((await client.studies()).some(({ id }) => id === simulated.id)) await client.deleteSimulated(simulated.id);
-  await client.addStudy(simulated, true);
+  const models = modelsWith(plan, effects);
+  const simulated = await replaceSimulated(client, plan);
   const all = participantsOf(simulated).length;
   let done = 0;
   for (const one of simulatedParticipants(simulated, models, seed, at - all * secondsPerParticipant)) {

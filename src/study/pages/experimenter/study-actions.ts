@@ -1,13 +1,13 @@
 import { formatSentence } from 'threepoint-ui';
 import type { ExperimenterClient } from '../../client/study-client';
-import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import { readPlan, type StudyPlan } from '../../model/plan/plan';
 import { Refusal } from '../../model/progress/refusal';
 import type { StudyInfo } from '../../model/progress/study-api';
-import { effectsInWords, simulatedPlan } from '../../simulation/simulate-study';
+import { effectsInWords } from '../../simulation/simulate-study';
 import { listStudies } from '../experimenter-access';
 import { attempt, notice, openStudy, study } from './experimenter-state';
 import { askForSimulation } from './simulation-dialog';
-import { storeSimulation } from './store-simulation';
+import { replaceSimulated, storeSimulation } from './store-simulation';
 
 /** A new study: `name` is for messages, `json` reads its file. */
 interface NewStudy {
@@ -19,12 +19,14 @@ interface NewStudy {
 /** Adds a study and opens it. */
 export const addStudy = ({ name, simulated, json }: NewStudy) =>
   attempt(async (server) => {
-    const plan = checkedPlan(JSON.parse(await json()));
-    const added = simulated ? simulatedPlan(plan) : plan;
-    const info = await addOrChange(server, added, simulated);
-    if (!info) return `Nothing was changed: the study “${added.id}” keeps its plan.`;
+    const read = readPlan(await json(), name);
+    if ('faults' in read) throw new Error(read.faults.map(({ message }) => message).join('\n'));
+    const { plan } = read;
+    if (simulated) return openCopy(server, plan);
+    const info = await addOrChange(server, plan);
+    if (!info) return `Nothing was changed: the study “${plan.id}” keeps its plan.`;
     await listStudies(server);
-    await openStudy(added.id);
+    await openStudy(plan.id);
     return `${name} is on this server${info.versions.length > 1 ? `, as version ${info.version} of the plan` : ''}.`;
   });
 
@@ -32,16 +34,27 @@ export const addStudy = ({ name, simulated, json }: NewStudy) =>
  * Adds a study. If one of the same id has begun with another plan, the experimenter is asked whether to add a new
  * version; resolves with null if not.
  */
-async function addOrChange(server: ExperimenterClient, plan: StudyPlan, simulated: boolean): Promise<StudyInfo | null> {
+async function addOrChange(server: ExperimenterClient, plan: StudyPlan): Promise<StudyInfo | null> {
   try {
-    return await server.addStudy(plan, simulated);
+    return await server.addStudy(plan, false);
   } catch (error) {
     if (!(error instanceof Refusal) || error.field !== 'newVersion') throw error;
     if (!confirm(`${formatSentence(error.message)}\n\nMake it a new version? Results keep the versions apart.`))
       return null;
-    return server.addStudy(plan, simulated, true);
+    return server.addStudy(plan, false, true);
   }
 }
+
+/** Opens a simulated copy of a study; an earlier one is deleted with its records. */
+async function openCopy(server: ExperimenterClient, plan: StudyPlan): Promise<string> {
+  const { id } = await replaceSimulated(server, plan);
+  await listStudies(server);
+  await openStudy(id);
+  return `Open the page of a participant to try “${id}”. Its records are deleted with it.`;
+}
+
+/** Opens a copy of a study, in which the experimenter can take part. */
+export const tryOut = (plan: StudyPlan) => attempt((server) => openCopy(server, plan));
 
 /** Stores simulated participants of a plan in a separate study and opens it. */
 export async function simulate(plan: StudyPlan): Promise<void> {

@@ -1,8 +1,7 @@
 import './results.css';
 import { type ReadonlySignal, type Signal, useComputed, useSignal } from '@preact/signals';
 import { useMemo } from 'preact/hooks';
-import type { Choice } from 'threepoint-ui';
-import { Chooser } from 'threepoint-ui/controls';
+import { type Choice, Chooser } from 'threepoint-ui/controls';
 import type { StudyRecord } from '../../model/records/study-record';
 import { cohortViews, hasOverallAnalysis } from '../../model/results/exported-results';
 import type { Exclusion } from '../../model/results/measures';

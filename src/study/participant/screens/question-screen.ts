@@ -1,7 +1,7 @@
 import { inLanguage } from '../../model/phrases/localized-text';
 import { clockText } from '../../model/progress/progress';
 import type { Question } from '../../model/questionnaires/questionnaire-schema';
-import { typedAnswer, unanswered } from '../../model/questionnaires/questionnaires';
+import { unanswered } from '../../model/questionnaires/questionnaires';
 import { screenQuestions } from '../questionnaire-state';
 import { questionView } from '../questions/question-views';
 import type { ScreenQuestion, StudyScreen } from '../questions/study-screen';
@@ -31,7 +31,8 @@ export function questionPart(
   };
   const form = shown.answer;
   const view = questionView(form);
-  const misread = typed !== null && typed.trim() !== '' && typedAnswer(form, typed) === null;
+  // Text that is not an answer leaves the question without one.
+  const misread = typed !== null && typed.trim() !== '' && draft[shown.id] === undefined;
   const required = questions.filter(({ optional }) => !optional).length;
   return {
     question: {

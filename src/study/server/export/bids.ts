@@ -11,7 +11,7 @@ import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { DemographicsRecord, StudyRecord, TrialRecord } from '../../model/records/study-record';
 import { recordingTime } from '../../model/records/trial-clock';
 import { voidedBlocks } from '../../model/tables/study-tables';
-import type { MotionFile } from '../storage/study-motion';
+import type { MotionFile } from '../study-storage';
 
 /** The content of a data set. */
 export interface BidsContent {

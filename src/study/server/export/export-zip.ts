@@ -6,8 +6,7 @@ import type { StudyRecord } from '../../model/records/study-record';
 import { resultTables } from '../../model/results/exported-results';
 import { studyTables } from '../../model/tables/study-tables';
 import { codebookOf, type Table, tidyCsv } from '../../model/tables/tidy-csv';
-import type { ServedSoftware } from '../storage/software';
-import type { MotionFile } from '../storage/study-motion';
+import type { MotionFile, ServedSoftware } from '../study-storage';
 import { bidsDataset } from './bids';
 import { portableName } from './portable-name';
 

@@ -1,6 +1,6 @@
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import { unpacked } from '../storage/study-motion';
-import { openStudyStore, type StudyStore } from '../storage/study-store';
+import { unpacked } from '../sqlite/study-motion';
+import { openStudyStore, type StudyStore } from '../sqlite/study-store';
 import { type ExportContent, exportZip } from './export-zip';
 import type { ExportOrder } from './exporter';
 

@@ -1,19 +1,12 @@
 import { checked, identifier, participantId } from 'threepoint/core';
-import { HttpError, type HttpResponse, refusalOf } from 'threepoint-http';
+import { errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStorage } from '../study-storage';
 import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
 import { participantRoutes } from './participant-routes';
 import type { StudyParts, StudyRequest, StudyRoute } from './route';
 import { studyRoutes } from './study-routes';
-
-/** The result of a request, in a form that can be sent between threads. */
-export type StudyOutcome =
-  | { readonly answer: HttpResponse }
-  | { readonly refused: Pick<HttpError, 'status' | 'message' | 'field' | 'headers'> }
-  /** A fault of the server, for its log. */
-  | { readonly fault: string };
 
 /** How long a request waits for the lock of another program, and the interval of its attempts [ms]. */
 const lockedMs = 5000;
@@ -61,8 +54,12 @@ function httpErrorOf(error: unknown, effect: Effect): HttpError | null {
   return new HttpError(status, message, { field, headers });
 }
 
+/** Returns the line of the log about a fault of the server. */
+export const faultLine = (error: unknown): string =>
+  `study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`;
+
 export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, StudyGuardOptions {
-  readonly store: StudyStore;
+  readonly store: StudyStorage;
   readonly log: (line: string) => void;
 }
 
@@ -74,7 +71,7 @@ export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, Study
 export class StudyDispatcher {
   readonly routes: readonly StudyRoute[];
   readonly #guard: StudyGuard;
-  readonly #store: StudyStore;
+  readonly #store: StudyStorage;
   readonly #log: (line: string) => void;
   #lastChange: Promise<unknown> = Promise.resolve();
   #logged = Number.NEGATIVE_INFINITY;
@@ -88,30 +85,38 @@ export class StudyDispatcher {
     this.#log = log;
   }
 
-  /** Resolves with whether the request is permitted, before its body is read; `index` is that of the route. */
-  admit(index: number, request: StudyRequest): Promise<StudyOutcome> {
-    const { access, effect } = this.routes[index] as StudyRoute;
-    return this.#outcome(effect, async () => {
+  /** Resolves with the answer to a request that is not permitted, before its body is read; undefined: it is. */
+  async admit(request: StudyRequest): Promise<HttpResponse | undefined> {
+    const { access, effect } = request.route;
+    try {
       await untilUnlocked(performance.now() + lockedMs, () => this.#guard.admit(access, senderOf(request)));
-      return { status: 204 };
-    });
+      return undefined;
+    } catch (error) {
+      return this.#answerTo(error, effect);
+    }
   }
 
   /** Handles a request. If its route takes a body, it was admitted before. */
-  handle(index: number, request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<StudyOutcome> {
-    const route = this.routes[index] as StudyRoute;
-    const changes = route.effect !== 'reads';
-    return this.#outcome(route.effect, async () => {
+  async handle(request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<HttpResponse> {
+    const { access, bodyLimit, effect } = request.route;
+    const changes = effect !== 'reads';
+    try {
       const sender = senderOf(request);
       const call = { ...sender, at: request.at, query: new URLSearchParams(request.query), body };
       const until = performance.now() + lockedMs;
-      if (route.bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(route.access, sender));
-      const run = () => untilUnlocked(until, () => route.handle(call));
+      if (bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(access, sender));
+      const run = () => untilUnlocked(until, () => this.#routeOf(request).handle(call));
       const answer = await (changes ? this.#afterEarlierChanges(run) : run());
       if (changes) await this.#store.flushed();
       const text = answer.body;
       return typeof text === 'string' ? { ...answer, body: new TextEncoder().encode(text) } : answer;
-    });
+    } catch (error) {
+      return this.#answerTo(error, effect);
+    }
+  }
+
+  #routeOf({ route: { method, path } }: StudyRequest): StudyRoute {
+    return this.routes.find((one) => one.method === method && one.path === path) as StudyRoute;
   }
 
   #afterEarlierChanges<T>(run: () => Promise<T>): Promise<T> {
@@ -122,16 +127,12 @@ export class StudyDispatcher {
     return result;
   }
 
-  async #outcome(effect: Effect, run: () => Promise<HttpResponse>): Promise<StudyOutcome> {
-    try {
-      return { answer: await run() };
-    } catch (error) {
-      if (error instanceof Refusal && error.reason === 'lost') this.#logLost(error);
-      const known = httpErrorOf(error, effect);
-      if (!known) return { fault: error instanceof Error ? (error.stack ?? error.message) : String(error) };
-      const { status, message, field, headers } = known;
-      return { refused: { status, message, field, headers } };
-    }
+  /** Returns the answer to a request that failed. */
+  #answerTo(error: unknown, effect: Effect): HttpResponse {
+    if (error instanceof Refusal && error.reason === 'lost') this.#logLost(error);
+    const known = httpErrorOf(error, effect);
+    if (!known) this.#log(faultLine(error));
+    return errorResponse(known ?? internalError());
   }
 
   #logLost({ message, detail }: Refusal): void {

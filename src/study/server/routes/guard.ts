@@ -11,8 +11,8 @@ import {
   tooManyRequests,
 } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
-import { normalisedCode } from '../storage/schema';
-import type { StudyStore } from '../storage/study-store';
+import { normalisedCode } from '../codes';
+import type { Awaitable, StudyStorage } from '../study-storage';
 
 /**
  * The access to a route. participant: the token of this participant or of an experimenter; invited: the invitation to
@@ -21,7 +21,7 @@ import type { StudyStore } from '../storage/study-store';
 export type RouteAccess = 'anyone' | 'participant' | 'experimenter' | 'invited' | 'withdrawing';
 
 export interface StudyGuardOptions {
-  readonly store: Pick<StudyStore, 'plans' | 'places'>;
+  readonly store: Pick<StudyStorage, 'plans' | 'places'>;
   /** The experimenter's token, sent as "Authorization: Bearer …". */
   readonly experimenterToken: string;
   readonly onFailedAttempt: (guess: FailedAttempt) => void;
@@ -46,7 +46,7 @@ export const openPlacesPerHour = 6;
 const digest = (secret: string) => createHash('sha256').update(secret).digest();
 
 /** Returns a function that counts the places of open studies for each network. A claim that throws is not counted. */
-function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> {
+function createOpenPlaces(): <T>(network: string, claim: () => Awaitable<T>) => Promise<T> {
   const taken = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
 
   return async (network, claim) => {
@@ -56,7 +56,7 @@ function createOpenPlaces(): <T>(network: string, claim: () => T) => Promise<T> 
       throw tooManyRequests(message, seconds);
     }
     try {
-      return claim();
+      return await claim();
     } catch (error) {
       await taken.reward(network);
       throw error;
@@ -74,7 +74,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
 
   type Attempted = Omit<AuthAttempt, 'address'> & Pick<Sender, 'address'>;
 
-  async function attempt({ address, ...guess }: Attempted, isRight: () => boolean): Promise<boolean> {
+  async function attempt({ address, ...guess }: Attempted, isRight: () => Awaitable<boolean>): Promise<boolean> {
     try {
       return await throttle.attempt({ ...guess, address: requiredAddress(address) }, isRight);
     } catch (error) {
@@ -90,7 +90,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
     );
   }
 
-  const isParticipant = ({ token, study, participant }: Sender) =>
+  const isParticipant = async ({ token, study, participant }: Sender): Promise<boolean> =>
     token !== null && store.places.holds(study, participant, token);
 
   return {
@@ -100,14 +100,14 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
     async admit(access: RouteAccess, sender: Sender): Promise<void> {
       if (access !== 'participant' && access !== 'experimenter') return;
       // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
-      if (access === 'participant' && isParticipant(sender)) return;
+      if (access === 'participant' && (await isParticipant(sender))) return;
       if (await isExperimenter(sender)) return;
       throw new Refusal('unauthorised', 'this needs the token of the participant or of an experimenter');
     },
     /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
-    async claiming<T>(sender: Sender, invitation: string | undefined, claim: () => T): Promise<T> {
+    async claiming<T>(sender: Sender, invitation: string | undefined, claim: () => Awaitable<T>): Promise<T> {
       const { token, address, study, participant } = sender;
-      const { plan } = store.plans.get(study);
+      const { plan } = await store.plans.get(study);
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
         const why = `${participant} needs an invitation, which is in the participant’s link`;
@@ -122,12 +122,12 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
     /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
-    async withdrawing<T>({ address, study }: Sender, code: string, withdraw: () => T | null): Promise<T> {
-      store.plans.get(study);
+    async withdrawing<T>({ address, study }: Sender, code: string, withdraw: () => Awaitable<T | null>): Promise<T> {
+      await store.plans.get(study);
       let result: T | null = null;
       const secret = normalisedCode(code);
-      await attempt({ what: 'withdrawal code', address, of: study, secret }, () => {
-        result = withdraw();
+      await attempt({ what: 'withdrawal code', address, of: study, secret }, async () => {
+        result = await withdraw();
         return result !== null;
       });
       if (result === null) throw new Refusal('unknown', 'nothing is recorded under this code');

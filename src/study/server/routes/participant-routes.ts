@@ -7,8 +7,8 @@ import { Refusal } from '../../model/progress/refusal';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
 import { refuseUnscheduled, refuseUnscheduledTrial } from '../../model/records/scheduled-record';
-import { checkedRecord, within } from '../../model/records/study-record';
-import type { StudyStore } from '../storage/study-store';
+import { checkedRecord, type StudyRecord, within } from '../../model/records/study-record';
+import type { StudyStorage } from '../study-storage';
 import { bodyLimits, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
 import { exportOf } from './study-routes';
 
@@ -32,11 +32,11 @@ const motionSchema = v.object({
 });
 
 /** Returns the state for a device that has taken a participant's place; a session of another device is continued. */
-const sessionOf = (store: StudyStore, { study, participant, at }: StudyCall) => ({
-  plan: store.plans.planFor(study, participant),
-  simulated: store.plans.get(study).simulated,
-  progress: store.places.progress(study, participant, at),
-  ...profileFrom(store.records.all(study, participant)),
+const sessionOf = async (store: StudyStorage, { study, participant, at }: StudyCall) => ({
+  plan: await store.plans.planFor(study, participant),
+  simulated: (await store.plans.get(study)).simulated,
+  progress: await store.places.progress(study, participant, at),
+  ...profileFrom(await store.records.all(study, participant)),
 });
 
 /** Throws if a stored plan is no longer valid for a new study, because nothing can be recorded by its rules. */
@@ -57,8 +57,8 @@ function refuseOutdated(plan: StudyPlan): void {
  * Takes a place. `read` is the version of the text that was consented to, if it was sent. Throws if the plan has
  * another one; the place stays free.
  */
-function takePlace(store: StudyStore, { study, participant, at }: StudyCall, read: string | undefined) {
-  const plan = store.plans.planFor(study, participant);
+async function takePlace(store: StudyStorage, { study, participant, at }: StudyCall, read: string | undefined) {
+  const plan = await store.plans.planFor(study, participant);
   refuseOutdated(plan);
   const { version } = plan.consent;
   if (read !== undefined && read !== version) {
@@ -69,91 +69,112 @@ function takePlace(store: StudyStore, { study, participant, at }: StudyCall, rea
   return store.places.claim(study, participant, at);
 }
 
-/** Returns the routes of one participant. */
-export function participantRoutes(parts: StudyParts): StudyRoute[] {
-  const { store, guard, seats } = parts;
-  const own = '/:study/participants/:participant';
+/** Returns these values as records of a participant; throws a ValidationError for one that no page makes. */
+function recordsIn(values: readonly unknown[], plan: StudyPlan, participant: string): readonly StudyRecord[] {
+  const schedule = scheduleFor(plan, participant);
+  return values.map((value, index) =>
+    within(`records[${index}]`, () => {
+      const record = checkedRecord(value, plan);
+      if (record.participant === participant) refuseUnscheduled(record, schedule);
+      return record;
+    }),
+  );
+}
+
+/** Returns the text of a recording; throws a Refusal for another file. */
+function recordingIn(call: StudyCall): string {
+  const recording = textOf(call);
+  try {
+    parseRecording(recording);
+    return recording;
+  } catch (error) {
+    throw new Refusal('invalid', (error as Error).message);
+  }
+}
+
+const own = '/:study/participants/:participant';
+
+/** Returns the routes of a place: who has it, and what its device and the experimenter exchange. */
+function placeRoutes({ store, guard, seats }: StudyParts): StudyRoute[] {
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
       const { invitation, consent } = checked(claimSchema, jsonOf(call));
       const claim = () => takePlace(store, call, consent);
       const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
-      return jsonResponse({ token, withdrawalCode, ...sessionOf(store, call) }, 201);
+      return jsonResponse({ token, withdrawalCode, ...(await sessionOf(store, call)) }, 201);
     }),
-    route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
-      store.places.renewInvitation(study, participant);
+    route('POST', `${own}/invitation`, 'experimenter', 0, async ({ study, participant }) => {
+      await store.places.renewInvitation(study, participant);
       return noContent;
     }),
-    route('POST', `${own}/release`, 'experimenter', 0, ({ study, participant }) => {
-      store.places.release(study, participant);
+    route('POST', `${own}/release`, 'experimenter', 0, async ({ study, participant }) => {
+      await store.places.release(study, participant);
       return noContent;
     }),
-    route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
-      const { records } = checked(batchSchema, jsonOf(call));
-      const { study, participant, at } = call;
-      const plan = store.plans.planFor(study, participant);
-      const schedule = scheduleFor(plan, participant);
-      const valid = records.map((value, index) =>
-        within(`records[${index}]`, () => {
-          const record = checkedRecord(value, plan);
-          if (record.participant === participant) refuseUnscheduled(record, schedule);
-          return record;
-        }),
-      );
-      const author = guard.isParticipant(call) ? 'participant' : 'experimenter';
-      return jsonResponse({ acknowledged: store.records.store(study, participant, valid, at, author) });
+    route('PUT', `${own}/progress`, 'participant', bodyLimits.json, async (call) => {
+      await store.places.saveProgress(call.study, call.participant, jsonOf(call), call.at);
+      return noContent;
     }),
-    route('GET', `${own}/records`, 'participant', 0, ({ study, participant }) =>
-      jsonResponse({ records: store.records.all(study, participant) }),
+    route('GET', `${own}/progress`, 'participant', 0, async ({ study, participant, at }) =>
+      jsonResponse({ progress: await store.places.progress(study, participant, at) }),
     ),
-    route('PUT', `${own}/progress`, 'participant', bodyLimits.json, (call) => {
-      store.places.saveProgress(call.study, call.participant, jsonOf(call), call.at);
-      return noContent;
-    }),
-    route('GET', `${own}/progress`, 'participant', 0, ({ study, participant, at }) =>
-      jsonResponse({ progress: store.places.progress(study, participant, at) }),
-    ),
-    route('GET', `${own}/commands`, 'participant', 0, ({ study, participant, query }) => {
+    route('GET', `${own}/commands`, 'participant', 0, async ({ study, participant, query }) => {
       const { after } = checked(sinceSchema, { after: Number(query.get('after') ?? 0) });
-      return jsonResponse({ commands: store.commands.after(study, participant, after) });
+      return jsonResponse({ commands: await store.commands.after(study, participant, after) });
     }),
-    route('POST', `${own}/commands`, 'experimenter', bodyLimits.json, (call) => {
+    route('POST', `${own}/commands`, 'experimenter', bodyLimits.json, async (call) => {
       const command = checked(commandSchema, jsonOf(call));
-      return jsonResponse({ number: store.commands.add(call.study, call.participant, command, call.at) }, 201);
-    }),
-    route('POST', `${own}/remarks`, 'experimenter', bodyLimits.json, (call) => {
-      const remark = checked(remarkSchema, jsonOf(call));
-      return jsonResponse({ id: store.records.addRemark(call.study, call.participant, remark.text, call.at) }, 201);
-    }),
-    route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, ({ study, participant, at, query, body }) => {
-      const { trial } = checked(motionSchema, { trial: query.get('trial') });
-      refuseUnscheduledTrial(trial, scheduleFor(store.plans.planFor(study, participant), participant));
-      const recording = textOf({ body });
-      try {
-        parseRecording(recording);
-      } catch (error) {
-        throw new Refusal('invalid', (error as Error).message);
-      }
-      store.motion.store(study, participant, trial, recording, at);
-      return noContent;
+      return jsonResponse({ number: await store.commands.add(call.study, call.participant, command, call.at) }, 201);
     }),
     {
       ...route('POST', `${own}/seat`, 'participant', bodyLimits.json, async (call) => {
         const trial = checked(playedTogetherSchema, jsonOf(call));
-        const plan = store.plans.planFor(call.study, call.participant);
+        const plan = await store.plans.planFor(call.study, call.participant);
         // A request that is admitted without the participant's token is from an experimenter, who watches.
-        return jsonResponse(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
+        const watching = !(await guard.isParticipant(call));
+        return jsonResponse(await seats.sign(plan, call.participant, trial, watching));
       }),
       effect: 'reads',
     },
+  ];
+}
+
+/** Returns the routes of what is recorded of a participant. */
+function recordRoutes(parts: StudyParts): StudyRoute[] {
+  const { store, guard } = parts;
+  return [
+    route('POST', `${own}/records`, 'participant', bodyLimits.json, async (call) => {
+      const { study, participant, at } = call;
+      const { records } = checked(batchSchema, jsonOf(call));
+      const valid = recordsIn(records, await store.plans.planFor(study, participant), participant);
+      const author = (await guard.isParticipant(call)) ? 'participant' : 'experimenter';
+      return jsonResponse({ acknowledged: await store.records.store(study, participant, valid, at, author) });
+    }),
+    route('GET', `${own}/records`, 'participant', 0, async ({ study, participant }) =>
+      jsonResponse({ records: await store.records.all(study, participant) }),
+    ),
+    route('POST', `${own}/remarks`, 'experimenter', bodyLimits.json, async ({ study, participant, at, body }) => {
+      const { text: remark } = checked(remarkSchema, jsonOf({ body }));
+      return jsonResponse({ id: await store.records.addRemark(study, participant, remark, at) }, 201);
+    }),
+    route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, async (call) => {
+      const { study, participant, at, query } = call;
+      const { trial } = checked(motionSchema, { trial: query.get('trial') });
+      refuseUnscheduledTrial(trial, scheduleFor(await store.plans.planFor(study, participant), participant));
+      await store.motion.store(study, participant, trial, recordingIn(call), at);
+      return noContent;
+    }),
     {
       ...route('GET', `${own}/export`, 'participant', 0, ({ study, participant, at }) =>
         exportOf(parts, { at, study, participant }),
       ),
       isPatient: true,
     },
-    route('DELETE', own, 'experimenter', 0, ({ study, participant, at }) =>
-      jsonResponse(store.deletion.delete(study, participant, 'experimenter', at)),
+    route('DELETE', own, 'experimenter', 0, async ({ study, participant, at }) =>
+      jsonResponse(await store.deletion.delete(study, participant, 'experimenter', at)),
     ),
   ];
 }
+
+/** Returns the routes of one participant. */
+export const participantRoutes = (parts: StudyParts): StudyRoute[] => [...placeRoutes(parts), ...recordRoutes(parts)];

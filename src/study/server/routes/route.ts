@@ -1,7 +1,7 @@
 import type { ClientAddress, HttpResponse, Route, Software } from 'threepoint-http';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import type { Exporter } from '../export/exporter';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStorage } from '../study-storage';
 import type { Effect } from './effect';
 import type { RouteAccess, Sender, StudyGuard } from './guard';
 import type { StudySeats } from './seats';
@@ -11,8 +11,12 @@ export const bodyLimits = { json: 512 * 1024, motion: maxMotionBytes } as const;
 
 const prefix = '/api/studies';
 
+/** A route without its function, which stays in the thread of the database. */
+export type RouteHead = Omit<StudyRoute, 'handle'>;
+
 /** A request to a route of the studies, as it is sent from the thread of the sockets to that of the database. */
 export interface StudyRequest {
+  readonly route: RouteHead;
   /** The time of the request in seconds since 1970. */
   readonly at: number;
   readonly token: string | null;
@@ -40,7 +44,7 @@ export interface StudyRoute extends Omit<Route<RouteAccess>, 'handle'> {
 
 /** The parts of the server that routes use. */
 export interface StudyParts {
-  readonly store: StudyStore;
+  readonly store: StudyStorage;
   readonly guard: StudyGuard;
   /** Signs participants into the rooms of their trials. */
   readonly seats: StudySeats;

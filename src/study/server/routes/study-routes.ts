@@ -4,7 +4,7 @@ import * as v from 'valibot';
 import { languagesOf, type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { exportName } from '../export/export-zip';
-import type { StudyStore } from '../storage/study-store';
+import type { StudyStorage } from '../study-storage';
 import { bodyLimits, route, type StudyParts, type StudyRoute } from './route';
 
 const newStudySchema = v.strictObject({
@@ -28,10 +28,10 @@ function versionIn(query: URLSearchParams): number | undefined {
 }
 
 /** Returns a study with the records of participants who follow the version of its plan that `info` shows. */
-function recordsOf(store: Pick<StudyStore, 'records'>, info: StudyInfo): HttpResponse {
+async function recordsOf(store: Pick<StudyStorage, 'records'>, info: StudyInfo): Promise<HttpResponse> {
   const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
   const head = `${JSON.stringify(info).slice(0, -1)},"records":`;
-  const records = store.records.listed(info.plan.id, new Set(participants));
+  const records = await store.records.listed(info.plan.id, new Set(participants));
   const body = Buffer.concat([Buffer.from(head), ...records, Buffer.from('}\n')]);
   return { ...jsonResponse(null), body };
 }
@@ -46,9 +46,9 @@ interface ExportAsked {
 /** Resolves with the answer that contains an export. */
 export async function exportOf({ store, software, makeZip }: StudyParts, asked: ExportAsked): Promise<HttpResponse> {
   const { study, participant, version } = asked;
-  const info = store.plans.get(study, version);
-  if (participant !== undefined) store.places.get(study, participant);
-  const plan = participant === undefined ? info.plan : store.plans.planFor(study, participant);
+  const info = await store.plans.get(study, version);
+  if (participant !== undefined) await store.places.get(study, participant);
+  const plan = participant === undefined ? info.plan : await store.plans.planFor(study, participant);
   const planVersion = participant === undefined && info.versions.length > 1 ? info.version : undefined;
   const name = exportName({ plan, simulated: info.simulated, ...(planVersion && { planVersion }) }, participant);
   return {
@@ -62,35 +62,35 @@ export async function exportOf({ store, software, makeZip }: StudyParts, asked: 
 export function studyRoutes(parts: StudyParts): StudyRoute[] {
   const { store, guard } = parts;
   return [
-    route('GET', '', 'experimenter', 0, () =>
+    route('GET', '', 'experimenter', 0, async () =>
       jsonResponse({
-        studies: store.plans.all().map(({ plan, versions: _, ...rest }) => {
+        studies: (await store.plans.all()).map(({ plan, versions: _, ...rest }) => {
           const { id, participants } = plan;
           return { id, title: studyTitle(plan), participants, ...rest };
         }),
       }),
     ),
-    route('POST', '', 'experimenter', bodyLimits.json, (call) => {
+    route('POST', '', 'experimenter', bodyLimits.json, async (call) => {
       const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
-      return jsonResponse(store.plans.add(plan, { simulated, newVersion, at: call.at }), 201);
+      return jsonResponse(await store.plans.add(plan, { simulated, newVersion, at: call.at }), 201);
     }),
     // Participants who have begun read the text of their version.
-    route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
-      const { plan, simulated } = store.plans.get(study);
+    route('GET', '/:study', 'anyone', 0, async ({ study, query }) => {
+      const { plan, simulated } = await store.plans.get(study);
       const participant = query.get('participant');
-      const read = participant === null ? plan : store.plans.planFor(study, checked(participantId, participant));
+      const read = participant === null ? plan : await store.plans.planFor(study, checked(participantId, participant));
       return jsonResponse(publicPlan(read, simulated));
     }),
-    route('DELETE', '/:study', 'experimenter', 0, ({ study }) => {
-      store.deletion.deleteSimulated(study);
+    route('DELETE', '/:study', 'experimenter', 0, async ({ study }) => {
+      await store.deletion.deleteSimulated(study);
       return noContent;
     }),
-    route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
-      return recordsOf(store, store.plans.get(study, versionIn(query)));
+    route('GET', '/:study/records', 'experimenter', 0, async ({ study, query }) => {
+      return recordsOf(store, await store.plans.get(study, versionIn(query)));
     }),
-    route('GET', '/:study/receipts', 'experimenter', 0, ({ study }) => {
-      store.plans.get(study);
-      return jsonResponse({ receipts: store.deletion.receipts(study) });
+    route('GET', '/:study/receipts', 'experimenter', 0, async ({ study }) => {
+      await store.plans.get(study);
+      return jsonResponse({ receipts: await store.deletion.receipts(study) });
     }),
     {
       ...route('GET', '/:study/export', 'experimenter', 0, ({ study, at, query }) =>
@@ -98,8 +98,8 @@ export function studyRoutes(parts: StudyParts): StudyRoute[] {
       ),
       isPatient: true,
     },
-    route('GET', '/:study/participants', 'experimenter', 0, ({ study, at }) =>
-      jsonResponse({ participants: store.overview(study, at) }),
+    route('GET', '/:study/participants', 'experimenter', 0, async ({ study, at }) =>
+      jsonResponse({ participants: await store.overview(study, at) }),
     ),
     {
       ...route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {

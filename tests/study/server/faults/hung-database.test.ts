@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
-import { openStudyStore } from '../../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../../src/study/server/sqlite/study-store';
 import { isNightly } from '../../../nightly';
 import { reportFigures } from '../../../reliability/report-figures';
 import { arrive, pause, until } from '../../../rooms/server/running-relay';

@@ -5,7 +5,7 @@ import { participantsOf, type StudyPlan } from '../../../../src/study/model/plan
 import { type Schedule, scheduleFor } from '../../../../src/study/model/plan/schedule';
 import type { ParticipantState } from '../../../../src/study/model/progress/study-api';
 import type { StudyRecord } from '../../../../src/study/model/records/study-record';
-import { openStudyStore } from '../../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../../src/study/server/sqlite/study-store';
 import { type RandomSource, randomSource } from '../../../../src/study/simulation/random-source';
 import { experimenterToken, startServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';

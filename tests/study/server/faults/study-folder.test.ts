@@ -2,7 +2,7 @@ import { chmodSync, existsSync, mkdirSync, renameSync, rmSync, statSync, truncat
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { openStudyStore } from '../../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../../src/study/server/sqlite/study-store';
 import { hasFileModes, movesOpenFiles } from '../../../platform';
 import { reportFigures } from '../../../reliability/report-figures';
 import { directoryWith } from '../../../temporary-directory';

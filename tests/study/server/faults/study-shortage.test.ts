@@ -4,7 +4,7 @@ import { connect } from 'node:net';
 import { join } from 'node:path';
 import { expect, onTestFinished, test } from 'vitest';
 import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
-import { openStudyStore } from '../../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../../src/study/server/sqlite/study-store';
 import { reportFigures } from '../../../reliability/report-figures';
 import { forkServer } from '../../../server/server-child';
 import { experimenterToken, type StartedServer } from '../../../server/started-server';

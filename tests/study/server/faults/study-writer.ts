@@ -2,7 +2,7 @@
 // node --import tsx tests/study/server/faults/study-writer.ts DATABASE FIRST
 import { writeSync } from 'node:fs';
 import { recordVersion, type StudyRecord } from '../../../../src/study/model/records/study-record';
-import { openStudyStore } from '../../../../src/study/server/storage/study-store';
+import { openStudyStore } from '../../../../src/study/server/sqlite/study-store';
 
 const [file, first] = process.argv.slice(2) as [string, string];
 const store = openStudyStore(file);

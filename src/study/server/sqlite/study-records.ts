@@ -7,6 +7,7 @@ import {
   type StudyEvent,
   type StudyRecord,
 } from '../../model/records/study-record';
+import type { RecordStorage } from '../study-storage';
 import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
 import { notConsented, type StudyPlaces } from './study-places';
@@ -31,8 +32,7 @@ function storedJson({ record, author, received_at }: RecordRow): string {
   return `${record.slice(0, -1)},${added.slice(1)}`;
 }
 
-/** The records of participants who have consented. */
-export class StudyRecords {
+export class StudyRecords implements RecordStorage {
   readonly #database: StudyDatabase;
   readonly #plans: StudyPlans;
   readonly #places: StudyPlaces;
@@ -45,9 +45,6 @@ export class StudyRecords {
     this.#commands = commands;
   }
 
-  /**
-   * Stores the new ones of these records in one transaction; returns the ids of all. `at` is the time of their receipt.
-   */
   store(
     study: string,
     participant: string,
@@ -88,7 +85,6 @@ export class StudyRecords {
     });
   }
 
-  /** Returns the records of one participant, or of all. */
   all(study: string, participant?: string): readonly StoredRecord[] {
     const rows =
       participant === undefined
@@ -100,10 +96,6 @@ export class StudyRecords {
     return rows.map((row) => JSON.parse(storedJson(row)) as StoredRecord);
   }
 
-  /**
-   * Returns the records of these participants as a JSON list without parsing them, because those of a whole study may
-   * fill the memory.
-   */
   listed(study: string, participants: ReadonlySet<string>): readonly Uint8Array[] {
     const chunks: Buffer[] = [];
     const rows = this.#database.each<RecordRow & { readonly participant: string }>(

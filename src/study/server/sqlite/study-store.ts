@@ -10,11 +10,7 @@ import { type PlaceRow, StudyPlaces } from './study-places';
 import { StudyPlans } from './study-plans';
 import { StudyRecords } from './study-records';
 
-/**
- * The store of studies and records. Results are stored when a call returns and survive the end of the process. They
- * survive a power cut when `flushed` has resolved, and nothing is acknowledged before. Times are seconds since 1970 of
- * the caller's clock.
- */
+/** The studies in SQLite. */
 export type StudyStore = ReturnType<typeof openStudyStore>;
 
 /** Returns the state of a place for the experimenter at this time [s]. */
@@ -60,7 +56,6 @@ export function openStudyStore(
     ...{ plans, places, records, motion, commands },
     software: new StudySoftware(database),
     deletion: new StudyDeletion({ database, plans, places, records, motion, commands }),
-    /** Returns the state of every place at this time [s]. */
     overview(study: string, now: number): readonly ParticipantState[] {
       const { version: newest, versions } = plans.get(study);
       return places.all(study).map((row) => {
@@ -70,7 +65,6 @@ export function openStudyStore(
     },
     /** Runs `body`, whose reads all see one state of the database. */
     snapshot: <T>(body: () => T): T => database.snapshot(body),
-    /** Resolves when everything so far is on the disk; concurrent calls share a flush. */
     flushed: () => database.flushed(),
     /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
     purgeDeleted: () => !database.mustPurge || database.purgeDeleted(),

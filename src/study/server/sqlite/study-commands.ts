@@ -1,12 +1,12 @@
 import { Refusal } from '../../model/progress/refusal';
 import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
+import type { CommandStorage } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
 
 export const maxCommandsPerParticipant = 10_000;
 
-/** The commands of experimenters to participants' pages. */
-export class StudyCommands {
+export class StudyCommands implements CommandStorage {
   readonly #database: StudyDatabase;
   readonly #places: StudyPlaces;
 

@@ -3,7 +3,8 @@ import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
 import { Refusal } from '../../model/progress/refusal';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
-import { newCode } from './schema';
+import { newCode } from '../codes';
+import type { AddOptions, PlanStorage } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 
 interface StudyRow {
@@ -25,14 +26,6 @@ interface BegunPlace {
   readonly plan_version: number;
 }
 
-export interface AddOptions {
-  readonly simulated: boolean;
-  /** Seconds since 1970. */
-  readonly at: number;
-  /** Whether another plan becomes a new version for later participants if the study has begun. */
-  readonly newVersion?: boolean;
-}
-
 const secondsPerDay = 86_400;
 
 /** Returns "P01, P02 and 3 more". */
@@ -40,21 +33,19 @@ const listed = (names: readonly string[]) =>
   names.length > 4 ? `${names.slice(0, 3).join(', ')} and ${names.length - 3} more` : names.join(', ');
 
 /** The studies: the versions of their plans and the places in these. */
-export class StudyPlans {
+export class StudyPlans implements PlanStorage {
   readonly #database: StudyDatabase;
 
   constructor(database: StudyDatabase) {
     this.#database = database;
   }
 
-  /** Returns a study with this version of its plan or with the newest; throws a Refusal if it is unknown. */
   get(id: string, version?: number): StudyInfo {
     const row = this.#row(id);
     if (!row) throw new Refusal('unknown', `there is no study "${id}"`);
     return this.#infoOf(row, version);
   }
 
-  /** Returns the plan that a participant follows: that of their beginning, or the newest. */
   planFor(id: string, participant: string): StudyPlan {
     this.#refuseUnknown(id);
     const { plan } = this.#database.getOne<VersionRow>(
@@ -66,18 +57,12 @@ export class StudyPlans {
     return storedPlan(JSON.parse(plan));
   }
 
-  /** Returns all studies, the oldest first. */
   all(): readonly StudyInfo[] {
     return this.#database
       .all<StudyRow>('SELECT * FROM studies ORDER BY created_at, id')
       .map((row) => this.#infoOf(row));
   }
 
-  /**
-   * Adds a study, or returns an equal one that exists. Another plan for a study that has begun is refused unless it is
-   * added as a new version. Participants who have begun, and those who play with them, keep their version. Throws a
-   * ValidationError for an invalid plan.
-   */
   add(given: unknown, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
     const plan = checkedPlan(given);
     return this.#database.transaction(() => {

@@ -1,6 +1,7 @@
 import { Refusal } from '../../model/progress/refusal';
 import type { Receipt } from '../../model/progress/study-api';
-import { newCode } from './schema';
+import { newCode } from '../codes';
+import type { DeletionFault, DeletionStorage } from '../study-storage';
 import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
 import type { StudyMotion } from './study-motion';
@@ -20,11 +21,7 @@ export interface StudyDeletionParts {
   readonly commands: StudyCommands;
 }
 
-/** Called with a participant who could not be deleted, and with the error. */
-export type DeletionFault = (place: { readonly study: string; readonly participant: string }, error: unknown) => void;
-
-/** Deletes everything that is stored of a participant, and keeps a receipt. */
-export class StudyDeletion {
+export class StudyDeletion implements DeletionStorage {
   readonly #parts: StudyDeletionParts;
 
   constructor(parts: StudyDeletionParts) {
@@ -52,7 +49,6 @@ export class StudyDeletion {
     return receipt;
   }
 
-  /** Deletes a simulated study with its receipts. A study of people is deleted participant by participant. */
   deleteSimulated(study: string): void {
     const { database, plans } = this.#parts;
     if (!plans.get(study).simulated) {
@@ -67,16 +63,11 @@ export class StudyDeletion {
     database.purgeDeleted();
   }
 
-  /** Deletes everything of the participant with this code; returns null if there is none. */
   withdraw(study: string, code: string, at: number): Receipt | null {
     const participant = this.#parts.places.ownerOf(study, code);
     return participant === null ? null : this.delete(study, participant, 'withdrawn', at);
   }
 
-  /**
-   * Deletes what is past its retention date, each participant separately; `onFault` is called with each failed
-   * deletion.
-   */
   deleteExpired(now: number, onFault: DeletionFault): readonly Receipt[] {
     return this.#parts.places.expired(now).flatMap((place) => {
       try {

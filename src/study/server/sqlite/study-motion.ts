@@ -1,22 +1,8 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { Refusal } from '../../model/progress/refusal';
+import type { MotionFile, MotionStorage, PackedMotion } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
-
-/** A recording of tracking frames in the format of recording.ts. */
-export interface MotionFile {
-  readonly participant: string;
-  /** The id of the trial's record. */
-  readonly trial: string;
-  readonly text: string;
-}
-
-/** A recording in its stored form. */
-export interface PackedMotion {
-  readonly participant: string;
-  readonly trial: string;
-  readonly gzipped: Uint8Array;
-}
 
 export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionFile => ({
   participant,
@@ -27,8 +13,7 @@ export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionF
 /** The limit of compressed recordings per participant [bytes]. */
 export const maxMotionPerParticipant = 256 * 2 ** 20;
 
-/** The recordings of trials of participants who consented to them. */
-export class StudyMotion {
+export class StudyMotion implements MotionStorage {
   readonly #database: StudyDatabase;
   readonly #places: StudyPlaces;
 
@@ -65,7 +50,6 @@ export class StudyMotion {
     });
   }
 
-  /** Returns the recordings of one participant, or of all. */
   all(study: string, participant?: string): readonly PackedMotion[] {
     const packed = 'SELECT participant, trial, gzipped FROM motion WHERE study = ?';
     return participant === undefined

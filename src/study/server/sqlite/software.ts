@@ -1,8 +1,6 @@
 import type { Software } from 'threepoint-http';
+import type { ServedSoftware } from '../study-storage';
 import type { StudyDatabase } from './study-database';
-
-/** Software and the time since which it served the studies, in seconds since 1970. */
-export type ServedSoftware = Software & { readonly since: number };
 
 /** The software with which this server has served its studies. */
 export class StudySoftware {

@@ -2,7 +2,8 @@ import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import { scheduleFor } from '../../model/plan/schedule';
 import { isLater, type Progress, resumed, sinceReport } from '../../model/progress/progress';
 import { Refusal } from '../../model/progress/refusal';
-import { newCode, normalisedCode } from './schema';
+import { newCode, normalisedCode } from '../codes';
+import type { PlaceStorage } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlans } from './study-plans';
 
@@ -27,7 +28,7 @@ const hashOf = (secret: string): Buffer => createHash('sha256').update(secret).d
 const newToken = (): string => randomBytes(32).toString('base64url');
 
 /** The places of a study's participants: invitations, tokens, withdrawal codes and progress. */
-export class StudyPlaces {
+export class StudyPlaces implements PlaceStorage {
   readonly #database: StudyDatabase;
   readonly #plans: StudyPlans;
 
@@ -36,7 +37,6 @@ export class StudyPlaces {
     this.#plans = plans;
   }
 
-  /** Returns the place of a participant; throws a Refusal for an unknown one. */
   get(study: string, participant: string): PlaceRow {
     const row = this.#row(study, participant);
     if (!row) throw new Refusal('unknown', `the study "${study}" has no participant ${participant}`);
@@ -101,7 +101,6 @@ export class StudyPlaces {
     });
   }
 
-  /** If nothing is recorded yet, the withdrawal code becomes void too, because its owner may never have received it. */
   release(study: string, participant: string): void {
     this.get(study, participant);
     this.#database.run(
@@ -134,7 +133,6 @@ export class StudyPlaces {
     );
   }
 
-  /** Stores the progress of a participant unless a later report is stored; throws a Refusal before consent. */
   saveProgress(study: string, participant: string, progress: unknown, at: number): void {
     const { simulated } = this.#plans.get(study);
     const schedule = scheduleFor(this.#plans.planFor(study, participant), participant);
@@ -158,7 +156,6 @@ export class StudyPlaces {
     });
   }
 
-  /** Returns the progress as it was reported; with `now`, its clock has run on since the report. */
   progress(study: string, participant: string, now?: number): Progress | null {
     const { progress, progress_at } = this.get(study, participant);
     if (progress === null) return null;
