@@ -9,7 +9,7 @@ import type { Probe } from '../src/page/shell/probe';
 import { drawSeldom, screenshot } from './draw-seldom';
 import { driveTime, endDrivenTime, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
-import { provideServers, type Serve } from './study-server';
+import { provideServers, type Serve } from './study/study-server';
 
 export { expect };
 

@@ -6,7 +6,7 @@ import type { VoicesProbe } from '../src/page/ball/voices/voices';
 import { drawSeldom } from './draw-seldom';
 import { writeFakeVoice } from './fake-voice';
 import { joinedRoom, probe } from './page-fixture';
-import { provideServers, type Serve } from './study-server';
+import { provideServers, type Serve } from './study/study-server';
 
 export interface Talker {
   readonly page: Page;

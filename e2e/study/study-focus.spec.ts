@@ -1,5 +1,5 @@
 import { expect } from '../page-fixture';
-import { test } from '../study-participant';
+import { test } from './study-participant';
 
 test('the keyboard stays within the card when another question replaces one that was answered @full', async ({
   page,

@@ -2,8 +2,8 @@ import { readFileSync } from 'node:fs';
 import type { Locator, Page } from '@playwright/test';
 import { english } from '../../src/study/model/phrases/english';
 import { expect, keepPicture } from '../page-fixture';
-import { test } from '../study-participant';
-import { experimenter } from '../study-server';
+import { test } from './study-participant';
+import { experimenter } from './study-server';
 
 test.use({ viewport: { width: 1280, height: 800 } });
 

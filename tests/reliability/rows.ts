@@ -38,7 +38,7 @@ export const faultRows = {
     inject: '`visible-blurred` for 10 s (system menu)',
     sees: 'Drawing continues; hands rest; input is ignored',
     target: '0 throws, 0 shots',
-    tests: ['tests/reliability/blurred.test.ts', 'tests/threepoint/xr/tracked-session.test.ts'],
+    tests: ['tests/games/blurred.test.ts', 'tests/threepoint/xr/tracked-session.test.ts'],
     manual: 'Draw the bow, open the system menu, press the trigger in it, close it: no arrow has flown.',
   },
   hidden: {
@@ -46,7 +46,7 @@ export const faultRows = {
     sees: 'Others see “away” within 3 s; play resumes',
     target: 'within 1 s of the return',
     shows: ['“away” when it does not say so'],
-    tests: ['tests/reliability/hidden.test.ts', 'tests/rooms/room/room.test.ts', 'e2e/page/entering-vr.spec.ts'],
+    tests: ['tests/page/ball/hidden.test.ts', 'tests/rooms/room/room.test.ts', 'e2e/page/entering-vr.spec.ts'],
     manual: 'Take the headset off for twenty seconds in a match: others see “away”, then you again.',
   },
   controllers: {
@@ -54,7 +54,7 @@ export const faultRows = {
     sees: 'Ball and bow are dropped, or follow the handedness',
     target: '0 stuck, 0 thrown or shot',
     tests: [
-      'tests/reliability/controllers.test.ts',
+      'tests/games/controllers.test.ts',
       'tests/threepoint/xr/tracked-session.test.ts',
       'e2e/page/archery.spec.ts',
     ],
@@ -78,7 +78,7 @@ export const faultRows = {
     target: '0 poses between the two places',
     shows: ['bodies between the two places'],
     tests: [
-      'tests/reliability/space-reset.test.ts',
+      'tests/threepoint/core/estimation/space-reset.test.ts',
       'tests/rooms/client/remote-players.test.ts',
       'tests/threepoint/xr/tracked-session.test.ts',
     ],
@@ -89,7 +89,7 @@ export const faultRows = {
     sees: 'Arrows, balls and bodies stay the same',
     target: 'paths within 1 mm; throws within 10 cm/s',
     shows: ['throws of a hand', 'joints'],
-    tests: ['tests/reliability/rates.test.ts', 'tests/games/ball/gestures.test.ts'],
+    tests: ['tests/games/rates.test.ts', 'tests/games/ball/gestures.test.ts'],
     manual: 'Change the headset’s refresh rate: the built-in archer still scores 50.',
   },
   people: {
@@ -114,7 +114,7 @@ export const faultRows = {
     target: 'turns about the head: 0 mm; contrast 4.5 : 1',
     tests: [
       'e2e/page/desktop.spec.ts',
-      'tests/reliability/comfort.test.ts',
+      'tests/page/scene/vignette.test.ts',
       'tests/threepoint/xr/tracked-session.test.ts',
       'tests/page/archery/boards.test.ts',
       'tests/page/archery/archery-captions.test.ts',
@@ -165,7 +165,7 @@ export const faultRows = {
     target: 'at most 0.5 s ahead; every frame once, in order',
     shows: ['archery, -20 s and back'],
     tests: [
-      'tests/reliability/clock-steps.test.ts',
+      'tests/page/shell/clock-steps.test.ts',
       'tests/threepoint/core/tracking/page-clock.test.ts',
       'tests/rooms/client/clock-sync.test.ts',
     ],
@@ -192,7 +192,7 @@ export const faultRows = {
     sees: 'Nothing grows after the first round',
     target: 'GPU objects, listeners, workers +0; heap objects +10 % at most',
     shows: ['listeners, workers', 'objects kept'],
-    tests: ['e2e/page/long-run.spec.ts', 'tests/reliability/long-run.test.ts'],
+    tests: ['e2e/page/long-run.spec.ts', 'tests/page/archery/long-run.test.ts'],
     manual: 'Repeat it in the headset and read its memory with the remote inspector.',
   },
 } as const satisfies Readonly<Record<string, Row>>;
@@ -218,7 +218,7 @@ export const promiseRows = {
     target: '0 elements made; 0 formulas in a CSV',
     tests: [
       'tests/reliability/text.test.ts',
-      'e2e/rooms/foreign-text.spec.ts',
+      'e2e/study/foreign-text.spec.ts',
       'tests/rooms/protocol/messages.test.ts',
       'tests/study/model/tidy-csv.test.ts',
     ],

@@ -12,16 +12,16 @@ import {
 import { distance } from 'threepoint/math';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ArcheryPlay, probeOf } from '../../src/page/archery/archery-play';
-import { BallPlay } from '../../src/page/ball/match/ball-play';
-import { createFrameLoop } from '../../src/page/shell/frame-loop';
-import { FrameTiming } from '../../src/page/shell/session/frame-timing';
-import { Recorder } from '../../src/page/studio/recorder';
-import type { PlayedStep } from '../../src/study/model/plan/schedule';
-import { PlayedTrial } from '../../src/study/participant/trial/study-trial';
-import { actorLoopSeconds } from '../../src/threepoint/core/tracking/actor-motion';
-import { studiedArcher } from '../study/participant/played-round';
-import { reportFigures } from './report-figures';
+import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createFrameLoop } from '../../../src/page/shell/frame-loop';
+import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
+import { Recorder } from '../../../src/page/studio/recorder';
+import type { PlayedStep } from '../../../src/study/model/plan/schedule';
+import { PlayedTrial } from '../../../src/study/participant/trial/study-trial';
+import { actorLoopSeconds } from '../../../src/threepoint/core/tracking/actor-motion';
+import { reportFigures } from '../../reliability/report-figures';
+import { studiedArcher } from '../../study/participant/played-round';
 
 const frameMs = 1000 / 72;
 /** The steps of the page's clock [s], each reverted 4 s later; the short ones run in the full suite only. */

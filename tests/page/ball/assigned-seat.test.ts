@@ -8,7 +8,7 @@ import { visitor } from '../../rooms/client/people';
 import { until } from '../../rooms/server/running-relay';
 import { forkServer } from '../../server/server-child';
 import { experimenterToken } from '../../server/started-server';
-import { paperPlan } from '../model/studies';
+import { paperPlan } from '../../study/model/studies';
 
 const trial = { step: 'ball/1/trial-1', run: 1 };
 const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
