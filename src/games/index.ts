@@ -2,7 +2,7 @@
 export type { Launch } from './ballistics';
 export { fallTime, positionAt, velocityAt } from './ballistics';
 export { pulseBothHands } from './both-hands-pulse';
-export { ballInPalm } from './fist';
+export { ballInPalm, wristAround } from './fist';
 export type { Match } from './match';
 export { createMatch } from './match';
 export type { SimulatedInput } from './simulated-input';

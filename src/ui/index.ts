@@ -18,7 +18,7 @@ export type { FileKind } from './limited-files';
 export { fileNameOf, readLimited } from './limited-files';
 export type { MouseAim } from './mouse-aim';
 export { createMouseAim, isTouchFirst } from './mouse-aim';
-export type { Notices } from './notices';
+export type { Notice, Notices } from './notices';
 export { createNotices } from './notices';
 export { pageFolder } from './page-folder';
 export { loadPreviewPlan, storePreviewPlan } from './preview-plan';

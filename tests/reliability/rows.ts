@@ -29,6 +29,7 @@ export const faultRows = {
     target: 'no jump over 5 cm a frame (60 Hz)',
     tests: [
       'tests/reliability/lost-hands.test.ts',
+      'tests/rooms/protocol/pose-codec.test.ts',
       'tests/threepoint/core/estimation/complete-hands.test.ts',
       'e2e/page/hands.spec.ts',
     ],

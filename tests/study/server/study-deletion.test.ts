@@ -2,8 +2,9 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
 import { normalisedCode } from '../../../src/study/server/storage/schema';
+import { completed } from '../model/studies';
 import { now } from './running-studies';
-import { completed, withPaperStudy } from './stored-studies';
+import { withPaperStudy } from './stored-studies';
 
 const day = 86_400;
 

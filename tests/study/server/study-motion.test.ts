@@ -1,8 +1,8 @@
 import { describe, expect, test } from 'vitest';
 import { unpacked } from '../../../src/study/server/storage/study-motion';
-import { paperPlan } from '../model/studies';
+import { completed, paperPlan } from '../model/studies';
 import { now } from './running-studies';
-import { completed, opened, withPaperStudy } from './stored-studies';
+import { opened, withPaperStudy } from './stored-studies';
 
 describe('tracked frames', () => {
   test('are kept with consent to them alone', () => {

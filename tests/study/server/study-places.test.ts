@@ -1,7 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
+import { completed } from '../model/studies';
 import { now } from './running-studies';
-import { completed, withPaperStudy } from './stored-studies';
+import { withPaperStudy } from './stored-studies';
 
 describe('a place in the study', () => {
   test('belongs to the first device that claims it', () => {

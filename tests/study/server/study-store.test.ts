@@ -6,9 +6,9 @@ import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { begin, reported } from '../../../src/study/model/progress/progress';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { directoryWith } from '../../temporary-directory';
-import { paperPlan, session } from '../model/studies';
+import { completed, paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
-import { asSent, completed, opened, withPaperStudy } from './stored-studies';
+import { asSent, opened, withPaperStudy } from './stored-studies';
 
 describe('the store', () => {
   test('gives back what it was given, after being closed and opened', () => {
