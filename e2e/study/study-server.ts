@@ -13,7 +13,7 @@ import { recordVersion } from '../../src/study/model/records/study-record';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
-const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
+const atRoot = (path: string) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
 
 /**
  * Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes.
