@@ -1,4 +1,6 @@
 import type { Vector3 } from 'three';
+import type { FingerName, MutableHandShape } from 'threepoint/core';
+import { dot, forward, normalise, type Pose, rotate, type Side, subtract, up, type Vec3, vec3 } from 'threepoint/math';
 import { ballInPalm, wristAround } from 'threepoint-games';
 import { bowInHand } from 'threepoint-games/archery';
 import {
@@ -15,12 +17,8 @@ import { bodyLabels } from '../../../src/threepoint/avatar/built-in-body-labels'
 import type { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-object';
 import { fingerBoneNames } from '../../../src/threepoint/core/body/finger-bone-names';
 import { distanceToBall, distanceToRod } from '../../../src/threepoint/core/body/grasp';
-import { type FingerName, fingerNames, type MutableHandShape } from '../../../src/threepoint/core/body/hand-shape';
+import { fingerNames } from '../../../src/threepoint/core/body/hand-shape';
 import { createIk, createWithNetwork } from '../../../src/threepoint/core/estimation/estimators';
-import type { Pose } from '../../../src/threepoint/core/math/pose';
-import { rotate } from '../../../src/threepoint/core/math/quat';
-import type { Side } from '../../../src/threepoint/core/math/side';
-import { dot, forward, normalise, subtract, up, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { hangingThrower } from '../../games/ball/hanging-thrower';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel } from '../core/estimation/shipped-models';

@@ -1,9 +1,7 @@
+import { add, distance, fromAxisAngle, multiply, rotate, up, type Vec3, vec3, wrapAngle } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import type { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
-import { wrapAngle } from '../../../src/threepoint/core/math/angle';
-import { fromAxisAngle, multiply, rotate } from '../../../src/threepoint/core/math/quat';
-import { add, distance, up, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { yawOf } from '../../../src/threepoint/core/tracking/heading';
 import { createLegs, proportions, standing, walking } from './walking-person';
 

@@ -1,15 +1,12 @@
+import { actorFrame, type BoneMap, type BoneName, defaultCalibration, UnknownBonesError } from 'threepoint/core';
+import { distance, type Vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { gltfFaults } from '../../../src/threepoint/avatar/file/validate-gltf';
 import { boneNode } from '../../../src/threepoint/avatar/humanoid/needed-bones';
 import { withNamedBones } from '../../../src/threepoint/avatar/humanoid/write-bone-names';
 import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import type { BoneMap, BoneName } from '../../../src/threepoint/core/humanoid/bones';
-import { UnknownBonesError } from '../../../src/threepoint/core/humanoid/unknown-bones-error';
-import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { poseOf } from '../core/estimation/drawn';
 import { builtRig, rightArm } from './built-rig';
 import { changed } from './glb';

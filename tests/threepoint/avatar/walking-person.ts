@@ -1,7 +1,6 @@
+import { fromAxisAngle, identity, up, vec3 } from 'threepoint/math';
 import { LegPosture, type LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { up, vec3 } from '../../../src/threepoint/core/math/vec3';
 
 export const eyeHeight = 1.6;
 export const proportions: LegProportions = {

@@ -1,8 +1,6 @@
+import { fromAxisAngle, identity, type Pose, transformPose, type Vec3, vec3 } from 'threepoint/math';
 import { ArcheryGestures } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
-import { type Pose, transformPose } from '../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { bareHand, controller, type Input, trackedHeadset } from './fake-headset';
 
 const at = (x: number, y: number, z: number, orientation = identity): Pose<'floor'> => ({

@@ -1,7 +1,6 @@
-import type { JointPoses } from '../../../../src/threepoint/core/body/forward-kinematics';
-import { jointNames, parentOf } from '../../../../src/threepoint/core/body/joints';
-import type { Skeleton } from '../../../../src/threepoint/core/body/skeleton';
-import { distance, length } from '../../../../src/threepoint/core/math/vec3';
+import { type JointPoses, jointNames, type Skeleton } from 'threepoint/core';
+import { distance, length } from 'threepoint/math';
+import { parentOf } from '../../../../src/threepoint/core/body/joints';
 
 /** Returns by how much [m] a bone of these joints is longer or shorter than in the skeleton, at most. */
 export const boneStretch = (joints: JointPoses, { restOffsets }: Skeleton): number =>

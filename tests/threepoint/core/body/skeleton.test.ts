@@ -1,10 +1,9 @@
 import fc from 'fast-check';
+import { forwardKinematics, jointNames, skeletonFromCalibration } from 'threepoint/core';
+import { add, distance, fromAxisAngle, identity, length, type Quat, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
-import { jointNames, parentOf } from '../../../../src/threepoint/core/body/joints';
-import { armBones, armLength, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { fromAxisAngle, identity, type Quat } from '../../../../src/threepoint/core/math/quat';
-import { add, distance, length, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { parentOf } from '../../../../src/threepoint/core/body/joints';
+import { armBones, armLength } from '../../../../src/threepoint/core/body/skeleton';
 import { evenly, rotation, seed, vector } from '../arbitraries';
 import { boneStretch } from './bone-stretch';
 

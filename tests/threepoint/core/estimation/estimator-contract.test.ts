@@ -1,10 +1,8 @@
 import fc from 'fast-check';
+import { jointNames, skeletonFromCalibration } from 'threepoint/core';
+import { add, distance, fromAxisAngle, rotate, type TrackedPose, transformPoint, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { type JointName, jointNames } from '../../../../src/threepoint/core/body/joints';
-import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { type TrackedPose, transformPoint } from '../../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, rotate } from '../../../../src/threepoint/core/math/quat';
-import { add, distance, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
 import { isNightly } from '../../../nightly';
 import { rotation, standpoint, vector } from '../arbitraries';
 import { boneStretch } from '../body/bone-stretch';

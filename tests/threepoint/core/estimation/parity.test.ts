@@ -1,7 +1,8 @@
+import { chestSpaceBody, estimatedJoints, skeletonFromCalibration } from 'threepoint/core';
+import { distance, type Side, sides, subtract, type Vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { tiltRotation } from '../../../../src/threepoint/core/body/hand-tilt';
-import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
-import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
 import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { chestFeatureCount, chestFeatures } from '../../../../src/threepoint/core/estimation/networks/chest-features';
@@ -12,8 +13,6 @@ import {
   estimateHandTilts,
   makeHandTiltsState,
 } from '../../../../src/threepoint/core/estimation/online-calibration/estimate-hand-tilts';
-import { type Side, sides } from '../../../../src/threepoint/core/math/side';
-import { distance, subtract, type Vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { floorFromHeading } from '../../../../src/threepoint/core/tracking/heading';
 import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
 
