@@ -32,9 +32,11 @@ const entriesOf = (folder, { exports = {} }) =>
 
 const entryRules = [...manifests].map(([folder, manifest]) => ({
   name: `entries-of-${manifest.name}`,
-  comment: `Other packages import ${manifest.name} by the entries that the exports of its package.json name.`,
+  comment:
+    `Other packages and their tests import ${manifest.name} by the entries that the exports of its package.json ` +
+    `name; its own tests reach into it.`,
   severity: 'error',
-  from: { path: '^(src|server)/', pathNot: `^${folder}/` },
+  from: { path: '^(src|server|tests|e2e)/', pathNot: `^(${folder}|(tests|e2e)/${folder.replace('src/', '')})/` },
   to: { path: `^${folder}/`, pathNot: `^(${entriesOf(folder, manifest).join('|') || '-'})$|\\.css$` },
 }));
 

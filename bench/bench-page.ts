@@ -1,7 +1,6 @@
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from '@playwright/test';
-import { createPageHandler } from '../server/page-handler';
-import { serve } from '../src/http/web-server';
+import { servePage } from '../tests/server/served-page';
 
 /** Folders of built pages: the real one, and the bench's own. */
 export const builtPages = { real: builtIn('dist'), bench: builtIn('.cache/bench') } as const;
@@ -17,18 +16,15 @@ export async function withServed<T>(
   measure: (address: string, port: number) => Promise<T>,
   isolated = folder === builtPages.bench,
 ): Promise<T> {
-  const page = createPageHandler(folder);
-  const server = await serve(
-    (request, response) => {
+  const server = await servePage(folder, {
+    before(_, response) {
       // Without isolation performance.now() moves in steps of 0.1 ms.
       if (isolated) {
         response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
         response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
       }
-      page(request, response);
     },
-    { host: '127.0.0.1', port: 0 },
-  );
+  });
   try {
     return await measure(`http://localhost:${server.port}`, server.port);
   } finally {

@@ -1,17 +1,13 @@
-import { mkdtempSync, rmSync } from 'node:fs';
 import { createServer } from 'node:https';
 import type { AddressInfo } from 'node:net';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { certificateFor } from '../server/certificate';
+import { testCredentials } from '../tests/server/test-credentials';
 
 /**
  * Serves one avatar under this name, from another origin than the page's, to all origins; `asked` lists the requests.
  */
 export async function serveCrossOrigin(file: ArrayBuffer, name: string) {
-  const folder = mkdtempSync(join(tmpdir(), 'threepoint-elsewhere-'));
   const asked: string[] = [];
-  const server = createServer(await certificateFor([], folder, new Date()), ({ method, url, headers }, response) => {
+  const server = createServer(await testCredentials(), ({ method, url, headers }, response) => {
     asked.push(`${method} ${url}${headers.authorization ?? ''}`);
     const found = url === `/avatars/${name}`;
     response.writeHead(found ? 200 : 404, { 'access-control-allow-origin': '*', 'content-type': 'model/gltf-binary' });
@@ -26,7 +22,6 @@ export async function serveCrossOrigin(file: ArrayBuffer, name: string) {
     async close() {
       server.closeAllConnections();
       await new Promise((resolve) => server.close(resolve));
-      rmSync(folder, { recursive: true, force: true });
     },
   };
 }

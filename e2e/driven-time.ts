@@ -1,5 +1,7 @@
 import type { Page } from '@playwright/test';
-import type { Probe } from '../src/page/shell/probe';
+
+/** The state of the page as `window.threepoint.probe()` returns it. */
+export type Probe = ReturnType<NonNullable<Window['threepoint']>['probe']>;
 
 /** The default step of the page's clock per frame [ms]: a device at 40 Hz. */
 const usualStepMs = 25;

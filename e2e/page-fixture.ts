@@ -2,14 +2,11 @@ import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
 import type { EstimatorName } from 'threepoint/core';
-import { createPageHandler } from '../server/page-handler';
-import { serve } from '../src/http/web-server';
-import type { BallProbe } from '../src/page/ball/match/ball-probe';
-import type { Probe } from '../src/page/shell/probe';
+import { servePage } from '../tests/server/served-page';
 import { drawSeldom, screenshot } from './draw-seldom';
-import { driveTime, endDrivenTime, rest } from './driven-time';
+import { driveTime, endDrivenTime, type Probe, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
-import { provideServers, type Serve } from './study-server';
+import { provideServers, type Serve } from './study/study-server';
 
 export { expect };
 
@@ -262,7 +259,7 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
     // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
     async ({}, use) => {
       const dist = fileURLToPath(new URL('../dist', import.meta.url));
-      const server = await serve(createPageHandler(dist), { host: '127.0.0.1', port: 0 });
+      const server = await servePage(dist);
       await use(`http://localhost:${server.port}`);
       await server.close();
     },
@@ -335,8 +332,11 @@ export async function overlap(page: Page, one: string, other: string): Promise<b
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
+/** The state of a game that the page plays, as its probe reports it. */
+export type GameProbe<Name extends string> = Extract<Probe['game'], { readonly name: Name }>;
+
 /** Returns the ball game of a page; throws if the page plays none. */
-export async function ballMatch(page: Page): Promise<BallProbe> {
+export async function ballMatch(page: Page): Promise<GameProbe<'ball'>> {
   const { game } = await probe(page);
   if (game?.name !== 'ball') throw new Error('the page plays no ball game');
   return game;

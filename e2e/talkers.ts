@@ -2,11 +2,10 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test as base, chromium, expect, type Page } from '@playwright/test';
-import type { VoicesProbe } from '../src/page/ball/voices/voices';
 import { drawSeldom } from './draw-seldom';
 import { writeFakeVoice } from './fake-voice';
-import { joinedRoom, probe } from './page-fixture';
-import { provideServers, type Serve } from './study-server';
+import { type GameProbe, joinedRoom, probe } from './page-fixture';
+import { provideServers, type Serve } from './study/study-server';
 
 export interface Talker {
   readonly page: Page;
@@ -112,7 +111,7 @@ export const test = base.extend<VoicesFixtures, { voiceFile: string }>({
   },
 });
 
-export const voicesOf = async (page: Page): Promise<VoicesProbe> => {
+export const voicesOf = async (page: Page): Promise<NonNullable<GameProbe<'ball'>['voices']>> => {
   const { game } = await probe(page);
   if (game?.name !== 'ball') throw new Error('the page plays no ball game');
   return game.voices;

@@ -1,5 +1,5 @@
-// npm run tool -- reliability [--unit | --long | --redraw]: runs the tests of every row of tests/reliability/rows.ts
-// and writes their figures to docs/reliability.md. --unit: without a browser. --long: also twenty minutes of play.
+// npm run tool -- reliability [--unit | --long | --redraw]: runs the tests that report figures of
+// docs/reliability.json, and writes docs/reliability.md. --unit: without a browser. --long: also twenty minutes of play.
 // --redraw: writes the page from the last figures.
 import { ensureInstalled } from './installation.mjs';
 import { main, runProgram } from './run-command.mjs';

@@ -72,7 +72,7 @@ export const steps = [
 ];
 
 /** Returns the selected steps: all, those from one on, or one. */
-export function chosenSteps({ from, only } = {}) {
+function chosenSteps({ from, only } = {}) {
   if (from !== undefined && only !== undefined) throw new SetupError('renew: either --from or --only');
   const name = from ?? only;
   if (name === undefined) return steps;
@@ -93,7 +93,7 @@ const commandLine = (script, ...options) =>
     .join(' ');
 
 /** Returns the command line of a step. */
-export const commandLineOf = ({ script, options }, mocap) => commandLine(script, '--mocap', mocap, ...options);
+const commandLineOf = ({ script, options }, mocap) => commandLine(script, '--mocap', mocap, ...options);
 
 function options() {
   return readOptions('renew', usage, { texts: ['mocap', 'from', 'only'], flags: ['list'] }, ({ mocap, list }) => {

@@ -6,7 +6,7 @@ import { root } from './run-command.mjs';
 export const reports = join(root, 'artifacts/test-reports');
 
 /** Reads a report in JUnit's form, as pytest and Playwright write it. */
-export function readJUnit(text) {
+function readJUnit(text) {
   const cases = [...text.matchAll(/<testcase\s([^>]*?)(?:\/>|>(.*?)<\/testcase>)/gs)];
   const withTag = (tag) => cases.filter(([, , body]) => new RegExp(`<(${tag})[\\s>/]`).test(body ?? ''));
   const attribute = (attributes, name) => new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
@@ -21,7 +21,7 @@ export function readJUnit(text) {
  * Reads Vitest's own report of the tests that are tagged `full`, or of all others. The runner counts tests that its
  * filter left out as skipped.
  */
-export function readVitest(text, isFull) {
+function readVitest(text, isFull) {
   const files = JSON.parse(text).testResults.map((file) => ({
     ...file,
     name: relative(root, file.name).replaceAll(sep, '/'),

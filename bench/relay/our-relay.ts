@@ -3,9 +3,9 @@ import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
 import type { RoomKind } from 'threepoint-rooms/room';
 import { relayConfigurationFrom } from 'threepoint-rooms/settings';
 import { shippedRoomKinds } from '../../server/room-kinds';
-import { serve } from '../../src/http/web-server';
 import { maxSeats } from '../../src/rooms/protocol/messages';
 import { createRelay } from '../../src/rooms/server/relay';
+import { serve } from '../../tests/http/serve';
 import { countingKind, countingRoomKind } from '../../tests/rooms/room/counting-game';
 import { answerAsRelay } from './conversation';
 
@@ -17,8 +17,6 @@ const connectionLimiter = new ConnectionLimiter({
 const kinds = new Map<string, RoomKind>([...shippedRoomKinds(process.env), [countingKind, countingRoomKind(maxSeats)]]);
 const relay = createRelay(configuration, configuration.secret ?? '', connectionLimiter, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
-  host: '127.0.0.1',
-  port: 0,
   upgrade: relay.upgrade,
   connectionLimiter,
 });

@@ -4,7 +4,7 @@ import { reportFigures } from '../../tests/reliability/report-figures';
 import { processesOf } from '../browser-processes';
 import { drawSeldom } from '../draw-seldom';
 import { ballMatch, collectErrors, expect, joinedRoom, probe } from '../page-fixture';
-import { test } from '../study-participant';
+import { test } from '../study/study-participant';
 
 const hour = 3_600_000;
 

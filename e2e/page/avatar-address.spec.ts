@@ -4,7 +4,7 @@ import { changed, mannequin } from '../../tests/threepoint/avatar/glb';
 import { serveCrossOrigin } from '../cross-origin-server';
 import { drawSeldom } from '../draw-seldom';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
-import { serveStudies } from '../study-server';
+import { serveStudies } from '../study/study-server';
 
 test.use({ viewport: { width: 800, height: 500 } });
 

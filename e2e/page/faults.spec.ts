@@ -1,7 +1,6 @@
 import { fileURLToPath } from 'node:url';
-import { createPageHandler } from '../../server/page-handler';
-import { serve } from '../../src/http/web-server';
 import { reportFigures } from '../../tests/reliability/report-figures';
+import { servePage } from '../../tests/server/served-page';
 import { drawEveryFrame } from '../draw-seldom';
 import { emulatedHeadset, frames } from '../emulated-headset';
 import { enterVr, expect, freshTest, open, probe, test } from '../page-fixture';
@@ -177,15 +176,12 @@ freshTest(
   'cross-origin isolated and without WebXR: the same page, and a sentence @full',
   async ({ page, complaints }) => {
     complaints.allow(/asked http:\/\/localhost/);
-    const handler = createPageHandler(fileURLToPath(new URL('../../dist', import.meta.url)));
-    const server = await serve(
-      (request, response) => {
+    const server = await servePage(fileURLToPath(new URL('../../dist', import.meta.url)), {
+      before(_, response) {
         response.setHeader('cross-origin-opener-policy', 'same-origin');
         response.setHeader('cross-origin-embedder-policy', 'require-corp');
-        handler(request, response);
       },
-      { host: '127.0.0.1', port: 0 },
-    );
+    });
     await page.addInitScript(() => Object.defineProperty(Navigator.prototype, 'xr', { get: () => undefined }));
     try {
       await page.goto(`http://localhost:${server.port}/?panel=off&quality=low&estimator=learned`);

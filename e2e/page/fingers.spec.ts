@@ -10,13 +10,6 @@ const before = {
   right: { position: [0.25, 1.2, -0.35], orientation: [0, 0, 0, 1] },
 } as const;
 
-/** Returns the position of a fingertip of the drawn avatar [m]. */
-async function tip(page: Page, side: 'left' | 'right', finger: Finger) {
-  const found = (await probe(page)).avatar.fingertips[side][finger];
-  if (!found) throw new Error(`the avatar has no ${side} ${finger}`);
-  return found;
-}
-
 async function worn(page: Page): Promise<EmulatedHeadset> {
   const headset = await openWithHeadset(page, 'estimator=ik');
   await enterVr(page);
@@ -25,25 +18,6 @@ async function worn(page: Page): Promise<EmulatedHeadset> {
   for (const hand of ['leftHand', 'rightHand']) await settledJoint(page, hand);
   return headset;
 }
-
-/** How far the tips of thumb and index finger are apart [cm]. */
-const gap = async (page: Page, side: 'left' | 'right') =>
-  100 * distance(await tip(page, side, 'thumb'), await tip(page, side, 'index'));
-
-test('a pinch of a tracked hand closes the avatar’s thumb and index finger on that side @full', async ({ page }) => {
-  const headset = await worn(page);
-  await headset.useInput('hand');
-  for (const side of ['left', 'right'] as const) {
-    const other = side === 'left' ? 'right' : 'left';
-    await headset.pinch(other, 0);
-    await headset.pinch(side, 1);
-    // From the middle of one tip’s roundness to the other’s: two fingers that touch.
-    await expect.poll(() => gap(page, side), { message: `${side}, pinching` }).toBeLessThan(2.2);
-    await expect.poll(() => gap(page, other), { message: `${other}, open` }).toBeGreaterThan(3.5);
-  }
-  await headset.pinch('right', 0);
-  await headset.useInput('controller');
-});
 
 /** How far a finger reaches from its wrist [cm]: wherever the hand is just going. */
 async function reach(page: Page, side: 'left' | 'right', finger: Finger): Promise<number> {

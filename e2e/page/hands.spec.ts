@@ -55,61 +55,6 @@ test('hands instead of controllers: the wrists are those of the tracked hands, a
   }
 });
 
-/** The wrist's path, frame by frame, while the hand is lost and found. */
-interface Step {
-  /** Seconds since the step before, by the frames' own clock: a late frame is drawn late and computed for its time. */
-  readonly elapsed: number;
-  /** Metres since the step before. */
-  readonly moved: number;
-  /** Whether the hand was seen. */
-  readonly seen: boolean;
-}
-
-test('a lost hand eases to rest and comes back without a jump', async ({ page }) => {
-  const headset = await openWithHeadset(page, 'estimator=ik');
-  await enterVr(page);
-  await headset.place(placements[0] as Placement);
-  await expectHandsOnControllers(page, headset);
-  const held = await joint(page, 'leftHand');
-
-  const path = await page.evaluate(
-    () =>
-      new Promise<Step[]>((resolve) => {
-        const steps: Step[] = [];
-        let last: { readonly time: number; readonly at: readonly number[] } | null = null;
-        let phase = 'held';
-        let since = performance.now();
-        const next = (time: number) => {
-          const shown = window.threepoint?.probe();
-          const at = shown?.avatar.joints.leftHand;
-          const frameTime = shown?.tracking?.time;
-          if (at && frameTime !== undefined && frameTime !== last?.time) {
-            if (last) {
-              const moved = Math.hypot(...at.map((x, axis) => x - (last?.at[axis] ?? 0)));
-              steps.push({ elapsed: frameTime - last.time, moved, seen: shown.tracking?.leftHand !== null });
-            }
-            last = { time: frameTime, at };
-          }
-          const { left } = window.emulatedDevice.controllers;
-          const waited = time - since;
-          if (phase === 'held' && waited > 200) [phase, since, left.connected] = ['lost', time, false];
-          else if (phase === 'lost' && waited > 1000) [phase, since, left.connected] = ['back', time, true];
-          else if (phase === 'back' && waited > 800) return resolve(steps);
-          requestAnimationFrame(next);
-        };
-        requestAnimationFrame(next);
-      }),
-  );
-  expect(path.filter(({ seen }) => !seen).length, 'frames without the hand').toBeGreaterThan(10);
-  const travelled = path.reduce((sum, { moved }) => sum + moved, 0);
-  expect(travelled, 'the hand goes to rest and back').toBeGreaterThan(0.1);
-  // 5 cm in a frame of 60 Hz; a slower frame may carry the hand as much further as it lasts longer.
-  const jumps = path.map(({ moved, elapsed }) => moved / Math.max(1, elapsed * 60));
-  expect(Math.max(...jumps), 'the longest step of the wrist [m]').toBeLessThan(0.05);
-  await expectHandsOnControllers(page, headset);
-  expect(distance(await joint(page, 'leftHand'), held)).toBeLessThan(0.001);
-});
-
 test('both hands lost: the body stays whole, the head still moves', async ({ page }) => {
   const headset = await openWithHeadset(page, 'estimator=learned');
   await enterVr(page);

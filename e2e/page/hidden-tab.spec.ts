@@ -4,7 +4,7 @@ import { startTabbedBrowser } from '../background-tab';
 import { drawSeldom } from '../draw-seldom';
 import { countsOf, megabytes } from '../memory-usage';
 import { ballMatch, collectErrors, expect, joinedRoom, newPage, probe } from '../page-fixture';
-import { test } from '../study-participant';
+import { test } from '../study/study-participant';
 
 /** Returns the presence of everyone in the match as this page shows it, by name. */
 const presences = async (page: Page) =>

@@ -4,9 +4,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { test as base, type Page } from '@playwright/test';
-import { createPageHandler } from '../../server/page-handler';
-import { serve } from '../../src/http/web-server';
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
+import { servePage } from '../../tests/server/served-page';
 import { holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { collectErrors, enterVr, expect, keepPicture, newPage, probe } from '../page-fixture';
@@ -22,13 +21,8 @@ interface OurServer extends StaticServer {
 
 /** Our own server with the page alone, as `npm start` serves it. */
 async function serveOurs(folder: string, port = 0): Promise<OurServer> {
-  const page = createPageHandler(folder);
   const asked: string[] = [];
-  const listener: typeof page = (request, response) => {
-    asked.push(request.url ?? '');
-    page(request, response);
-  };
-  const server = await serve(listener, { host: '127.0.0.1', port });
+  const server = await servePage(folder, { port, before: ({ url = '' }) => void asked.push(url) });
   return { address: `http://localhost:${server.port}/`, port: server.port, asked, close: () => server.close() };
 }
 

@@ -1,8 +1,8 @@
 import type { Page } from '@playwright/test';
 import { frames } from '../emulated-headset';
 import { type EmulatedRoom, installRoom } from '../emulated-room';
-import { lookingAtMenu, pressInMenu, recordCanvasText, waitForCanvasText } from '../hands-on-menu';
 import { expect, keepPicture, openWithHeadset, probe, freshTest as test } from '../page-fixture';
+import { lookingAtMenu, pressInMenu, recordCanvasText, waitForCanvasText } from './hands-on-menu';
 
 const livingRoom: EmulatedRoom = { floorHeight: 0.04, halfWidth: 2, ahead: 3, behind: 1.5 };
 const hall: EmulatedRoom = { floorHeight: 0, halfWidth: 5, ahead: 14, behind: 4 };

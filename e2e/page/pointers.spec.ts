@@ -4,9 +4,9 @@ import { stations } from 'threepoint-games/ball';
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import { type EmulatedHeadset, frames, type Point } from '../emulated-headset';
-import { recordCanvasText } from '../hands-on-menu';
 import { enterVr, expect, keepPicture, openWithHeadset, probe, freshTest as test } from '../page-fixture';
-import { inLobby, inMenu, pinchAt, pinchByEyes, pointingFrom } from '../without-controllers';
+import { recordCanvasText } from './hands-on-menu';
+import { inLobby, inMenu, pinchAt, pinchByEyes, pointingFrom } from './without-controllers';
 
 const eyes: Point = [0, 1.6, 0];
 /** The targets of the round with this seed, farther than one can miss by a centimetre of eye height. */

@@ -1,7 +1,5 @@
 import type { Page } from '@playwright/test';
 import { validateBytes } from 'gltf-validator';
-import { readBvh } from '../../src/threepoint/core/motion/read-bvh';
-import { finishWork } from '../../src/threepoint/core/motion/work';
 import { expect, joint, open, probe, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
 
@@ -64,9 +62,9 @@ test('a recording becomes files for other programs, drawn by the chosen method @
   await recordTheActor(page);
   const bvh = await downloaded(page, 'BVH');
   expect(bvh.name).toBe('recording-1.bvh');
-  const { joints, frameCount } = finishWork(readBvh(bvh.bytes.toString('utf8')));
-  expect(frameCount).toBeGreaterThan(30);
-  expect(joints.map(({ name }) => name)).toContain('leftIndexDistal');
+  const text = bvh.bytes.toString('utf8');
+  expect(Number(/^Frames: (\d+)$/m.exec(text)?.[1])).toBeGreaterThan(30);
+  expect(text).toContain('JOINT leftIndexDistal');
 
   for (const [button, ending] of [
     ['VRM Animation', 'vrma'],

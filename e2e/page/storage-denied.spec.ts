@@ -5,8 +5,8 @@ import { chromium, type Page } from '@playwright/test';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { drawSeldom } from '../draw-seldom';
 import { collectErrors, expect, joinedRoom, probe } from '../page-fixture';
-import { recordsOf, test } from '../study-participant';
-import { experimenter, shortStudy } from '../study-server';
+import { recordsOf, test } from '../study/study-participant';
+import { experimenter, shortStudy } from '../study/study-server';
 
 /**
  * A page of a browser whose user lets no site store anything: localStorage throws, IndexedDB and service workers are

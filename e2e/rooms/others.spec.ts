@@ -1,5 +1,5 @@
 import { emulatedHeadset, frames } from '../emulated-headset';
-import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText, waitForCanvasText } from '../hands-on-menu';
+import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText, waitForCanvasText } from '../page/hands-on-menu';
 import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, overlap, probe, test } from '../page-fixture';
 
 type Page = Parameters<typeof open>[0];

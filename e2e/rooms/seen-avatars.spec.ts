@@ -6,8 +6,8 @@ import type { BrowserContext, BrowserContextOptions } from '@playwright/test';
 import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
 import { serveCrossOrigin } from '../cross-origin-server';
 import { drawSeldom } from '../draw-seldom';
-import type { GuestAnswer, GuestOrder } from '../guest-process';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe } from '../page-fixture';
+import type { GuestAnswer, GuestOrder } from './guest-process';
 
 type Page = Parameters<typeof probe>[0];
 type Guest = Awaited<ReturnType<typeof startGuest>>;
@@ -96,7 +96,7 @@ async function enter(page: Page, origin: string, room: string, query = ''): Prom
 
 /** Starts a client without a page, which joins the room. */
 async function startGuest(origin: string, room: string, name: string) {
-  const script = fileURLToPath(new URL('../guest-process.ts', import.meta.url));
+  const script = fileURLToPath(new URL('./guest-process.ts', import.meta.url));
   const child = fork(script, [origin, room, name], { execArgv: ['--import', 'tsx'], serialization: 'advanced' });
   const answers = new Map<number, (answer: GuestAnswer) => void>();
   const answerTo = (id: number) => new Promise<GuestAnswer>((resolve) => answers.set(id, resolve));

@@ -2,7 +2,7 @@ import { expect } from '@playwright/test';
 import { serviceOf } from '../browser-processes';
 import { cutNetwork } from '../cut-network';
 import { emulatedHeadset, type Point } from '../emulated-headset';
-import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText } from '../hands-on-menu';
+import { lookingAtMenu, pressBelow, pressInMenu, recordCanvasText } from '../page/hands-on-menu';
 import { distance, enterVr, joinedRoom, keepPicture, probe } from '../page-fixture';
 import {
   attenuation,

@@ -2,8 +2,8 @@ import { readFileSync } from 'node:fs';
 import { parsePlan } from '../../src/study/model/plan/plan';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { expect } from '../page-fixture';
-import { openStudy, signIn, test } from '../study-participant';
-import { experimenter } from '../study-server';
+import { openStudy, signIn, test } from './study-participant';
+import { experimenter } from './study-server';
 
 const plan = (id: string) => ({
   ...parsePlan(readFileSync('public/studies/latency.json', 'utf8'), 'latency.json'),

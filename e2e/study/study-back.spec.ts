@@ -12,8 +12,8 @@ import {
   study,
   tenHertz,
   test,
-} from '../study-participant';
-import { experimenter, shortStudy } from '../study-server';
+} from './study-participant';
+import { experimenter, shortStudy } from './study-server';
 
 /** Navigates back and forward. Chromium reloads a page that has used WebXR; the test browsers reload every page. */
 async function backAndForward(page: Page, origin: string): Promise<void> {

@@ -3,8 +3,8 @@ import { parsePlan, type StudyPlan } from '../../src/study/model/plan/plan';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import type { Point } from '../emulated-headset';
 import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
-import { calibrate, consentAndFillIn, press, reaches, stretched, takePart, tenHertz, test } from '../study-participant';
-import { experimenter, shortStudy } from '../study-server';
+import { calibrate, consentAndFillIn, press, reaches, stretched, takePart, tenHertz, test } from './study-participant';
+import { experimenter, shortStudy } from './study-server';
 
 const conditions = [
   {

@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import type { Locator } from '@playwright/test';
 import { parsePlan } from '../../src/study/model/plan/plan';
 import { expect, keepPicture } from '../page-fixture';
-import { continueAtDesk, reaches, test } from '../study-participant';
+import { continueAtDesk, reaches, test } from './study-participant';
 
 /** A shipped plan under an id of its own. */
 const shipped = (name: string, id: string) => ({

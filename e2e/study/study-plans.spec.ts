@@ -1,8 +1,8 @@
 import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
 import { expect, keepPicture } from '../page-fixture';
-import { signIn, test } from '../study-participant';
-import { experimenter } from '../study-server';
+import { signIn, test } from './study-participant';
+import { experimenter } from './study-server';
 
 const plan = (changes: object = {}) => ({
   ...JSON.parse(readFileSync('public/studies/latency.json', 'utf8')),

@@ -14,8 +14,8 @@ import {
   takePart,
   tenHertz,
   test,
-} from '../study-participant';
-import { experimenter } from '../study-server';
+} from './study-participant';
+import { experimenter } from './study-server';
 
 /** The shipped example with questions of every kind, its times cut short. */
 function shortExample(id: string) {

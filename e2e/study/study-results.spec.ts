@@ -6,8 +6,8 @@ import { answerModelWith } from '../../src/study/simulation/answer-model';
 import { statedPerformanceModel } from '../../src/study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { expect, keepPicture } from '../page-fixture';
-import { openResults, test } from '../study-participant';
-import { experimenter } from '../study-server';
+import { openResults, test } from './study-participant';
+import { experimenter } from './study-server';
 
 const shipped = (file: string) => JSON.parse(readFileSync(`public/studies/${file}`, 'utf8')) as Record<string, unknown>;
 

@@ -12,8 +12,8 @@ import {
   stretched,
   study,
   test,
-} from '../study-participant';
-import { experimenter, shortBallStudy } from '../study-server';
+} from './study-participant';
+import { experimenter, shortBallStudy } from './study-server';
 
 /**
  * The match stands longer than any page takes to draw what has happened [s]: for so many pictures, of which each takes

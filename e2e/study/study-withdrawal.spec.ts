@@ -1,8 +1,8 @@
 import type { Page } from '@playwright/test';
 import type { ParticipantState } from '../../src/study/model/progress/study-api';
 import { expect, keepPicture } from '../page-fixture';
-import { recordsOf, test } from '../study-participant';
-import { experimenter, shortStudy } from '../study-server';
+import { recordsOf, test } from './study-participant';
+import { experimenter, shortStudy } from './study-server';
 
 /** How many sessions of participants the browser still holds. */
 const sessionsInBrowser = (page: Page): Promise<number> =>

@@ -15,8 +15,8 @@ import {
   takePart,
   tenHertz,
   test,
-} from '../study-participant';
-import { experimenter, shortStudy } from '../study-server';
+} from './study-participant';
+import { experimenter, shortStudy } from './study-server';
 
 test('a participant gets from consent to the second block despite a reload without the server @full', async ({
   page,

@@ -1,8 +1,7 @@
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { type RowName, rows } from '../../tests/reliability/rows';
-import { type Figures, merge, missingFigures, reliabilityPage } from './reliability-page';
+import { addFigures, missingFigures, type Register, reliabilityPage } from './reliability-page';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
 const figuresFile = `${root}artifacts/reliability.jsonl`;
@@ -10,11 +9,12 @@ const storedFile = `${root}docs/reliability.json`;
 const page = `${root}docs/reliability.md`;
 const [unitOnly, long, redraw] = ['--unit', '--long', '--redraw'].map((option) => process.argv.includes(option));
 
-const files = [...new Set(Object.values(rows).flatMap(({ tests }) => tests))];
-const suites = {
-  unit: files.filter((file) => file.startsWith('tests/')),
-  e2e: files.filter((file) => file.startsWith('e2e/')),
-};
+/** Returns the test files of a folder that report figures. */
+const measuring = (folder: string): string[] =>
+  readdirSync(root + folder, { recursive: true, encoding: 'utf8' })
+    .filter((file) => /\.(test|spec)\.ts$/.test(file))
+    .map((file) => `${folder}/${file.replaceAll('\\', '/')}`)
+    .filter((file) => readFileSync(root + file, 'utf8').includes('reportFigures('));
 
 function runTests(script: string, args: readonly string[]): boolean {
   const env = { ...process.env, RELIABILITY_FIGURES: figuresFile, THREEPOINT_NIGHTLY: '1' };
@@ -27,22 +27,22 @@ let passed = true;
 if (!redraw) {
   mkdirSync(`${root}artifacts`, { recursive: true });
   rmSync(figuresFile, { force: true });
-  passed = runTests('vitest/vitest.mjs', ['run', ...suites.unit]);
+  passed = runTests('vitest/vitest.mjs', ['run', ...measuring('tests')]);
   if (!unitOnly) {
     const skip = long ? [] : ['--grep-invert', '@long'];
-    passed = runTests('@playwright/test/cli.js', ['test', ...suites.e2e, ...skip]) && passed;
+    passed = runTests('@playwright/test/cli.js', ['test', ...measuring('e2e'), ...skip]) && passed;
   }
 }
 
-const before = existsSync(storedFile) ? (JSON.parse(readFileSync(storedFile, 'utf8')) as Figures) : {};
+const register: Register = JSON.parse(readFileSync(storedFile, 'utf8'));
 const lines = existsSync(figuresFile) ? readFileSync(figuresFile, 'utf8').trim().split('\n').filter(Boolean) : [];
-const figures = merge(
-  before,
-  lines.map((line) => JSON.parse(line) as { row: RowName; figures: Record<string, string | number> }),
+addFigures(
+  register,
+  lines.map((line) => JSON.parse(line)),
 );
-writeFileSync(storedFile, `${JSON.stringify(figures, null, 2)}\n`);
-writeFileSync(page, reliabilityPage(figures));
-const missing = missingFigures(figures);
+writeFileSync(storedFile, `${JSON.stringify(register, null, 2)}\n`);
+writeFileSync(page, reliabilityPage(register));
+const missing = missingFigures(register);
 if (missing.length > 0) console.error(`Nothing is measured yet for: ${missing.join(', ')}.`);
 console.log('docs/reliability.md is written.');
 process.exitCode = passed && missing.length === 0 ? 0 : 1;

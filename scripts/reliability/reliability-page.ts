@@ -1,62 +1,69 @@
-import { attackRows, faultRows, promiseRows, type Row, type RowName, rows } from '../../tests/reliability/rows';
+import type { RowName } from '../../tests/reliability/report-figures';
 
-/** The measured figures, by row and by name. */
-export type Figures = Readonly<Partial<Record<RowName, Readonly<Record<string, string | number>>>>>;
+/** A row of docs/reliability.json: a fault, a promise or an attack, and its figures. */
+interface Row {
+  /** The fault or attack on the page, the headset or the server. */
+  readonly inject: string;
+  /** The result that a user, player or client must see. */
+  readonly sees: string;
+  readonly target: string;
+  /** The figures that the page shows, by name. By default these are the first two. */
+  readonly shows?: readonly string[];
+  /** The step to check by hand with a headset, with its result. */
+  readonly manual?: string;
+  /** The measured figures, by name. */
+  figures?: Readonly<Record<string, string | number>>;
+}
+
+/** The rows of docs/reliability.json by name, in the parts of the page. */
+export type Register = Readonly<Record<string, Readonly<Record<string, Row>>>>;
+
+export interface Measured {
+  readonly row: RowName;
+  readonly figures: Readonly<Record<string, string | number>>;
+}
+
+const rowsOf = (register: Register): (readonly [string, Row])[] =>
+  Object.values(register).flatMap((part) => Object.entries(part));
 
 /** Returns the rows that lack figures, or one that the page shows. */
-export const missingFigures = (figures: Figures): RowName[] =>
-  (Object.keys(rows) as RowName[]).filter((name) => {
-    const known = Object.keys(figures[name] ?? {});
-    return known.length === 0 || rows[name].shows?.some((what) => !known.includes(what));
+export const missingFigures = (register: Register): string[] =>
+  rowsOf(register).flatMap(([name, { shows = [], figures = {} }]) => {
+    const known = Object.keys(figures);
+    return known.length === 0 || shows.some((what) => !known.includes(what)) ? [name] : [];
   });
 
-/**
- * Merges the figures of a run into those of earlier runs, so that a run of some tests keeps the figures of the others.
- */
-export function merge(
-  before: Figures,
-  lines: readonly { row: RowName; figures: Record<string, string | number> }[],
-): Figures {
-  const after: Partial<Record<RowName, Record<string, string | number>>> = {};
-  for (const name of Object.keys(rows) as RowName[]) if (before[name]) after[name] = { ...before[name] };
-  for (const { row, figures } of lines) after[row] = { ...after[row], ...figures };
-  return after;
+/** Adds the figures of a run to those of earlier runs, so that a run of some tests keeps the figures of the others. */
+export function addFigures(register: Register, measured: readonly Measured[]): void {
+  for (const [name, row] of rowsOf(register))
+    for (const { row: of, figures } of measured) if (of === name) row.figures = { ...row.figures, ...figures };
 }
 
 const formatted = (value: string | number): string =>
   typeof value === 'number' ? String(Number(value.toPrecision(3))) : value;
 const cell = (text: string): string => text.replaceAll('|', '\\|');
 
-function table(part: Readonly<Record<string, Row>>, figures: Figures): string {
-  const lines = Object.entries(part).map(([name, row]) => {
-    const known = figures[name as RowName] ?? {};
-    const shown = row.shows ?? Object.keys(known).slice(0, 2);
-    const measured = shown.map((what) => `${what}: ${formatted(known[what] ?? 'not measured')}`);
-    return `| ${[row.inject, `${row.sees}. *${row.target}*`, measured.join('; ')].map(cell).join(' | ')} |`;
+function table(title: string, part: Readonly<Record<string, Row>>): string {
+  const lines = Object.values(part).map(({ inject, sees, target, figures = {}, shows }) => {
+    const shown = shows ?? Object.keys(figures).slice(0, 2);
+    const measured = shown.map((what) => `${what}: ${formatted(figures[what] ?? 'not measured')}`);
+    return `| ${[inject, `${sees}. *${target}*`, measured.join('; ')].map(cell).join(' | ')} |`;
   });
-  return ['| fault | result and *target* | measured |', '|---|---|---|', ...lines].join('\n');
+  return [`## ${title}\n`, '| fault | result and *target* | measured |', '|---|---|---|', ...lines].join('\n');
 }
 
 /** Returns the text of docs/reliability.md. */
-export function reliabilityPage(figures: Figures): string {
-  const manual = Object.values(rows).flatMap(({ manual }) => (manual ? [`- ${manual}`] : []));
+export function reliabilityPage(register: Register): string {
+  const manual = rowsOf(register).flatMap(([, { manual }]) => (manual ? [`- ${manual}`] : []));
   return `# Reliability
 
-Each row is a fault, a promise or an attack. [rows.ts](../tests/reliability/rows.ts) names the tests that measure it.
-\`npm run tool -- reliability\` writes this page from them: \`--unit\` without a browser, \`--long\` with 20 minutes of play.
-[reliability.json](reliability.json) has every figure. Durations are those of two cores with software rendering.
+Each row is a fault, a promise or an attack, as [reliability.json](reliability.json) lists them with every figure; tests
+report the figures by \`reportFigures('NAME', …)\`. \`npm run tool -- reliability\` runs these tests and writes this page:
+\`--unit\` without a browser, \`--long\` with 20 minutes of play. Durations are those of two cores with software rendering.
 
-## Tracking and device
-
-${table(faultRows, figures)}
-
-## Promises
-
-${table(promiseRows, figures)}
-
-## Attacks on the server
-
-${table(attackRows, figures)}
+${Object.entries(register)
+  .map(([title, part]) => table(title, part))
+  .join('\n\n')}
 
 ## By hand, once per release
 

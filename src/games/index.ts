@@ -1,6 +1,6 @@
 // "threepoint-games": what both games share.
 export { fallTime, type Launch, positionAt, velocityAt } from './ballistics';
 export { pulseBothHands } from './both-hands-pulse';
-export { ballInPalm } from './fist';
+export { ballInPalm, wristAround } from './fist';
 export { createMatch, type Match } from './match';
 export type { SimulatedInput } from './simulated-input';

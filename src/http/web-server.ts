@@ -342,9 +342,3 @@ export function prepareServer(
     },
   };
 }
-
-/** Prepares a server and listens. */
-export const serve = (
-  listener: RequestListener,
-  { host, port, ...options }: WebServerOptions & ListenOptions,
-): Promise<WebServer> => prepareServer(listener, options).listen({ host, port });

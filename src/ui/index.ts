@@ -10,7 +10,7 @@ export { createFrameTimesOverlay, differenceLines, milliseconds, missedFrames } 
 export { createInvitation, createRoomLink, type Invitation, linkTo, type RoomLink } from './invitation';
 export { type FileKind, fileNameOf, offerDownload, readLimited } from './limited-files';
 export { createMouseAim, isTouchFirst, type MouseAim } from './mouse-aim';
-export { createNotices, formatSentence, type Notices } from './notices';
+export { createNotices, formatSentence, type Notice, type Notices } from './notices';
 export { pageFolder } from './page-folder';
 export { drawQrCode, type QrCode, qrCode } from './qr-code';
 export { ServerPresence, type ServerState } from './server-presence';

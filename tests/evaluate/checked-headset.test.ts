@@ -6,11 +6,11 @@ import { describe, expect, test } from 'vitest';
 import { readCheckFile, trackingOf } from '../../bench/evaluate/checked-headset';
 import { lossLengthFrom, usualTracking } from '../../bench/evaluate/disturbances';
 import { measureRobustness, robustnessText } from '../../bench/evaluate/robustness';
-import { type HeadsetReport, writeHeadsetReport } from '../../src/page/check/headset-report';
-import { anyReport } from '../page/check/any-report';
+import { anyReport, writtenReport } from '../page/check/any-report';
 import { directoryWith } from '../temporary-directory';
 import { person, recordedMotion } from './recorded-motion';
 
+type HeadsetReport = Parameters<typeof writtenReport>[0];
 const [any] = fc.sample(anyReport, { numRuns: 1, seed: 1 });
 const levels = (frame: number) => ({ frame, slow: 9, sway: 9 });
 const noiseOf = (tracker: 'head' | 'left' | 'right', mm: number, degrees: number): HeadsetReport['noise'][number] => ({
@@ -75,7 +75,7 @@ describe('the tracking of a checked device', () => {
 test('a file is read as written; a missing or damaged one is refused by name', () => {
   const folder = directoryWith({});
   const file = join(folder, 'quest.json');
-  writeFileSync(file, writeHeadsetReport(report));
+  writeFileSync(file, writtenReport(report));
   expect(readCheckFile(file).noise).toEqual(report.noise);
   expect(() => readCheckFile(join(folder, 'none.json'))).toThrow('none.json: there is no such file');
   writeFileSync(file, JSON.stringify({ ...report, session: null }));

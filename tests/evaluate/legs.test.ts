@@ -3,9 +3,10 @@ import { expect, test } from 'vitest';
 import { mannequinLegs } from '../../bench/evaluate/legs/leg-drivers';
 import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/legs/leg-measures';
 import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/legs/leg-truth';
-import { type LegPose, LegPosture } from '../../src/threepoint/avatar/legs/leg-posture';
-import type { GaitPoints } from '../../src/threepoint/core/estimation/gait/gait-features';
-import { eyeHeight, proportions, standing, walking } from '../threepoint/avatar/walking-person';
+import { createLegs, proportions, standing, walking } from '../threepoint/avatar/walking-person';
+
+type LegPose = ReturnType<typeof createLegs>['legs']['left'];
+type Points = ReturnType<typeof standing>;
 
 const rateHz = 60;
 /** Stands for two seconds; another time walks for four. */
@@ -20,8 +21,8 @@ const copyOf = ({ hip, knee, ankle, foot }: LegPose): TrueLeg => ({
 });
 
 /** What a person would do whose legs are the page's. */
-function legsUnder(body: readonly GaitPoints[]): TrueLegs[] {
-  const posture = new LegPosture(proportions, eyeHeight);
+function legsUnder(body: readonly Points[]): TrueLegs[] {
+  const posture = createLegs();
   return body.map((points, row) => {
     posture.update(points, row === 0 ? 0 : 1 / rateHz);
     return { hips: points.hips, left: copyOf(posture.legs.left), right: copyOf(posture.legs.right) };
@@ -29,15 +30,15 @@ function legsUnder(body: readonly GaitPoints[]): TrueLegs[] {
 }
 
 /** The legs drawn under `body` against those that truly are under `person`. */
-function reportOf(person: readonly GaitPoints[], body: readonly GaitPoints[]) {
+function reportOf(person: readonly Points[], body: readonly Points[]) {
   const truth = legsUnder(person);
   const contacts = contactsOf(truth, footHeights([truth]), rateHz);
   const measures = emptyLegMeasures();
-  addLegs(measures, { truth, contacts, body, rateHz }, new LegPosture(proportions, eyeHeight), proportions);
+  addLegs(measures, { truth, contacts, body, rateHz }, createLegs(), proportions);
   return legReport(measures);
 }
 
-const movedBy = (body: readonly GaitPoints[], x: number, y: number): GaitPoints[] =>
+const movedBy = (body: readonly Points[], x: number, y: number): Points[] =>
   body.map((points) => {
     const { position, orientation } = points.hips;
     return { ...points, hips: { position: vec3(position.x + x, position.y + y, position.z), orientation } };

@@ -1,8 +1,7 @@
-import type { Calibration } from 'threepoint/core';
+import { armBonesOf, type Calibration, skeletonFromCalibration } from 'threepoint/core';
 import { distance } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { addReach, emptyReach, mergeReaches, reachReport, reachText } from '../../bench/evaluate/reach';
-import { armLength } from '../../src/threepoint/core/body/skeleton';
 import { person, recordedMotion } from './recorded-motion';
 
 const frames = recordedMotion(5, 120);
@@ -20,9 +19,10 @@ test('a body with long enough arms reaches every wrist', () => {
 
 test('wrists beyond a short arm are counted, with how far they are at most', () => {
   const short = { ...person, armSpan: 1.1 };
+  const { upper, lower } = armBonesOf(skeletonFromCalibration(short), 'left');
   const far = frames.flatMap(({ frame, truth }) =>
     (['left', 'right'] as const).map(
-      (side) => distance(frame[`${side}Hand`]!.position, truth[`${side}UpperArm`]) - armLength(short),
+      (side) => distance(frame[`${side}Hand`]!.position, truth[`${side}UpperArm`]) - upper - lower,
     ),
   );
   const reach = reachOf(short);

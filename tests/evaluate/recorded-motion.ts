@@ -1,7 +1,6 @@
-import { type Calibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { type Calibration, createEstimator, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import type { Vec3 } from 'threepoint/math';
 import { type RecordedFrame, type TruthJoint, truthJoints } from '../../bench/evaluate/recordings';
-import { createIk } from '../../src/threepoint/core/estimation/estimators';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { movingPerson } from '../threepoint/core/estimation/moving-person';
 
@@ -14,7 +13,7 @@ export const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 export function recordedMotion(seed: number, frames: number): RecordedFrame[] {
   const other: Calibration = { eyeHeight: person.eyeHeight * 0.98, armSpan: person.armSpan * 1.03 };
   const at = movingPerson(seed, person, { x: 0.3, z: -0.2, yaw: 2 });
-  const ik = createIk(other);
+  const ik = createEstimator('ik', other);
   const skeleton = skeletonFromCalibration(other);
   return Array.from({ length: frames }, (_, row) => {
     const frame = at(row / 60);

@@ -1,17 +1,18 @@
 import { once } from 'node:events';
+import type { RequestListener } from 'node:http';
 import { connect, type Socket } from 'node:net';
 import { connect as connectTls } from 'node:tls';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { certificateFor } from '../../server/certificate';
-import { createPageHandler } from '../../server/page-handler';
 import { ConnectionLimiter } from '../../src/http/connection-limiter';
 import { noPage } from '../../src/http/router';
-import { serve } from '../../src/http/web-server';
 import { isNightly } from '../nightly';
 import { reportFigures } from '../reliability/report-figures';
 import { relayOfTest } from '../rooms/server/until-finished';
+import { servePage } from '../server/served-page';
 import { forkServer, probeHealth } from '../server/server-child';
+import { testCredentials } from '../server/test-credentials';
 import { directoryWith } from '../temporary-directory';
+import { serve } from './serve';
 
 const upgradeRequest = (headers = '') =>
   `GET /relay/?EIO=4&transport=websocket HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n${headers}Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n`;
@@ -53,10 +54,7 @@ describe('a body that is not wanted', () => {
   }
 
   test('is not read: the refusal is heard and the connection ends', async () => {
-    const page = await serve(createPageHandler(directoryWith({ 'index.html': 'page' })), {
-      host: '127.0.0.1',
-      port: 0,
-    });
+    const page = await servePage(directoryWith({ 'index.html': 'page' }));
     onTestFinished(() => page.close());
     const relay = await relayOfTest();
     const length = 'Host: localhost\r\nContent-Type: application/json\r\nContent-Length: 200000000\r\n\r\n';
@@ -174,8 +172,8 @@ test('a connection that does not state its purpose is ended at the deadline, ove
   tags: ['full'],
 }, async () => {
   const relay = await relayOfTest();
-  const credentials = await certificateFor([], directoryWith(), new Date());
-  const secure = await serve(noPage, { host: '127.0.0.1', port: 0, credentials });
+  const credentials = await testCredentials();
+  const secure = await serve(noPage, { credentials });
   onTestFinished(() => secure.close());
   const connections = [
     ...['', 'GET / HTTP/1.1\r\nHost: local', upgradeRequest()].map((text) => raw(relay.port, text)),
@@ -193,8 +191,8 @@ test('a connection that does not state its purpose is ended at the deadline, ove
 
 test('an answer that is not read is not kept for ever', { tags: ['full'] }, async () => {
   const connectionLimiter = new ConnectionLimiter({ perAddress: 8, behindProxy: false });
-  const page = createPageHandler(directoryWith({ 'index.html': Buffer.alloc(32e6) }));
-  const server = await serve(page, { host: '127.0.0.1', port: 0, connectionLimiter, idleTimeoutMs: 500 });
+  const long: RequestListener = (_, response) => void response.end(Buffer.alloc(32e6));
+  const server = await serve(long, { connectionLimiter, idleTimeoutMs: 500 });
   onTestFinished(() => server.close());
   const { socket } = raw(server.port, 'GET / HTTP/1.1\r\nHost: a\r\n\r\n');
   socket.pause();

@@ -1,20 +1,14 @@
-import { X509Certificate } from 'node:crypto';
 import { once } from 'node:events';
-import { statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
-import { join } from 'node:path';
 import { describe, expect, onTestFinished, test } from 'vitest';
-import { certificateFor } from '../../server/certificate';
-import { lanAddresses } from '../../server/lan-addresses';
 import { createSitePolicy } from '../../src/http/site-policy';
-import { serve } from '../../src/http/web-server';
-import { hasFileModes, hasLoopbackNetwork } from '../platform';
+import { hasLoopbackNetwork } from '../platform';
 import { ask } from '../server/running-server';
 import { forkServer } from '../server/server-child';
-import { directoryWith } from '../temporary-directory';
+import { testCredentials } from '../server/test-credentials';
+import { serve } from './serve';
 
-const now = new Date();
 const hello = (_: unknown, response: { end: (text: string) => void }) => response.end('hello');
 
 async function taken(): Promise<number> {
@@ -27,7 +21,7 @@ async function taken(): Promise<number> {
 describe('the port', () => {
   test('when it is taken, the next free one is used', async () => {
     const port = await taken();
-    const server = await serve(hello, { host: '127.0.0.1', port });
+    const server = await serve(hello, { port });
     onTestFinished(() => server.close());
     expect(server.port).toBeGreaterThan(port);
     expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');
@@ -42,7 +36,7 @@ describe('the port', () => {
   });
 
   test('is free again once the server has closed, even with a connection open', async () => {
-    const server = await serve(hello, { host: '127.0.0.1', port: 0 });
+    const server = await serve(hello);
     const client = connect(server.port, '127.0.0.1');
     await new Promise((resolve) => client.once('connect', resolve));
     const ended = new Promise((resolve) => client.once('close', resolve));
@@ -63,7 +57,7 @@ describe('an exception', () => {
 
   test('in the listener of requests gets 500 and a log entry, and the server goes on', async () => {
     const faults: unknown[] = [];
-    const server = await serve(fail, { host: '127.0.0.1', port: 0, onFault: (error) => faults.push(error) });
+    const server = await serve(fail, { onFault: (error) => faults.push(error) });
     onTestFinished(() => server.close());
     for (const headers of [{}, offer]) {
       const { status, body } = await ask(`http://127.0.0.1:${server.port}`, '/', { headers });
@@ -76,7 +70,7 @@ describe('an exception', () => {
   test('in the listener of upgrades closes the connection, is logged, and leaves the server running', async () => {
     const faults: unknown[] = [];
     const onFault = (error: unknown) => faults.push(error);
-    const server = await serve(hello, { host: '127.0.0.1', port: 0, upgrade: fail, onFault });
+    const server = await serve(hello, { upgrade: fail, onFault });
     onTestFinished(() => server.close());
     await expect(ask(`http://127.0.0.1:${server.port}`, '/', { headers: offer })).rejects.toThrow(/socket hang up/);
     expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');
@@ -86,8 +80,7 @@ describe('an exception', () => {
 
 describe('HTTPS with a certificate of our own', () => {
   async function secured() {
-    const directory = directoryWith();
-    const credentials = await certificateFor(['127.0.0.2'], directory, now);
+    const credentials = await testCredentials(['127.0.0.2']);
     const { checkHost } = createSitePolicy({ origins: [], hosts: [], trustProxy: false });
     const server = await serve(hello, { host: '0.0.0.0', port: 0, credentials, checkHost });
     onTestFinished(() => server.close());
@@ -129,49 +122,4 @@ describe('HTTPS with a certificate of our own', () => {
     expect(headers.location).toBeUndefined();
     expect(body.toString()).toContain('does not accept the name evil.example');
   });
-});
-
-describe('the certificate', () => {
-  test('names every address and this machine, for about a year', async () => {
-    const { cert } = await certificateFor(['192.168.7.20', '10.1.2.3'], directoryWith(), now);
-    const certificate = new X509Certificate(cert);
-    for (const address of ['127.0.0.1', '192.168.7.20', '10.1.2.3']) expect(certificate.checkIP(address)).toBe(address);
-    expect(certificate.checkHost('localhost')).toBe('localhost');
-    const days = (new Date(certificate.validTo).getTime() - now.getTime()) / 86_400_000;
-    expect(days).toBeGreaterThan(300);
-    expect(days).toBeLessThan(398);
-  });
-
-  test('is kept while it serves, so that no browser warns twice', async () => {
-    const directory = directoryWith();
-    const first = await certificateFor(['192.168.7.20', '10.1.2.3'], directory, now);
-    expect(await certificateFor(['192.168.7.20'], directory, now)).toEqual(first);
-  });
-
-  test('is made anew for a new address and before it expires', async () => {
-    const directory = directoryWith();
-    const first = await certificateFor(['192.168.7.20'], directory, now);
-    const moved = await certificateFor(['192.168.8.4'], directory, now);
-    expect(moved.cert).not.toBe(first.cert);
-    const later = new Date(now.getTime() + 385 * 86_400_000);
-    expect((await certificateFor(['192.168.8.4'], directory, later)).cert).not.toBe(moved.cert);
-  });
-
-  test.skipIf(!hasFileModes)('leaves a key that only its owner reads', async () => {
-    const directory = directoryWith();
-    await certificateFor([], directory, now);
-    expect(statSync(join(directory, 'lan.key.pem')).mode & 0o077).toBe(0);
-  });
-});
-
-test('addresses of the network are those another device can use', () => {
-  const address = (value: string, family: 'IPv4' | 'IPv6', internal = false) =>
-    ({ address: value, family, internal, netmask: '', mac: '', cidr: null, scopeid: 0 }) as never;
-  expect(
-    lanAddresses({
-      lo: [address('127.0.0.1', 'IPv4', true)],
-      wlan0: [address('192.168.7.20', 'IPv4'), address('fe80::1', 'IPv6')],
-      usb0: [address('169.254.3.4', 'IPv4')],
-    }),
-  ).toEqual(['192.168.7.20']);
 });

@@ -2,7 +2,7 @@ import { Group, Scene } from 'three';
 import { createPageClock, defaultAvatar, defaultCalibration, MutablePointer } from 'threepoint/core';
 import { vec3 } from 'threepoint/math';
 import type { StudyRun } from 'threepoint-study/participant';
-import { ServerPresence } from 'threepoint-ui';
+import { type Notice, ServerPresence } from 'threepoint-ui';
 import type { ActivityServices } from '../../src/page/activity/activity-context';
 import type { Surroundings } from '../../src/page/scene/surroundings';
 import type { Pointers } from '../../src/page/shell/input/pointers';
@@ -10,7 +10,6 @@ import type { PageStudy } from '../../src/page/shell/session/page-study';
 import { createSettings, SettingsWriter, type StoredSettings } from '../../src/page/shell/session/settings';
 import { readSwitches } from '../../src/page/shell/session/switches';
 import { fetchBuiltInAvatar } from '../../src/page/shell/stage/avatar-loader';
-import type { Notice } from '../../src/ui/notices';
 import { fake } from './shell/fake';
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };

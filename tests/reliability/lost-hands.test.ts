@@ -5,13 +5,11 @@ import {
   forwardKinematics,
   skeletonFromCalibration,
   type TrackingFrame,
-  unknownFingers,
 } from 'threepoint/core';
 import { distance, type Vec3, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { decodePose, encodePose } from '../../src/rooms/protocol/pose-codec';
 import { isNightly } from '../nightly';
-import { poseOf, show } from '../threepoint/core/estimation/drawn';
+import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { reportFigures } from './report-figures';
 
@@ -70,17 +68,4 @@ test('a lost wrist rests and returns without a jump, either hand, by each method
   reportFigures('hand-lost', {
     'longest step of a wrist': `${(100 * worst).toFixed(1)} cm in a frame of 60 Hz (${cases} cases)`,
   });
-});
-
-test('others learn of it: null and emulated arrive as they are', () => {
-  for (const how of ['null', 'emulated'] as const) {
-    const frame = spoiled(0.6, 'left', how, 1);
-    const pose = poseOf(createEstimator('ik', defaultCalibration), frame);
-    const packet = { timeMs: 1, jump: false, pose, fingers: unknownFingers };
-    const bytes = encodePose(packet, skeleton);
-    const arrived = bytes && decodePose(bytes, skeleton);
-    expect(arrived?.pose.leftHand?.tracking ?? null).toBe(how === 'null' ? null : 'emulated');
-    expect(arrived?.pose.rightHand?.tracking).toBe('tracked');
-  }
-  reportFigures('hand-lost', { 'flags that reach others': 'null, emulated' });
 });

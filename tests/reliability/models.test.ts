@@ -1,3 +1,4 @@
+import type { PoseRegressor } from 'threepoint';
 import {
   actorFrame,
   createEstimator,
@@ -7,7 +8,6 @@ import {
   skeletonFromCalibration,
 } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { show } from '../threepoint/core/estimation/drawn';
 import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
 import { reportFigures } from './report-figures';

@@ -1,7 +1,9 @@
 import {
   actorFrame,
+  armBonesOf,
   armSpanFromFingertipSpan,
   type Calibration,
+  calibrationFromHeadHeight,
   createEstimator,
   defaultCalibration,
   eyeHeightFromStature,
@@ -14,8 +16,6 @@ import {
 } from 'threepoint/core';
 import { add, distance, identity, subtract, type TrackedPose, type Vec3, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { calibrationFromHeadHeight } from '../../src/threepoint/core/body/calibration';
-import { armLength } from '../../src/threepoint/core/body/skeleton';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { reportFigures } from './report-figures';
 
@@ -41,8 +41,10 @@ function stretched(body: Calibration, time: number): TrackingFrame {
   >;
   const joints = forwardKinematics(skeleton, { hipsPosition: skeleton.restOffsets.hips, localRotations: upright });
   const moved = subtract(vec3(0, body.eyeHeight, 0), add(joints.head.position, skeleton.eyesInHead));
-  const wrist = (side: 'left' | 'right') =>
-    tracked(add(add(joints[`${side}UpperArm`].position, moved), vec3(0, 0, -armLength(body))));
+  const wrist = (side: 'left' | 'right') => {
+    const { upper, lower } = armBonesOf(skeleton, side);
+    return tracked(add(add(joints[`${side}UpperArm`].position, moved), vec3(0, 0, -upper - lower)));
+  };
   return { time, head: tracked(vec3(0, body.eyeHeight, 0)), leftHand: wrist('left'), rightHand: wrist('right') };
 }
 

@@ -1,5 +1,4 @@
-import { spawnSync } from 'node:child_process';
-import { cpSync, readFileSync, symlinkSync } from 'node:fs';
+import { readFileSync, symlinkSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
 import { ensureInstalled, missingInstallation } from '../../scripts/installation.mjs';
@@ -46,23 +45,4 @@ test('a linked node_modules is left alone: npm ci would empty the folder it lead
     /^three 0\.187\.0 is missing.*symbolic link.*remove the link/,
   );
   expect(readFileSync(join(owner, 'node_modules/.package-lock.json'), 'utf8')).toBe(before);
-});
-
-test('the lock file names every platform’s packages, so that npm ci accepts it everywhere', () => {
-  const { packages } = JSON.parse(readFileSync('package-lock.json', 'utf8')) as { packages: Packages };
-  const unnamed = Object.entries(packages).flatMap(([path, { optionalDependencies }]) =>
-    Object.keys(optionalDependencies ?? {}).filter(
-      (name) => !packages[`node_modules/${name}`] && !packages[`${path}/node_modules/${name}`],
-    ),
-  );
-  expect(unnamed).toEqual([]);
-});
-
-test('the start of npm test asks for no package before it installs', () => {
-  const directory = directoryWith({});
-  cpSync('scripts', join(directory, 'scripts'), { recursive: true });
-  symlinkSync(directoryWith({}), join(directory, 'node_modules'), 'junction');
-  const { status, stderr } = spawnSync(process.execPath, ['scripts/test.mjs'], { cwd: directory, encoding: 'utf8' });
-  expect(stderr).toContain('nothing is installed yet, and node_modules is a symbolic link');
-  expect(status).toBe(1);
 });

@@ -5,8 +5,6 @@ import { actorFrame, defaultCalibration, writeRecording } from 'threepoint/core'
 import { describe, expect, test } from 'vitest';
 import { exportFile, writeWhole } from '../../scripts/motion/export-file';
 import { FileReaderProcess } from '../../scripts/motion/reader-process';
-import { readBvh } from '../../src/threepoint/core/motion/read-bvh';
-import { finishWork } from '../../src/threepoint/core/motion/work';
 import { directoryWith } from '../temporary-directory';
 import { builtFbx } from '../threepoint/avatar/built-fbx';
 import { fbxBinary, fbxText } from '../threepoint/avatar/fbx-file';
@@ -69,9 +67,9 @@ describe('npm run tool -- motion', () => {
     const { folder, file } = folderWith(1);
     const out = join(folder, 'other.txt');
     await exportFile({ file, to: 'bvh', estimator: 'ik', unit: 'cm', rate: '30', out });
-    const { joints, frameCount } = finishWork(readBvh(readFileSync(out, 'utf8')));
-    expect(frameCount).toBe(30);
-    expect(joints.find(({ name }) => name === 'leftLowerArm')!.offset.x).toBeGreaterThan(20);
+    const text = readFileSync(out, 'utf8');
+    expect(text).toMatch(/^Frames: 30$/m);
+    expect(Number(/JOINT leftLowerArm\s+\{\s+OFFSET (\S+)/.exec(text)?.[1])).toBeGreaterThan(20);
   });
 
   test.each([

@@ -2,49 +2,15 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
-import { chosenSteps, commandLineOf, commandOf, steps } from '../../scripts/renew.mjs';
+import { commandOf, steps } from '../../scripts/renew.mjs';
 import { root } from '../../scripts/run-command.mjs';
 import { directoryWith } from '../temporary-directory';
 
-const names = steps.map(({ name }) => name);
 const text = (path: string) => readFileSync(join(root, path), 'utf8');
 const node = (args: readonly string[], cwd = root) => {
   const env = { ...process.env, INIT_CWD: undefined };
   return spawnSync(process.execPath, args, { cwd, encoding: 'utf8', env });
 };
-const renew = (...args: readonly string[]) => node([join(root, 'scripts/renew.mjs'), ...args]);
-
-describe('the steps', () => {
-  test('are listed each once, with what they renew and the command', () => {
-    const { stdout, status } = renew('--list');
-    expect(status).toBe(0);
-    const [titles, commands] = [/^\S/, /^ {2}npm run tool -- /].map((line) =>
-      stdout.split('\n').filter((one) => line.test(one)),
-    );
-    expect(titles?.map((line) => line.split(':')[0])).toEqual(names);
-    expect(new Set(names).size).toBe(names.length);
-    expect(commands?.map((line) => line.trim())).toEqual(steps.map((step) => commandLineOf(step, 'DIR')));
-  });
-
-  test('begin where they are asked to, or are one alone', () => {
-    expect(chosenSteps().map(({ name }) => name)).toEqual(names);
-    expect(chosenSteps({ from: 'report' }).map(({ name }) => name)).toEqual(names.slice(names.indexOf('report')));
-    expect(chosenSteps({ only: 'gait' }).map(({ name }) => name)).toEqual(['gait']);
-    expect(renew('--list', '--from', 'goldens').stdout).toMatch(/^goldens: .+\n {2}npm run tool -- goldens .+\n$/);
-  });
-
-  test.each([['--from'], ['--only']])('an unknown one is refused (%s)', (option) => {
-    const { stdout, stderr, status } = renew('--mocap', 'motion', option, 'gate');
-    expect(stderr.trim()).toBe(`renew: there is no step “gate”; there are ${names.join(', ')}`);
-    expect({ stdout, status }).toEqual({ stdout: '', status: 1 });
-  });
-
-  test('need motion, and one of two ways to choose among them', () => {
-    expect(renew()).toMatchObject({ stderr: expect.stringContaining('renew: --mocap is needed'), status: 1 });
-    const both = renew('--list', '--from', 'gait', '--only', 'gait');
-    expect(both).toMatchObject({ stderr: expect.stringContaining('renew: either --from or --only'), status: 1 });
-  });
-});
 
 describe('the command line of each step', () => {
   // Options are parsed in order, and the first unknown one ends the script before it starts: here it is the last one.

@@ -1,8 +1,8 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { describe, expect, test } from 'vitest';
-import { run, runQuietly } from '../../scripts/run-command.mjs';
+import { expect, test } from 'vitest';
+import { run } from '../../scripts/run-command.mjs';
 import { directoryWith } from '../temporary-directory';
 
 const node = (script: string, options = {}) => run(process.execPath, ['-e', script], { capture: true, ...options });
@@ -14,38 +14,20 @@ function answers(port: number): Promise<boolean> {
   });
 }
 
-describe('a program that is run', () => {
-  test('reports its exit code and its output', async () => {
-    const result = await node("console.log('out'); console.error('err'); process.exit(3)");
-    expect(result).toMatchObject({ code: 3 });
-    expect(result.output).toContain('out\n');
-    expect(result.output).toContain('err\n');
-  });
-
-  test('finds its standard input closed: nothing it asks can wait for an answer', async () => {
-    expect((await node("process.stdin.on('end', () => process.exit(7)).resume()")).code).toBe(7);
-  });
-
-  test('is ended with everything it started when its signal aborts', async () => {
-    const portFile = join(directoryWith(), 'port');
-    const listening = `
+test('a program that is run is ended with everything it started when its signal aborts', async () => {
+  const portFile = join(directoryWith(), 'port');
+  const listening = `
     const server = require('node:net').createServer().listen(0, '127.0.0.1', () =>
       require('node:fs').writeFileSync(${JSON.stringify(portFile)}, String(server.address().port)));`;
-    const script = `
+  const script = `
     require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(listening)}]);
     setInterval(() => {}, 1000);`;
-    const ending = new AbortController();
-    const running = node(script, { signal: ending.signal });
-    await expect.poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '').toBe(true);
-    const port = Number(readFileSync(portFile, 'utf8'));
-    expect(await answers(port)).toBe(true);
-    ending.abort();
-    expect((await running).code).not.toBe(0);
-    await expect.poll(() => answers(port)).toBe(false);
-  });
-
-  test('a missing program is null when run quietly, an error otherwise', async () => {
-    expect(await runQuietly('no-such-program-here', [])).toBeNull();
-    await expect(run('no-such-program-here', [])).rejects.toThrow(/ENOENT/);
-  });
+  const ending = new AbortController();
+  const running = node(script, { signal: ending.signal });
+  await expect.poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '').toBe(true);
+  const port = Number(readFileSync(portFile, 'utf8'));
+  expect(await answers(port)).toBe(true);
+  ending.abort();
+  expect((await running).code).not.toBe(0);
+  await expect.poll(() => answers(port)).toBe(false);
 });

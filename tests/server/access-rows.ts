@@ -1,4 +1,4 @@
-import type { ClientMessage } from '../../src/rooms/protocol/messages';
+import type { joinMessage } from '../rooms/room/test-room';
 
 /** Who sends a request. */
 export const httpRoles = {
@@ -166,7 +166,7 @@ const inVoices: SocketRow['outcome'] = { ...all('no-voices'), player: 'taken', s
 const seated: SocketRow['outcome'] = { ...all('taken'), spectator: 'no-seat', experimenter: 'no-seat' };
 
 /** One row for every message of a client, and for what is none. */
-export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unknown', SocketRow>> = {
+export const socketRows: Readonly<Record<ReturnType<typeof joinMessage>['type'] | 'pose' | 'unknown', SocketRow>> = {
   join: { gives: 'a free seat; in a trial the own one', outcome: all('taken') },
   pose: { gives: 'the own body to the others; spectators show none', outcome: all('taken') },
   ready: { gives: 'the start of the match', outcome: seated },

@@ -4,17 +4,11 @@ import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
 import { type BallState, ballKind, ballRoomKind } from 'threepoint-games/ball';
-import { relayConfigurationFrom } from 'threepoint-rooms/settings';
+import { RoomTokens, relayConfigurationFrom } from 'threepoint-rooms/settings';
 import type * as v from 'valibot';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer as startFromSource } from '../../server/start-server';
-import { poseEvent } from '../../src/rooms/protocol/socket-parsers';
-import { RoomTokens } from '../../src/rooms/server/access/room-tokens';
-import { scheduleFor } from '../../src/study/model/plan/schedule';
-import { begin } from '../../src/study/model/progress/progress';
-import { checkedRecord } from '../../src/study/model/records/study-record';
-import { openStudyStore } from '../../src/study/server/sqlite/study-store';
 import { reportFigures } from '../reliability/report-figures';
 import {
   poseBytes,
@@ -26,8 +20,9 @@ import {
   until,
 } from '../rooms/server/running-relay';
 import { guestOfTest } from '../rooms/server/until-finished';
-import { paperPlan, session } from '../study/model/studies';
+import { begun, paperPlan } from '../study/model/studies';
 import { studySeats } from '../study/server/running-studies';
+import { startedStudy } from '../study/server/stored-studies';
 import { directoryWith } from '../temporary-directory';
 import { mannequin } from '../threepoint/avatar/glb';
 import {
@@ -53,27 +48,12 @@ const trial = { step: 'ball/1/trial-1', run: 1 };
 /** Starts the server as behind a proxy, with a study in which P01 and P02 take part and P03's place is free. */
 async function startWithStudy() {
   const server = await startServer({ THREEPOINT_TRUST_PROXY: '1', THREEPOINT_ADMIN_TOKEN: adminToken });
-  const store = openStudyStore(join(server.directory, 'studies/studies.db'));
-  const now = Date.now() / 1000;
-  store.plans.add(plan, { simulated: false, at: now });
-  const claims = { P01: store.places.claim('paper', 'P01', now), P02: store.places.claim('paper', 'P02', now) };
-  const one = session(scheduleFor(plan, 'P01'));
-  one.tell({ type: 'consent', version: plan.consent.version, motion: true });
-  one.doUntil(({ kind }) => kind === 'end');
-  const records = one.records.map((record) => checkedRecord(record, plan));
-  store.records.store('paper', 'P01', records, now);
-  const placeOf = (name: string) => store.overview('paper', now).find(({ participant }) => participant === name);
+  const study = startedStudy(join(server.directory, 'studies/studies.db'));
   return {
     port: server.port,
-    records,
-    claims,
-    invitation: placeOf('P03')?.invitation,
-    hasStudyAsBegun: () =>
-      store.places.holds('paper', 'P01', claims.P01.token) &&
-      store.places.holds('paper', 'P02', claims.P02.token) &&
-      placeOf('P03')?.claimed === false,
+    ...study,
     async stop() {
-      store.close();
+      study.close();
       await server.kill();
     },
   };
@@ -85,7 +65,7 @@ afterAll(() => current?.stop());
 
 /** Returns the server of the last test, or a new one after a test that gave a place away or deleted it. */
 async function wholeServer(): Promise<WholeServer> {
-  if (current?.hasStudyAsBegun()) return current;
+  if (current?.isAsBegun()) return current;
   await current?.stop();
   current = await startWithStudy();
   return current;
@@ -109,7 +89,7 @@ function bodyOf({ json }: HttpRow, { records }: WholeServer): string | undefined
   const bodies = {
     plan: { plan: { ...plan, id: 'another' }, simulated: false },
     records: { records },
-    progress: begin(scheduleFor(plan, 'P01')),
+    progress: begun(plan, 'P01'),
     seat: trial,
   };
   return JSON.stringify(typeof json === 'string' ? bodies[json] : json);
@@ -295,7 +275,7 @@ describe('a message to a room', () => {
   async function outcomeOf(type: string, role: SocketRole, room: string): Promise<Outcome> {
     const guest = await guestAs(role, room);
     const before = await refusals();
-    if (type === 'pose') guest.socket.emit(poseEvent, poseBytes(0));
+    if (type === 'pose') guest.pose(poseBytes(0));
     else if (type === 'unknown') guest.socket.emit('format-disk', {});
     else if (type !== 'join') guest.say(messages[type]);
     if (type !== 'leave' && type !== 'unknown') {

@@ -3,9 +3,9 @@ import { join } from 'node:path';
 import { brotliCompressSync, brotliDecompressSync, gunzipSync, gzipSync } from 'node:zlib';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { createPageHandler, type PageOptions } from '../../server/page-handler';
-import { serve } from '../../src/http/web-server';
 import { directoryWith } from '../temporary-directory';
 import { ask } from './running-server';
+import { servePage } from './served-page';
 
 const wasm = Buffer.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0]);
 const site = {
@@ -24,7 +24,7 @@ const site = {
 
 async function served(files: Readonly<Record<string, string | Buffer>> = site, options: PageOptions = {}) {
   const directory = directoryWith(files);
-  const server = await serve(createPageHandler(directory, options), { host: '127.0.0.1', port: 0 });
+  const server = await servePage(directory, options);
   onTestFinished(() => server.close());
   return { origin: `http://127.0.0.1:${server.port}`, directory };
 }

@@ -1,14 +1,13 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { expect, onTestFinished, test } from 'vitest';
-import { scheduleFor } from '../../src/study/model/plan/schedule';
-import { openStudyStore } from '../../src/study/server/sqlite/study-store';
+import { expect, test } from 'vitest';
 import { reportFigures } from '../reliability/report-figures';
 import { fists, releaseOf } from '../rooms/client/people';
 import { createTestRoom } from '../rooms/room/test-room';
 import { arrive, until } from '../rooms/server/running-relay';
-import { paperPlan, session } from '../study/model/studies';
+import { completed, paperPlan } from '../study/model/studies';
+import { opened } from '../study/server/stored-studies';
 import { forkServer } from './server-child';
 
 /** Every file below a directory, of any name. */
@@ -39,22 +38,13 @@ test('a match over sockets and a study without motion consent leave no motion on
   for (const person of people) person.stop();
 
   const file = join(directory, 'studies/studies.db');
-  const store = openStudyStore(file);
-  let open = true;
-  onTestFinished(() => {
-    if (open) store.close();
-  });
+  const { store } = opened(file);
   const now = 1_800_000_000;
   store.plans.add(paperPlan(), { simulated: false, at: now });
-  const schedule = scheduleFor(paperPlan(), 'P01');
-  const one = session(schedule);
-  one.tell({ type: 'consent', version: schedule.consentVersion, motion: false });
-  one.doUntil(({ kind }) => kind === 'end');
-  store.records.store('paper', 'P01', one.records, now);
+  store.records.store('paper', 'P01', completed(), now);
   const recording = '{"frames":[[1,{"leftHand":{"x":0.1234567}}]]}';
   expect(() => store.motion.store('paper', 'P01', 'archery/1/trial-1', recording, now)).toThrow('motion recording');
   store.close();
-  open = false;
 
   const database = new DatabaseSync(file);
   const tables = database.prepare("SELECT name FROM sqlite_master WHERE type = 'table'").all() as { name: string }[];

@@ -1,6 +1,6 @@
+import { gameNames, studiedGames } from 'threepoint-study';
 import { expect, test } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
-import { gameNames, studiedGames } from '../../src/study/model/plan/studied-games';
 
 test('every game that participants of a study play together has a kind of room', () => {
   const together = gameNames.filter((name) => studiedGames[name].players > 1);

@@ -1,11 +1,10 @@
 import type { Mesh } from 'three';
 import { MutablePointer } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import type { PointerSource } from '../../src/threepoint/core/input/pointer';
 import { createVrPointers } from '../../src/ui/vr-pointers';
 
 /** A pointer of this source that has met something 2 m away. */
-function pointing(source: PointerSource, progress = 0): MutablePointer {
+function pointing(source: MutablePointer['source'], progress = 0): MutablePointer {
   const pointer = new MutablePointer(source);
   pointer.progress = progress;
   pointer.pointAt({ distance: 2, owner: 'menu', id: 'exit' });

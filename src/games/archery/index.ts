@@ -2,6 +2,7 @@
 export { aimOf } from './aim-point';
 export type { ArcheryAction, ArcheryEvent, ArcheryState, Arrow, BowView, Landing, Target } from './archery-state';
 export { arrowLength, braceHeight, maximumDraw } from './bow';
+export { bowInHand } from './bow-pose';
 export { ArcheryGestures, type BowCue } from './gestures';
 export {
   archeryRules,

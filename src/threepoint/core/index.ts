@@ -25,6 +25,7 @@ export {
   armSpanFromFingertipSpan,
   armSpanRange,
   assertCalibration,
+  calibrationFromHeadHeight,
   calibrationProblem,
   defaultCalibration,
   eyeHeightFromStature,

@@ -1,7 +1,6 @@
 import { distance, length, normalise, subtract, vec3 } from 'threepoint/math';
+import { aimOf, archeryRules } from 'threepoint-games/archery';
 import { expect, test } from 'vitest';
-import { aimOf } from '../../../src/games/archery/aim-point';
-import { archeryRules } from '../../../src/games/archery/rules';
 
 const { targets } = archeryRules.start(['archer'], 1);
 const eyes = vec3(-1.2, 2, 3);

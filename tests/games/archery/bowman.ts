@@ -13,15 +13,14 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/math';
-import type { BowView } from '../../../src/games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from '../../../src/games/archery/bow';
+import { wristAround } from 'threepoint-games';
+import { ArcheryGestures, type BowView, braceHeight } from 'threepoint-games/archery';
+import { arrowRestHeight } from '../../../src/games/archery/bow';
 import {
   type ArcheryGestureSettings,
-  ArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
 } from '../../../src/games/archery/gestures';
-import { wristAround } from '../../../src/games/fist';
 
 /** What an archer does in one frame who holds the bow out and has the other hand on the line of the arrow. */
 export interface Posed {

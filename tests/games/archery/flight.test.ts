@@ -1,19 +1,11 @@
 import fc from 'fast-check';
 import { addScaled, distance, dot, length, normalise, scale, subtract, vec3 } from 'threepoint/math';
+import { type Launch, positionAt, velocityAt } from 'threepoint-games';
+import { arrowLength, maximumDraw, type Target, walls } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
-import type { Target } from '../../../src/games/archery/archery-state';
-import {
-  arrowLength,
-  arrowMass,
-  arrowSpeed,
-  efficiency,
-  maximumDraw,
-  minimumDraw,
-  stiffness,
-} from '../../../src/games/archery/bow';
+import { arrowMass, arrowSpeed, efficiency, minimumDraw, stiffness } from '../../../src/games/archery/bow';
 import { firstHit, releaseDirection, timeToGround, timeToTarget, timeToWall } from '../../../src/games/archery/flight';
-import { walls } from '../../../src/games/archery/rules';
-import { gravity, type Launch, launchDirection, positionAt, velocityAt } from '../../../src/games/ballistics';
+import { gravity, launchDirection } from '../../../src/games/ballistics';
 import { direction, evenly, seed } from '../../threepoint/core/arbitraries';
 
 const launch: fc.Arbitrary<Launch> = fc

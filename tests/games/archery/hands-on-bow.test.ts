@@ -1,10 +1,9 @@
 import fc from 'fast-check';
 import { add, cross, distance, length, normalise, otherSide, rotate, type Side, up, vec3 } from 'threepoint/math';
+import { wristAround } from 'threepoint-games';
+import { archeryRules, braceHeight } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
-import { braceHeight } from '../../../src/games/archery/bow';
 import { oneHandedDraw, oneHandedDrawSpeed } from '../../../src/games/archery/nocked-arrow';
-import { archeryRules } from '../../../src/games/archery/rules';
-import { wristAround } from '../../../src/games/fist';
 import { evenly, seed, vector } from '../../threepoint/core/arbitraries';
 import { bowAt, bowman } from './bowman';
 import { shotWithOneHand } from './one-handed-round';

@@ -1,9 +1,8 @@
 import { addScaled, normalise, otherSide, reject, type Side, up, type Vec3, vec3 } from 'threepoint/math';
-import type { ArcheryState } from '../../../src/games/archery/archery-state';
-import { arrowRestHeight, braceHeight } from '../../../src/games/archery/bow';
+import { type ArcheryState, archeryRules, braceHeight } from 'threepoint-games/archery';
+import { arrowRestHeight } from '../../../src/games/archery/bow';
 import { releaseDirection } from '../../../src/games/archery/flight';
 import { oneHandedDraw } from '../../../src/games/archery/nocked-arrow';
-import { archeryRules } from '../../../src/games/archery/rules';
 import { bowman } from './bowman';
 
 /** Returns the direction of the knuckles of a hand with the bow at `bowAt` for its arrow to hit the target. */

@@ -1,20 +1,19 @@
 import type { Buttons, TrackingFrame } from 'threepoint/core';
-import type { ArcherBody } from '../../../src/games/archery/archer-postures';
-import type {
-  ArcheryAction,
-  ArcheryEvent,
-  ArcheryOptions,
-  ArcheryState,
-} from '../../../src/games/archery/archery-state';
+import { createMatch } from 'threepoint-games';
 import {
+  type ArcheryAction,
+  type ArcheryEvent,
   ArcheryGestures,
+  type ArcheryState,
+  archeryRules,
   type BowCue,
-  defaultArcheryGestureSettings,
-  type GestureFrame,
-} from '../../../src/games/archery/gestures';
-import { archeryRules, delayed, isArmed } from '../../../src/games/archery/rules';
-import { createSimulatedArcher } from '../../../src/games/archery/simulated-archer';
-import { createMatch } from '../../../src/games/match';
+  createSimulatedArcher,
+  delayed,
+  isArmed,
+} from 'threepoint-games/archery';
+import type { ArcherBody } from '../../../src/games/archery/archer-postures';
+import type { ArcheryOptions } from '../../../src/games/archery/archery-state';
+import { defaultArcheryGestureSettings, type GestureFrame } from '../../../src/games/archery/gestures';
 
 /** What happened in a round that was played. */
 export interface Round {

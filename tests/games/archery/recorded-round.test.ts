@@ -1,10 +1,8 @@
 import fc from 'fast-check';
 import { distance, vec3 } from 'threepoint/math';
+import { createMatch } from 'threepoint-games';
+import { type ArcheryAction, type ArcheryState, archeryRules, delayed, maximumDraw } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
-import type { ArcheryAction, ArcheryState } from '../../../src/games/archery/archery-state';
-import { maximumDraw } from '../../../src/games/archery/bow';
-import { archeryRules, delayed } from '../../../src/games/archery/rules';
-import { createMatch } from '../../../src/games/match';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { shotAt, start, tickSeconds } from './shots';
 

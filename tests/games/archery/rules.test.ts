@@ -1,10 +1,9 @@
 import fc from 'fast-check';
 import { dot, length, normalise, scale, subtract, vec3 } from 'threepoint/math';
+import { type ArcheryAction, delayed, matchTime, secondsLeft, walls, zone } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
-import type { ArcheryAction } from '../../../src/games/archery/archery-state';
 import { arrowSpeed } from '../../../src/games/archery/bow';
 import { firstHit } from '../../../src/games/archery/flight';
-import { delayed, matchTime, secondsLeft, walls, zone } from '../../../src/games/archery/rules';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { highShot, shotAt, start, tickSeconds, told, wideOf } from './shots';
 

@@ -14,12 +14,10 @@ import {
   up,
   vec3,
 } from 'threepoint/math';
+import { type ArcheryState, archeryRules, createSimulatedArcher } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
 import type { ArcherBody } from '../../../src/games/archery/archer-postures';
-import type { ArcheryState } from '../../../src/games/archery/archery-state';
 import { arrowSpeed } from '../../../src/games/archery/bow';
-import { archeryRules } from '../../../src/games/archery/rules';
-import { createSimulatedArcher } from '../../../src/games/archery/simulated-archer';
 import { fistOf } from '../../../src/games/fist';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { playRound, steady } from './playing';

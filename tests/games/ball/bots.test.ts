@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import type { TrackingFrame } from 'threepoint/core';
+import { createEstimator, type TrackingFrame } from 'threepoint/core';
 import { distance, length, rotate, subtract, vec3 } from 'threepoint/math';
 import { describe, expect, it } from 'vitest';
 import type { BallBot } from '../../../src/games/ball/ball-bot';
@@ -9,7 +9,6 @@ import { ballRules } from '../../../src/games/ball/rules';
 import { createSimulatedHolder } from '../../../src/games/ball/simulated-holder';
 import { createSimulatedThrower } from '../../../src/games/ball/simulated-thrower';
 import { stations, zoneRadius } from '../../../src/games/ball/stations';
-import { createIk } from '../../../src/threepoint/core/estimation/estimators';
 
 interface Match {
   readonly state: BallState;
@@ -97,7 +96,7 @@ describe('bots', () => {
 
   it('stand upright however they reach: the solved pelvis is well below the head and faces ahead', () => {
     const { frames } = play({});
-    const estimators = [0, 1, 2].map(() => createIk({ eyeHeight: 1.6, armSpan: 1.5 }));
+    const estimators = [0, 1, 2].map(() => createEstimator('ik', { eyeHeight: 1.6, armSpan: 1.5 }));
     frames.forEach((now, index) => {
       if (index % 3 !== 0) return;
       now.forEach((frame, player) => {

@@ -1,10 +1,8 @@
 import fc from 'fast-check';
 import { add, nextRandom, type Vec3, vec3 } from 'threepoint/math';
+import { type BallInput, ballRules, rackPosition } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import type { BallInput } from '../../../src/games/ball/ball-state';
-import { ballRules } from '../../../src/games/ball/rules';
 import { ballMatchTime } from '../../../src/games/ball/state-selectors';
-import { rackPosition } from '../../../src/games/ball/stations';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
 import { headOf, hold, inFront, leftThrower, stand, tickSeconds, told, velocityTo } from './playing';
 

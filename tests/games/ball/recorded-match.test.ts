@@ -1,8 +1,6 @@
 import { add, nextRandom, vec3 } from 'threepoint/math';
+import { type BallEvent, type BallInput, type BallState, ballRules, rackPosition } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import type { BallEvent, BallInput, BallState } from '../../../src/games/ball/ball-state';
-import { ballRules } from '../../../src/games/ball/rules';
-import { rackPosition } from '../../../src/games/ball/stations';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
 import { headOf, hold, inFront, stand, tickSeconds, velocityTo } from './playing';

@@ -1,12 +1,24 @@
 import fc from 'fast-check';
-import { type BufferAttribute, Mesh } from 'three';
-import { distance, vec3 } from 'threepoint/math';
+import { type BufferAttribute, type Group, Mesh, Vector3 } from 'three';
+import { distance, type Vec3, vec3 } from 'threepoint/math';
 import { braceHeight, maximumDraw } from 'threepoint-games/archery';
 import { describe, expect, it } from 'vitest';
 import { createBow } from '../../../src/page/archery/bow/bow-model';
 import { stringBow } from '../../../src/page/archery/bow/limb-shape';
+import { bowView } from '../../games/archery/bow-view';
 import { fromEulerYxz } from '../../threepoint/core/euler-angles';
-import { bowView, drawnString } from './bow-view';
+
+/** The string as it is drawn, from the upper tip over the nock point to the lower tip, floor frame. */
+function drawnString(bow: Group): readonly [Vec3, Vec3, Vec3] {
+  bow.updateMatrixWorld();
+  const [upper, lower] = [bow.children[2]!, bow.children[3]!];
+  const tip = vec3(0, -0.5, 0);
+  return [
+    upper.localToWorld(new Vector3().copy(tip)),
+    upper.localToWorld(new Vector3(0, 0.5, 0)),
+    lower.localToWorld(new Vector3().copy(tip)),
+  ];
+}
 
 const draws = fc.double({ min: 0, max: maximumDraw, noNaN: true });
 const angle = fc.double({ min: -3, max: 3, noNaN: true });

@@ -1,3 +1,4 @@
+import { createRoomPass, SocketConnection } from 'threepoint-rooms/socket';
 // @module-tag full
 
 import {
@@ -13,8 +14,6 @@ import { distance, type Vec3 } from 'threepoint/math';
 import { ballClientPolicy } from 'threepoint-games/ball';
 import { expect, onTestFinished, test } from 'vitest';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
-import { createRoomPass } from '../../../src/rooms/client/room-pass';
-import { SocketConnection } from '../../../src/rooms/client/socket-connection';
 import { forkServer } from '../../server/server-child';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 

@@ -1,8 +1,7 @@
 import { allReleased, type Buttons, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
 import { distance } from 'threepoint/math';
-import { type BallEvent, type BallSteering, createBallLoopbackHost } from 'threepoint-games/ball';
+import { type BallEvent, type BallState, type BallSteering, createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, it } from 'vitest';
-import type { BallOptions } from '../../../src/games/ball/ball-state';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 
@@ -16,7 +15,7 @@ function page(options: {
   bots?: boolean;
   seat?: number;
   spectate?: boolean;
-  ball?: Partial<BallOptions>;
+  ball?: Partial<BallState['options']>;
   rateHz?: number;
   steering?: () => BallSteering | null;
   host?: ReturnType<typeof createBallLoopbackHost>;

@@ -4,11 +4,11 @@ import type { ConnectionStatus, Visitor } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
 import { createBallRunner } from '../../../src/page/ball/ball-runner';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
-import type { PlayedStep } from '../../../src/study/model/plan/schedule';
-import { type FinishedTrial, PlayedTrial } from '../../../src/study/participant/trial/study-trial';
+import { trialOf } from '../../study/participant/played-trial';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { activityServices } from '../activity-services';
 
+type Trial = ReturnType<typeof trialOf>;
 const released: Buttons = { left: allReleased, right: allReleased };
 const people = ['P01', 'P02', 'P03'];
 const seconds = 12;
@@ -16,17 +16,6 @@ const seconds = 12;
 const rateHz = 36;
 
 const spent = { tracking: 0, features: 0, inference: 0, kinematics: 1, skinning: 1, render: 3, frame: 5 };
-
-const step = {
-  kind: 'trial',
-  id: 'ball/1/trial-1',
-  task: 'ball',
-  block: 1,
-  repetition: 1,
-  condition: 'ik',
-  embodiment: { estimator: 'ik' },
-  seconds,
-} as PlayedStep;
 
 /** The room of a server that can be cut off, and that loses its match when it is restarted. */
 function restartedRoom() {
@@ -98,24 +87,17 @@ async function group({ stopped = false } = {}) {
       await runner.prepare(place);
       const estimator = createEstimator('ik', defaultCalibration);
       let timeFrame: (() => void) | null = null;
-      let finished: FinishedTrial | null = null;
-      let trial: PlayedTrial | null = null;
+      let finished: ReturnType<Trial['follow']> = null;
+      let trial: Trial | null = null;
       return {
         play,
         start() {
-          trial = new PlayedTrial(
-            step,
-            runner,
-            {
-              calibration: () => defaultCalibration,
-              device: () => ({ name: 'a test', refreshRateHz: rateHz, input: 'simulated' }),
-              estimator: () => 'ik',
-              listenToFrames: (listener) => {
-                timeFrame = listener && (() => listener(spent, false));
-              },
+          trial = trialOf(runner, {
+            ...{ task: 'ball', seconds, key: participant },
+            listenToFrames: (listener) => {
+              timeFrame = listener && (() => listener(spent, false));
             },
-            { key: participant, motion: true, seed: 1, now: () => 1e9 },
-          );
+          });
           return trial;
         },
         frame() {

@@ -1,8 +1,8 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
 import { distance, vec3 } from 'threepoint/math';
-import { ballInAir, ballRules, defaultBallOptions } from 'threepoint-games/ball';
+import { fallTime } from 'threepoint-games';
+import { ballInAir, ballRadius, ballRules, defaultBallOptions } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { floorContactTime } from '../../../src/games/ball/flight';
 import { Balls } from '../../../src/page/ball/view/balls';
 import { velocityTo } from '../../rooms/client/people';
 
@@ -51,7 +51,7 @@ describe('a ball that has not been told to be caught', () => {
     const mesh = view.object.children[0] as InstancedMesh;
     const matrix = new Matrix4();
     let most = 0;
-    for (let time = 1; time < floorContactTime(launch); time += 1 / 72) {
+    for (let time = 1; time < 1 + fallTime(launch, ballRadius); time += 1 / 72) {
       view.show({ ...fresh, balls }, time, () => null, opening);
       mesh.getMatrixAt(0, matrix);
       const drawnAt = new Vector3().setFromMatrixPosition(matrix);

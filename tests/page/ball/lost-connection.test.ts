@@ -1,75 +1,10 @@
 import { allReleased, type Buttons } from 'threepoint/core';
 import { addScaled, type Pose, type Side, type Vec3, vec3 } from 'threepoint/math';
-import { type BallGame, ballClientPolicy } from 'threepoint-games/ball';
-import type { ConnectionStatus } from 'threepoint-rooms/room';
 import { describe, expect, test } from 'vitest';
-import type { BallConnectionUpdate } from '../../../src/games/ball/ball-client';
-import type { BallRoomMessage } from '../../../src/games/ball/ball-messages';
-import { holdSeconds } from '../../../src/games/ball/gestures';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
-import { RoomSession } from '../../../src/rooms/client/room-session';
-import type { ClientMessage } from '../../../src/rooms/protocol/messages';
+import { LossyWire } from '../../rooms/client/lossy-wire';
 import { atRack, fists, holding, opening, shownAt, visitor } from '../../rooms/client/people';
 import { createTestRoom } from '../../rooms/room/test-room';
-
-type Told = ReturnType<typeof createTestRoom>;
-
-/** Ann's connection to a room that a test controls: it can be lost and come back. */
-class LossyWire extends RoomSession<BallGame> {
-  readonly #told: Told;
-  #connections: number;
-  #heard = 0;
-  #whole = false;
-
-  /** before: connections of other pages. */
-  constructor(told: Told, before = 0) {
-    super(ballClientPolicy, visitor('Ann', { seat: 0 }), true);
-    this.#told = told;
-    this.#connections = before;
-    this.connect();
-  }
-
-  connect(): void {
-    this.#connections += 1;
-    this.#heard = this.#told.sent.length;
-    this.#whole = true;
-    this.#told.room.join(this.#name, 'ann', this.joinRequest(), this.#told.time);
-  }
-
-  lose(): void {
-    this.#whole = false;
-    this.#told.room.disconnect(this.#name, this.#told.time);
-  }
-
-  override get status(): ConnectionStatus {
-    return { phase: this.#whole ? 'joined' : 'reconnecting', attempt: 0, retryIn: null, reason: null };
-  }
-
-  override update(time: number): BallConnectionUpdate {
-    const fresh = this.#whole ? this.#told.sent.slice(this.#heard) : [];
-    this.#heard = this.#told.sent.length;
-    for (const { to, message } of fresh) {
-      if (to === 'all' || to === this.#name) this.onMessage(message as BallRoomMessage, time);
-    }
-    return this.takeUpdate(time, this.#whole);
-  }
-
-  override leave(): void {
-    this.transmit({ type: 'leave' });
-  }
-
-  protected override transmit(message: ClientMessage): void {
-    if (this.#whole && message.type !== 'join') this.#told.room.onMessage(this.#name, message, this.#told.time);
-  }
-
-  protected override transmitPose(bytes: Uint8Array): void {
-    if (this.#whole) this.#told.room.onPose(this.#name, bytes, this.#told.time);
-  }
-
-  get #name(): string {
-    return `ann ${this.#connections}`;
-  }
-}
 
 const trigger = (pressure: number): Buttons => ({ left: allReleased, right: { ...allReleased, trigger: pressure } });
 
@@ -173,7 +108,7 @@ describe('a connection that is lost for a moment', () => {
     ann.lose();
     ann.throw();
     ann.connect();
-    ann.hold(ahead, 0, 2 * holdSeconds);
+    ann.hold(ahead, 0, 1);
     expect([ann.held, ann.ball(0)]).toEqual([null, 'rack']);
     ann.grab(2);
     expect([ann.held, ann.ball(2)]).toEqual([2, 'hand']);
@@ -214,7 +149,7 @@ test('a page that is reloaded at once puts back what its player held; play goes 
   }
   ann.grab(2);
   ann.reload();
-  ann.hold(ahead, 1, 2 * holdSeconds);
+  ann.hold(ahead, 1, 1);
   expect([ann.held, ann.ball(2)]).toEqual([null, 'rack']);
   ann.grab(3);
   expect([ann.held, ann.ball(3)]).toEqual([3, 'hand']);

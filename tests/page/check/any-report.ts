@@ -6,6 +6,7 @@ import {
   reportVersion,
   trackerNames,
   worldNames,
+  writeHeadsetReport,
 } from '../../../src/page/check/headset-report';
 
 const between = (min: number, max: number) => fc.double({ min, max, noNaN: true });
@@ -87,3 +88,6 @@ export const anyReport: fc.Arbitrary<HeadsetReport> = fc.record({
     fc.record({ frames: fc.integer({ min: 1, max: 3000 }), complaint: fc.constant(null), joints }),
   ),
 });
+
+/** Returns the file of a report, as the page offers it. */
+export const writtenReport = (report: HeadsetReport): string => writeHeadsetReport(report);

@@ -1,4 +1,4 @@
-import { BodySolver } from 'threepoint';
+import { BodySolver, deviceJointNames } from 'threepoint';
 import {
   actorFrame,
   createJointPoses,
@@ -8,7 +8,6 @@ import {
 } from 'threepoint/core';
 import { expect, test } from 'vitest';
 import { Measurements } from '../../../src/page/check/measurements';
-import { deviceBodySize, deviceJointNames } from '../../../src/threepoint/core/tracking/device-body';
 
 const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const kinds = { left: 'hand', right: 'controller' } as const;
@@ -42,7 +41,7 @@ test('a device with elbows 3 cm from ours differs by 3 cm there and nowhere else
     const tracked: TrackingFrame = actorFrame(row / 60, calibration);
     const pose = body.update(tracked)!;
     forwardKinematics(skeletonFromCalibration(body.calibration), pose.body!, joints);
-    const deviceBody = new Float32Array(deviceBodySize);
+    const deviceBody = new Float32Array(3 * deviceJointNames.length);
     for (const [name, joint] of Object.entries(deviceNames)) {
       const { x, y, z } = joints[joint].position;
       const off = name.endsWith('arm-lower') ? 0.03 : 0;

@@ -6,7 +6,7 @@ import {
   sampleRecording,
   writeRecording,
 } from 'threepoint/core';
-import { mocapRateHz, prepareMocap } from 'threepoint/motion';
+import { mocapRateHz } from 'threepoint/motion';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../../bench/evaluate/drive';
 import { addClip, emptyMeasures, report, reportNames } from '../../../bench/evaluate/measures';
@@ -15,10 +15,9 @@ import { meanErrors, meanOf } from '../../../src/page/mocap/joint-errors';
 import { pairFiles } from '../../../src/page/mocap/mocap-files';
 import { recordingOf } from '../../../src/page/mocap/simulated-recording';
 import { Truth } from '../../../src/page/mocap/truth';
-import { finishWork } from '../../../src/threepoint/core/motion/work';
-import { goldenMocap, sourceOf } from '../../threepoint/core/mocap/golden-mocap';
+import { clipOf, goldenMocap } from '../../threepoint/core/mocap/golden-mocap';
 
-const clip = finishWork(prepareMocap(sourceOf(goldenMocap[0]!))).clips[0]!;
+const clip = clipOf(goldenMocap[0]!);
 
 /** The clip as the evaluation reads it. */
 const recorded = (recording: Replayable, truth: Truth): RecordedFrame[] =>

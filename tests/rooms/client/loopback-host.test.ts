@@ -1,10 +1,9 @@
 import { type BallInput, ballRules, createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import type { BallLoopbackOptions } from '../../../src/games/ball/ball-client';
 import { atRack, createPerson, fists, holding, opening, releaseOf, visitor } from './people';
 
 /** Three people in a room of this page, frame by frame at 72 Hz. */
-function threeTogether(options: Partial<BallLoopbackOptions> = {}) {
+function threeTogether(options: Parameters<typeof createBallLoopbackHost>[0] = {}) {
   const host = createBallLoopbackHost(options);
   let time = 100;
   const people = ['Ann', 'Ben', 'Cal'].map((name) => createPerson(host.connect(visitor(name), time)));

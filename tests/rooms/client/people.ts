@@ -1,7 +1,6 @@
 import { defaultCalibration, unknownFingers } from 'threepoint/core';
 import {
   add,
-  addScaled,
   identity,
   invertTransform,
   type Pose,
@@ -11,13 +10,11 @@ import {
   transformPose,
   type Vec3,
   vec3,
+  zero,
 } from 'threepoint/math';
-import { type BallConnection, type BallEvent, rackPosition, stations } from 'threepoint-games/ball';
-import type { BallConnectionUpdate } from '../../../src/games/ball/ball-client';
-import type { BallAction } from '../../../src/games/ball/ball-state';
-import { gravity } from '../../../src/games/ballistics';
-import { wristAround } from '../../../src/games/fist';
-import type { OutgoingPose, Visitor } from '../../../src/rooms/client/connection';
+import { positionAt, wristAround } from 'threepoint-games';
+import { type BallConnection, type BallEvent, type BallGame, rackPosition, stations } from 'threepoint-games/ball';
+import type { ConnectionUpdate, OutgoingPose, Visitor } from '../../../src/rooms/client/connection';
 
 export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
   name,
@@ -32,7 +29,7 @@ const eyes = vec3(0, 1.6, 0);
 
 /** The velocity that brings a ball from one place to another in this time [s]. */
 export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
-  addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
+  scale(subtract(to, positionAt({ position: from, velocity: zero }, seconds)), 1 / seconds);
 
 /** A player who stands where their seat is, with their wrists at these places of the arena. */
 export function shownAt(
@@ -72,18 +69,20 @@ export const holding = (middle: Vec3): Record<Side, Pose<'arena'>> => ({
 /** Returns the place at which a thrower of this seat releases the ball. */
 export const releaseOf = (seat: number): Vec3 => add(stations[seat]!.position, vec3(0, 1.6, -0.5));
 
-type Unnumbered = BallAction extends infer D ? (D extends BallAction ? Omit<D, 'sequence'> : never) : never;
+type Update = ConnectionUpdate<BallGame>;
+type Action = BallGame['action'];
+type Unnumbered = Action extends infer D ? (D extends Action ? Omit<D, 'sequence'> : never) : never;
 
 /** A person at a connection: does what a page would do every frame, and records what it received. */
 export function createPerson(connection: BallConnection) {
   const events: BallEvent[] = [];
-  const news: BallConnectionUpdate['changes'][number][] = [];
-  const poses: BallConnectionUpdate['poses'][number][] = [];
+  const news: Update['changes'][number][] = [];
+  const poses: Update['poses'][number][] = [];
   let sequence = 0;
   let wrists: Record<Side, Pose<'arena'> | null> = { left: null, right: null };
-  const act = (action: Unnumbered): BallAction => {
+  const act = (action: Unnumbered): Action => {
     sequence += 1;
-    const numbered = { ...action, sequence } as BallAction;
+    const numbered = { ...action, sequence } as Action;
     connection.sendAction(numbered);
     return numbered;
   };

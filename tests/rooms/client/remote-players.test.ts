@@ -1,11 +1,10 @@
-import { actorFrame, defaultCalibration, unknownFingers } from 'threepoint/core';
+import { actorFrame, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
 import { angleBetween, createRandom, distance, fromAxisAngle, identity, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { initialPlayoutOffset, longestExtrapolation, type PlaybackReport } from '../../../src/rooms/client/playback';
 import { RemotePlayers } from '../../../src/rooms/client/remote-players';
 import { packetMs } from '../../../src/rooms/protocol/packet-time';
 import type { PosePacket } from '../../../src/rooms/protocol/pose-packet';
-import { createIk } from '../../../src/threepoint/core/estimation/estimators';
 import { isNightly } from '../../nightly';
 import { printFigures } from '../../print-figures';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
@@ -267,7 +266,7 @@ describe('playback of others', () => {
   });
 
   test('a body between two packets keeps its bones and stays near both', () => {
-    const ik = createIk(defaultCalibration);
+    const ik = createEstimator('ik', defaultCalibration);
     const poses = Array.from({ length: 60 }, (_, i) => poseOf(ik, actorFrame(i / 30, defaultCalibration)));
     let drawnBodies = 0;
     playback(
@@ -289,7 +288,7 @@ describe('playback of others', () => {
 
   test('sixteen others cost little', () => {
     const players = new RemotePlayers();
-    const ik = createIk(defaultCalibration);
+    const ik = createEstimator('ik', defaultCalibration);
     const frames = 300;
     let spent = 0;
     for (let frame = 0; frame < frames; frame++) {

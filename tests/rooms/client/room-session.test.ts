@@ -1,18 +1,16 @@
 import { defaultCalibration } from 'threepoint/core';
 import { type BallGame, BallPolicy, ballClientPolicy } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import type { BallConnectionUpdate } from '../../../src/games/ball/ball-client';
-import type { BallRoomMessage } from '../../../src/games/ball/ball-messages';
-import type { ConnectionStatus } from '../../../src/rooms/client/connection';
+import type { ConnectionStatus, ConnectionUpdate } from '../../../src/rooms/client/connection';
 import { RoomSession } from '../../../src/rooms/client/room-session';
-import type { ClientMessage } from '../../../src/rooms/protocol/messages';
+import type { ClientMessage, RoomMessage } from '../../../src/rooms/protocol/messages';
 import { Room } from '../../../src/rooms/room/room';
 import { visitor } from './people';
 
 /** A client whose wire takes as long as the test wants: what the Room says waits until it is delivered. */
 class SlowClient extends RoomSession<BallGame> {
   readonly #room: Room<BallGame>;
-  readonly #waiting: BallRoomMessage[] = [];
+  readonly #waiting: RoomMessage<BallGame>[] = [];
   #joins = 0;
   #time = 0;
   #isJoined = false;
@@ -66,7 +64,7 @@ class SlowClient extends RoomSession<BallGame> {
     return { phase: this.#isJoined ? 'joined' : 'connecting', attempt: 0, retryIn: null, reason: null };
   }
 
-  override update(time: number): BallConnectionUpdate {
+  override update(time: number): ConnectionUpdate<BallGame> {
     return this.takeUpdate(time, this.#isJoined);
   }
 

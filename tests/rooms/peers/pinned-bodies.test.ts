@@ -2,6 +2,7 @@ import { readFile } from 'node:fs/promises';
 import {
   type AvatarPose,
   type Calibration,
+  createEstimator,
   defaultCalibration,
   forwardKinematics,
   skeletonFromCalibration,
@@ -21,13 +22,12 @@ import {
   vec3,
 } from 'threepoint/math';
 import { loadAvatar } from 'threepoint/three';
+import { pinning } from 'threepoint/trackers';
 import { expect, test } from 'vitest';
 import { PlacedPose } from '../../../src/rooms/drawing/placed-pose';
 import { RemoteBodies } from '../../../src/rooms/drawing/remote-bodies';
 import { PoseSender } from '../../../src/rooms/peers/pose-sender';
 import { RemotePoses } from '../../../src/rooms/peers/remote-poses';
-import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import { pinning } from '../../../src/threepoint/core/estimation/pinning';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { trackersOn, withOffsets } from '../../threepoint/core/estimation/tracked-body';
 
@@ -108,7 +108,10 @@ function frameOf({ head, nod, bend, aside, rightFoot }: Posture, free: AvatarPos
 
 /** A person in a posture whose body IK solves. */
 function person(posture: Posture) {
-  const [plain, pinned] = [createIk(calibration), createIk(withOffsets(calibration), { pinning })];
+  const [plain, pinned] = [
+    createEstimator('ik', calibration),
+    createEstimator('ik', withOffsets(calibration), null, { pinning }),
+  ];
   return {
     calibration,
     pose: null as AvatarPose | null,

@@ -1,8 +1,8 @@
 import { createHash } from 'node:crypto';
 import fc from 'fast-check';
 import { builtInAvatarOf, builtInBodies, defaultAvatar, defaultCalibration, skinTones } from 'threepoint/core';
+import { BallPolicy, ballClientPolicy } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ballActionFrom, ballRoomMessageFrom } from '../../../src/games/ball/ball-messages';
 import {
   type ClientMessage,
   clientMessageFrom,
@@ -49,7 +49,7 @@ const throwing = {
 function readInBallRoom(value: unknown): ClientMessage | null {
   const message = clientMessageFrom(value);
   if (message?.type !== 'action') return message;
-  const action = ballActionFrom(message.action);
+  const action = new BallPolicy().readAction(message.action);
   return action && { type: 'action', action };
 }
 
@@ -132,10 +132,10 @@ describe('control messages', () => {
     let refused = 0;
     for (const { what, body } of [...descriptions, ...addresses]) {
       expect(clientMessageFrom({ ...signal, body }), `${what}`).toBeNull();
-      expect(ballRoomMessageFrom({ type: 'signal', from: 'bens-page', body }), `${what}`).toBeNull();
+      expect(ballClientPolicy.readMessage({ type: 'signal', from: 'bens-page', body }), `${what}`).toBeNull();
       refused += 1;
     }
-    expect(ballRoomMessageFrom({ type: 'signal', from: 'bens-page', body: signal.body })).not.toBeNull();
+    expect(ballClientPolicy.readMessage({ type: 'signal', from: 'bens-page', body: signal.body })).not.toBeNull();
     reportFigures('voice-signals', { 'signals refused': `${refused} of ${descriptions.length + addresses.length}` });
   });
 
@@ -143,8 +143,8 @@ describe('control messages', () => {
     fc.assert(
       fc.property(fc.anything(), (value) => {
         clientMessageFrom(value);
-        ballActionFrom(value);
-        ballRoomMessageFrom(value);
+        new BallPolicy().readAction(value);
+        ballClientPolicy.readMessage(value);
       }),
     );
   });

@@ -3,6 +3,7 @@ import {
   type AvatarPose,
   actorFrame,
   type Calibration,
+  createEstimator,
   forwardKinematics,
   type PoseEstimator,
   type Skeleton,
@@ -10,10 +11,9 @@ import {
   type TrackingFrame,
 } from 'threepoint/core';
 import { add, fromAxisAngle, multiply, type TrackedPose, up, vec3 } from 'threepoint/math';
+import { pinning } from 'threepoint/trackers';
 import { packetMs } from '../../../src/rooms/protocol/packet-time';
 import type { PosePacket } from '../../../src/rooms/protocol/pose-packet';
-import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import { pinning } from '../../../src/threepoint/core/estimation/pinning';
 import { evenly, rotation, standpoint, vector } from '../../threepoint/core/arbitraries';
 import { type Joints, poseOf, showAll } from '../../threepoint/core/estimation/drawn';
 import { movingPerson, transformFrame, withHand } from '../../threepoint/core/estimation/moving-person';
@@ -105,7 +105,7 @@ const sentPacket = ({ start, jump, fingers, calibration }: Sender, pose: AvatarP
 /** Returns the packet of a person with a body that this estimator solves (default: IK). */
 export const packetOf = async (
   sender: Sender,
-  create: (calibration: Calibration) => PoseEstimator = createIk,
+  create: (calibration: Calibration) => PoseEstimator = (calibration) => createEstimator('ik', calibration),
 ): Promise<SentPacket> => sentPacket(sender, await showAll(create(sender.calibration), framesOf(sender)));
 
 /** The way from a drawn joint to where its tracker is: a few centimetres aside, and turned. */
@@ -159,7 +159,10 @@ function pinnedJoints({ hips, chest, leftFoot, rightFoot }: PinnedSender, free: 
 /** Returns the packet of a person with trackers, whose body IK solves. */
 export async function pinnedPacketOf(pinned: PinnedSender): Promise<SentPacket> {
   const { sender, seen } = pinned;
-  const [plain, estimator] = [createIk(sender.calibration), createIk(withOffsets(sender.calibration), { pinning })];
+  const [plain, estimator] = [
+    createEstimator('ik', sender.calibration),
+    createEstimator('ik', withOffsets(sender.calibration), null, { pinning }),
+  ];
   const frames = framesOf(sender).map((frame, i): TrackingFrame => {
     const free = forwardKinematics(skeletonFromCalibration(sender.calibration), poseOf(plain, frame).body!);
     const isSeen = { always: true, lost: i < framesBefore - 5, found: i > framesBefore - 5 }[seen];

@@ -1,6 +1,5 @@
-import { ballSecondsLeft } from 'threepoint-games/ball';
+import { ballRules, ballSecondsLeft } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ballMatchTime } from '../../../src/games/ball/state-selectors';
 import { poseRetentionSeconds } from '../../../src/rooms/room/pose-validator';
 import { atRack, fists, holding, opening, releaseOf } from '../client/people';
 import { createTestRoom } from './test-room';
@@ -40,7 +39,7 @@ describe('a pause', () => {
     testRoom.tick();
     const message = testRoom.sent.findLast((line) => line.message.type === 'paused')?.message;
     const at = message?.type === 'paused' ? message.at : null;
-    expect(at).toBeCloseTo(ballMatchTime(match()), 1);
+    expect(at).toBeCloseTo(match().tick * ballRules.tickSeconds, 1);
     testRoom.pass(40, testRoom.stand);
     expect(testRoom.join('dot', { spectate: true }).paused).toBe(at);
     pause('ann', false);

@@ -1,10 +1,7 @@
 import fc from 'fast-check';
 import { addScaled, createRandom, isFiniteVec3, vec3 } from 'threepoint/math';
-import type { BallState } from 'threepoint-games/ball';
+import { type BallGame, BallPolicy, type BallState, ballClientPolicy } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ballRoomMessageFrom } from '../../../src/games/ball/ball-messages';
-import { packBall, unpackBall } from '../../../src/games/ball/ball-snapshot';
-import type { BallAction } from '../../../src/games/ball/ball-state';
 import { clientMessageFrom, maxSeats } from '../../../src/rooms/protocol/messages';
 import { decodeFrame } from '../../../src/rooms/protocol/pose-frame';
 import { relayParser } from '../../../src/rooms/protocol/socket-parsers';
@@ -68,7 +65,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
       const isHeard = message && message.type !== 'join' && message.type !== 'leave';
       const isBad = isHeard && testRoom.say('ann', message) === 'bad';
       if (message && !isBad) understood += 1;
-      ballRoomMessageFrom(value);
+      ballClientPolicy.readMessage(value);
     } else if (kind === 3) {
       if (!decodeFrame(bytes)) refusedFrames += 1;
     } else {
@@ -106,13 +103,13 @@ test('actions sent twice, out of order and again later score once', { tags: ['fu
     rounds += 1;
     const testRoom = createTestRoom({ ball: { balls } });
     testRoom.begin();
-    const history: BallAction[] = [];
+    const history: BallGame['action'][] = [];
     let sequence = 0;
     for (let ball = 0; ball < balls / 2; ball++) {
-      const grab: BallAction = { type: 'grab', sequence: ++sequence, side: 'right', ball };
+      const grab: BallGame['action'] = { type: 'grab', sequence: ++sequence, side: 'right', ball };
       testRoom.pose('ann', 0, atRack(ball, balls), testRoom.time + 0.01);
       testRoom.tick();
-      const burst = (fresh: BallAction) => {
+      const burst = (fresh: BallGame['action']) => {
         history.push(fresh);
         const again = Array.from({ length: 500 }, () => history[Math.floor(chance() * history.length)]!);
         for (const action of [fresh, ...again]) {
@@ -230,7 +227,7 @@ describe('a page that comes at t = 60 s', () => {
     testRoom.join('dot', { spectate: true });
     const welcome = testRoom.welcomeOf('dot');
     const bytes = Buffer.byteLength(JSON.stringify(welcome));
-    const known = unpackBall(welcome.match!)!;
+    const known = ballClientPolicy.unpack(welcome.match!)!;
     const truth = testRoom.room.match;
     expect(known.balls).toEqual(truth.balls);
     // JSON knows no −0.
@@ -256,8 +253,8 @@ describe('a page that comes at t = 60 s', () => {
           tick: 3600 * 60,
           balls: launches.map((flight) => ({ on: 'air', launch: flight, thrower: 1, missed: true })),
         };
-        const packed = packBall(state);
-        expect(unpackBall(JSON.parse(JSON.stringify(packed)))?.balls).toEqual(state.balls);
+        const packed = new BallPolicy().snapshot(state);
+        expect(ballClientPolicy.unpack(JSON.parse(JSON.stringify(packed)))?.balls).toEqual(state.balls);
         const welcome = { ...testRoom.welcomeOf('ann'), match: packed };
         expect(Buffer.byteLength(JSON.stringify(welcome))).toBeLessThanOrEqual(2048);
       }),

@@ -1,6 +1,6 @@
 import { vec3 } from 'threepoint/math';
+import type { BallGame } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import type { BallAction } from '../../../src/games/ball/ball-state';
 import { clientMessageFrom } from '../../../src/rooms/protocol/messages';
 import { fists, opening, releaseOf, velocityTo } from '../client/people';
 import { createTestRoom } from './test-room';
@@ -38,8 +38,8 @@ describe('what the Room refuses', () => {
     testRoom.act('ben', { ...thrown, sequence: 1, at: 0, velocity: velocityTo(release, opening, 1) });
     testRoom.tick();
     expect(testRoom.refusals).toMatchObject([{ client: 'ben', seat: 1, reason: 'not-held' }]);
-    const drop: BallAction = { type: 'drop', sequence: 2, side: 'right' };
-    const named: BallAction & { player: number } = { ...drop, player: 0 };
+    const drop: BallGame['action'] = { type: 'drop', sequence: 2, side: 'right' };
+    const named: BallGame['action'] & { player: number } = { ...drop, player: 0 };
     expect(testRoom.act('ben', named)).toBe('bad');
     expect(clientMessageFrom({ type: 'action', action: drop, seat: 0 })).toBeNull();
     testRoom.tick();

@@ -1,8 +1,6 @@
 import fc from 'fast-check';
-import { BallPolicy, type BallState, ballRules } from 'threepoint-games/ball';
+import { BallPolicy, type BallState, ballClientPolicy, ballRules } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { packBall, unpackBall } from '../../../src/games/ball/ball-snapshot';
-import { applyBallEvent } from '../../../src/games/ball/client-state';
 import { clientMessageFrom, protocolVersion, unpackSeatInfo } from '../../../src/rooms/protocol/messages';
 import { Room } from '../../../src/rooms/room/room';
 import { seatHoldSeconds } from '../../../src/rooms/room/seats';
@@ -357,14 +355,16 @@ describe('a match in a room', () => {
         testRoom.begin();
         const followers: { state: BallState; heard: number }[] = [];
         play(testRoom, happenings, () => {
-          const snapshot = unpackBall(JSON.parse(JSON.stringify(packBall(testRoom.room.match))));
+          const snapshot = ballClientPolicy.unpack(
+            JSON.parse(JSON.stringify(new BallPolicy().snapshot(testRoom.room.match))),
+          );
           followers.push({ state: snapshot!, heard: testRoom.sent.length });
         });
         for (const { state, heard } of followers) {
           let known = state;
           for (const { message } of testRoom.sent.slice(heard)) {
-            if (message.type === 'match') known = unpackBall(message.match)!;
-            if (message.type === 'events') known = message.events.reduce(applyBallEvent, known);
+            if (message.type === 'match') known = ballClientPolicy.unpack(message.match)!;
+            if (message.type === 'events') known = message.events.reduce(ballClientPolicy.follow, known);
           }
           const truth = testRoom.room.match;
           expect(known.balls).toEqual(truth.balls);

@@ -1,9 +1,18 @@
 import { defaultAvatar, defaultCalibration, skeletonFromCalibration } from 'threepoint/core';
-import { type BallEvent, type BallGame, type BallInput, BallPolicy, type BallState } from 'threepoint-games/ball';
-import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/games/ball/ball-messages';
-import type { BallAction, BallOptions } from '../../../src/games/ball/ball-state';
-import { arenaFromSeatFloor } from '../../../src/games/ball/stations';
-import { type ClientMessage, type JoinRequest, protocolVersion } from '../../../src/rooms/protocol/messages';
+import {
+  type BallEvent,
+  type BallGame,
+  type BallInput,
+  BallPolicy,
+  type BallState,
+  ballClientPolicy,
+} from 'threepoint-games/ball';
+import {
+  type ClientMessage,
+  type JoinRequest,
+  protocolVersion,
+  type RoomMessage,
+} from '../../../src/rooms/protocol/messages';
 import { packetMs } from '../../../src/rooms/protocol/packet-time';
 import { encodePose } from '../../../src/rooms/protocol/pose-codec';
 import { encodeFrame } from '../../../src/rooms/protocol/pose-frame';
@@ -41,26 +50,26 @@ type Wrists = ReturnType<typeof fists>;
  * clock [s].
  */
 export function packetAt(match: BallState | null, seat: number, wrists: Wrists, time: number): Uint8Array {
-  const shown = shownAt({ arenaFromFloor: (index) => arenaFromSeatFloor(index, match) }, seat, wrists);
+  const shown = shownAt({ arenaFromFloor: (index) => ballClientPolicy.arenaFromFloor(index, match) }, seat, wrists);
   const bytes = encodePose({ ...shown, timeMs: packetMs(time * 1000) }, skeleton);
   if (!bytes) throw new Error('the pose packet of the tests is not finite');
   return bytes;
 }
 
 interface TestRoomOptions extends Partial<RoomOptions> {
-  readonly ball?: Partial<BallOptions>;
+  readonly ball?: Partial<BallState['options']>;
 }
 
 /** A room of the ball game that a test controls; it collects all messages, and checks that a page can read each. */
 export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
-  const sent: { readonly to: string; readonly message: BallRoomMessage }[] = [];
+  const sent: { readonly to: string; readonly message: RoomMessage<BallGame> }[] = [];
   const frames: Uint8Array[] = [];
   const dropped: { readonly client: string; readonly reason: string }[] = [];
   const refusals: RoomRefusal[] = [];
   const log: (readonly BallInput[])[] = [];
   let time = 1000;
-  const hear = (to: string, message: BallRoomMessage) => {
-    const read = ballRoomMessageFrom(JSON.parse(JSON.stringify(message)));
+  const hear = (to: string, message: RoomMessage<BallGame>) => {
+    const read = ballClientPolicy.readMessage(JSON.parse(JSON.stringify(message)));
     if (!read) throw new Error(`no page can read this: ${JSON.stringify(message)}`);
     sent.push({ to, message: read });
   };
@@ -111,7 +120,7 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
     pose: (client: string, seat: number, wrists: Wrists, at = time) =>
       testRoom.send(client, testRoom.packet(seat, wrists, at)),
     say: (client: string, message: Exclude<ClientMessage, { type: 'join' }>) => room.onMessage(client, message, time),
-    act: (client: string, action: BallAction) => testRoom.say(client, { type: 'action', action }),
+    act: (client: string, action: BallGame['action']) => testRoom.say(client, { type: 'action', action }),
     ready(clients: readonly string[] = trio) {
       for (const client of clients) testRoom.say(client, { type: 'ready', ready: true });
     },
@@ -122,7 +131,7 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
       testRoom.act('ann', { type: 'grab', sequence, side: 'right', ball });
     },
     /** Ann's throw of a ball from where she releases it, now. Default: into the basket in a second. */
-    throwOf(ball: number, sequence: number, velocity = velocityTo(releaseOf(0), opening, 1)): BallAction {
+    throwOf(ball: number, sequence: number, velocity = velocityTo(releaseOf(0), opening, 1)): BallGame['action'] {
       const at = time - testRoom.welcomeOf('ann').matchStart;
       return { type: 'throw', sequence, side: 'right', ball, at, position: releaseOf(0), velocity };
     },

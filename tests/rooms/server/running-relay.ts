@@ -1,18 +1,16 @@
 import { io, type Socket } from 'socket.io-client';
 import { vec3 } from 'threepoint/math';
-import { ballClientPolicy, ballKind } from 'threepoint-games/ball';
+import { type BallGame, ballClientPolicy, ballKind, ballRoomKind } from 'threepoint-games/ball';
 import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
-import { shippedRoomKinds } from '../../../server/room-kinds';
-import type { BallRoomMessage } from '../../../src/games/ball/ball-messages';
-import { serve } from '../../../src/http/web-server';
 import type { Visitor } from '../../../src/rooms/client/connection';
 import { createRoomPass, type RoomPass } from '../../../src/rooms/client/room-pass';
 import { SocketConnection } from '../../../src/rooms/client/socket-connection';
-import { maxSeats } from '../../../src/rooms/protocol/messages';
-import { messageEvent, pageParser } from '../../../src/rooms/protocol/socket-parsers';
+import { maxSeats, type RoomMessage } from '../../../src/rooms/protocol/messages';
+import { messageEvent, pageParser, poseEvent } from '../../../src/rooms/protocol/socket-parsers';
 import type { RoomKind } from '../../../src/rooms/room/room-kind';
 import { createRelay } from '../../../src/rooms/server/relay';
 import { relayConfigurationFrom } from '../../../src/rooms/server/settings/relay-configuration';
+import { serve } from '../../http/serve';
 import { testSecret } from '../../server/started-server';
 import { createPerson, visitor } from '../client/people';
 import { countingKind, countingRoomKind } from '../room/counting-game';
@@ -30,12 +28,11 @@ export async function startRelay(environment: Record<string, string> = {}, port 
     behindProxy: configuration.trustProxy,
   });
   const kinds = new Map<string, RoomKind>([
-    ...shippedRoomKinds(environment),
+    [ballKind, ballRoomKind(90)],
     [countingKind, countingRoomKind(maxSeats)],
   ]);
   const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);
   const server = await serve(createRouter([relay.service], noPage), {
-    host: '127.0.0.1',
     port,
     upgrade: relay.upgrade,
     connectionLimiter,
@@ -127,12 +124,16 @@ export function rawSocket(url: string, token: string, room: string, extraHeaders
   });
 }
 
+/** A raw socket that watches the lobby. */
+export const rawLobby = (url: string): Socket =>
+  io(`${url}/lobby`, { path: '/relay', transports: ['websocket'], parser: pageParser, forceNew: true });
+
 /** A raw socket that has joined, and what it received. */
 export async function rawGuest(url: string, room: string, token?: string) {
   const socket = rawSocket(url, token ?? (await tokenFor(url, room)), room);
-  const heard: BallRoomMessage[] = [];
+  const heard: RoomMessage<BallGame>[] = [];
   let closedAt: number | null = null;
-  socket.on(messageEvent, (message: BallRoomMessage) => heard.push(message));
+  socket.on(messageEvent, (message: RoomMessage<BallGame>) => heard.push(message));
   socket.on('disconnect', () => {
     closedAt = performance.now();
   });
@@ -143,6 +144,7 @@ export async function rawGuest(url: string, room: string, token?: string) {
     socket,
     heard,
     say,
+    pose: (bytes: Uint8Array) => socket.emit(poseEvent, bytes),
     get closedAt() {
       return closedAt;
     },

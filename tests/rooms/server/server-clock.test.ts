@@ -1,9 +1,8 @@
 import { expect, onTestFinished, test } from 'vitest';
-import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { reportFigures } from '../../reliability/report-figures';
 import { forkServer } from '../../server/server-child';
 import { experimenterToken } from '../../server/started-server';
-import { paperPlan, session } from '../../study/model/studies';
+import { completed, paperPlan } from '../../study/model/studies';
 import { asSent } from '../../study/server/stored-studies';
 import { fists, holding, opening, releaseOf } from '../client/people';
 import { arrive, tokenFor, until } from './running-relay';
@@ -69,22 +68,19 @@ test('a study goes on through an hour’s change of the server’s clock: all ac
   const own = '/paper/participants/P01';
   await ask('POST', '', experimenterToken, { plan: paperPlan(), simulated: false });
   const { token } = await ask('POST', `${own}/claim`, experimenterToken, {});
-  const schedule = scheduleFor(paperPlan(), 'P01');
-  const one = session(schedule);
-  one.tell({ type: 'consent', version: schedule.consentVersion, motion: false });
-  one.doUntil(({ kind }) => kind === 'end');
-  const third = Math.ceil(one.records.length / 3);
-  let refused = one.records.length;
+  const all = completed();
+  const third = Math.ceil(all.length / 3);
+  let refused = all.length;
   for (const [i, ahead] of [0, hour, -hour].entries()) {
     await server.setClock(ahead);
-    const records = one.records.slice(i * third, (i + 1) * third);
+    const records = all.slice(i * third, (i + 1) * third);
     const { acknowledged } = await ask('POST', `${own}/records`, token, { records });
     expect(acknowledged).toEqual(records.map(({ id }) => id));
     refused -= acknowledged.length;
     await ask('POST', `${own}/commands`, experimenterToken, { type: i === 1 ? 'pause' : 'resume' });
   }
   const { records } = await ask('GET', `${own}/records`, token);
-  expect(records.map(asSent)).toEqual(one.records);
+  expect(records.map(asSent)).toEqual(all);
   const { commands } = await ask('GET', `${own}/commands?after=0`, token);
   expect(commands.map(({ command }: { command: { type: string } }) => command.type)).toEqual([
     'resume',

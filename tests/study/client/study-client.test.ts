@@ -1,5 +1,5 @@
+import { noPage, prepareServer } from 'threepoint-http';
 import { expect, test } from 'vitest';
-import { requestTimeoutMs } from '../../../src/http/web-server';
 import { createParticipantClient, motionTimeoutMs, ServerUnreachable } from '../../../src/study/client/study-client';
 import { answeringHost, says } from '../../rooms/client/answering-host';
 
@@ -25,5 +25,5 @@ test('a server that is away is unreachable, behind a proxy’s page or our own s
 });
 
 test('a recording may travel for as long as the server lets a request arrive', () => {
-  expect(motionTimeoutMs).toBe(requestTimeoutMs);
+  expect(motionTimeoutMs).toBe(prepareServer(noPage, {}).http.requestTimeout);
 });

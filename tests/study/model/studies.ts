@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { parsePlan, readPlan, type StudyPlan } from '../../../src/study/model/plan/plan';
-import type { Schedule, StudyStep } from '../../../src/study/model/plan/schedule';
+import { type Schedule, type StudyStep, scheduleFor } from '../../../src/study/model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../../../src/study/model/progress/apply-event';
 import { begin, currentStep, type Progress } from '../../../src/study/model/progress/progress';
 import type { Answer, AnswerForm } from '../../../src/study/model/questionnaires/question-kind';
@@ -73,6 +73,18 @@ function answerFor(form: AnswerForm, value: number): Answer {
   const [from, to] = range;
   return kind.simulate(form, Math.min(1, Math.max(0, (value - from) / (to - from))), () => 0);
 }
+
+/** Returns the records of a complete session; `motion` is the consent to recordings. */
+export function completed(participant = 'P01', { simulated = false, motion = false } = {}): StudyRecord[] {
+  const schedule = scheduleFor(paperPlan(), participant);
+  const one = session(schedule, simulated);
+  one.tell({ type: 'consent', version: schedule.consentVersion, motion });
+  one.doUntil(({ kind }) => kind === 'end');
+  return one.records;
+}
+
+/** Returns the progress of a participant who has only just begun. */
+export const begun = (plan: StudyPlan, participant: string): Progress => begin(scheduleFor(plan, participant));
 
 /** A session that is driven by events, with a clock that the test sets. */
 export function session(schedule: Schedule, simulated = false) {

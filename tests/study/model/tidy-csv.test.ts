@@ -2,6 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { csvRows } from '../../../src/study/cli/verify/csv-rows';
 import { codebookOf, type Table, text, tidyCsv } from '../../../src/study/model/tables/tidy-csv';
+import { reportFigures } from '../../reliability/report-figures';
 import { seed } from '../../threepoint/core/arbitraries';
 
 const tableOf = (...cells: Table['rows'][number][string][]): Table => ({
@@ -72,10 +73,12 @@ describe('a table as CSV', () => {
   });
 
   test('gives back every text, at most with apostrophes before formulas, whatever separates them', () => {
+    let cells = 0;
     fc.assert(
       fc.property(fc.array(anyText, { minLength: 1, maxLength: 5 }), (texts) => {
         const rows = csvRows(tidyCsv(tableOf(...texts))).slice(1);
         expect(rows).toHaveLength(texts.length);
+        cells += rows.length;
         texts.forEach((text, index) => {
           const cell = rows[index]?.[0] as string;
           expect(cell.replaceAll("'", '')).toBe(text.replaceAll("'", ''));
@@ -84,6 +87,7 @@ describe('a table as CSV', () => {
       }),
       { seed },
     );
+    reportFigures('text', { 'formulas in a table': `0 of ${cells} texts` });
   });
 
   test('refuses a row that lacks a column', () => {

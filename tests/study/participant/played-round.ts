@@ -1,8 +1,5 @@
-import { defaultCalibration } from 'threepoint/core';
-import { ArcheryPlay } from '../../../src/page/archery/archery-play';
-import { createArcheryRunner } from '../../../src/page/archery/archery-runner';
-import { type FinishedTrial, PlayedTrial } from '../../../src/study/participant/trial/study-trial';
-import { activityServices } from '../../page/activity-services';
+import { studiedArcher } from '../../page/archery/studied-archer';
+import { trialOf } from './played-trial';
 
 export const frameSeconds = 1 / 72;
 export const epoch = 1_800_000_000;
@@ -19,57 +16,15 @@ export interface RoundTroubles {
 
 const never = () => false;
 
-/** The built-in archer, and what a study makes them play. */
-export function studiedArcher(seed: number) {
-  const play = new ArcheryPlay(
-    defaultCalibration,
-    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),
-    () => seed,
-  );
-  const archery = {
-    play,
-    startRound() {
-      play.restart(defaultCalibration);
-      play.signal();
-    },
-    resetRound: () => undefined,
-  };
-  const { settings, writer } = activityServices();
-  const runner = createArcheryRunner({
-    settings,
-    writer,
-    opened: () => archery,
-    open: async () => archery,
-    leave: () => undefined,
-  });
-  return { play, runner };
-}
-
 /**
  * The built-in archer's round in a study, begun at `began` by the page's clock, and when by it each arrow came down.
  */
 export function playedRound({ paused = never, headless = never, handless = never }: RoundTroubles, began = 345.6) {
   const { play, runner } = studiedArcher(3);
   let time = began;
-  const step = {
-    kind: 'trial',
-    id: 'archery/1/trial-1',
-    embodiment: { estimator: 'ik' },
-    seconds: 70,
-  } as ConstructorParameters<typeof PlayedTrial>[0];
-  const trial = new PlayedTrial(
-    step,
-    runner,
-    {
-      calibration: () => defaultCalibration,
-      device: () => ({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' }),
-      estimator: () => 'ik',
-      listenToFrames: () => undefined,
-    },
-    { key: 'archery/1/trial-1@1.1', motion: true, seed: 3, now: () => epoch + time },
-  );
+  const trial = trialOf(runner, { seconds: 70, now: () => epoch + time });
   const landed: number[] = [];
-  let finished: FinishedTrial | null = null;
+  let finished: ReturnType<typeof trial.follow> = null;
   while (!finished && time < 600) {
     const stands = paused(time - began);
     const seen = !headless(time - began);

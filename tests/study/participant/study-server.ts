@@ -1,11 +1,11 @@
 import { join } from 'node:path';
 import { createRouter, noPage } from 'threepoint-http';
 import { onTestFinished } from 'vitest';
-import { serve, type WebServer } from '../../../src/http/web-server';
 import { createExperimenterClient } from '../../../src/study/client/study-client';
 import type { StudyPlan } from '../../../src/study/model/plan/plan';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { openStudyStore } from '../../../src/study/server/sqlite/study-store';
+import { serve } from '../../http/serve';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { experimenter, studiesInThisThread } from '../server/running-studies';
@@ -26,8 +26,8 @@ export async function studyServer(changes: Partial<StudyPlan> = {}) {
   const plan = paperPlan(changes);
   store.plans.add(plan, { simulated: false, at: 1e9 });
   const routes = studiesInThisThread({ store, file, trustProxy: false, now: () => 1e9 });
-  const listen = (port: number) => serve(createRouter([routes], noPage), { host: '127.0.0.1', port });
-  let server: WebServer | null = await listen(0);
+  const listen = (port: number) => serve(createRouter([routes], noPage), { port });
+  let server: Awaited<ReturnType<typeof serve>> | null = await listen(0);
   const { port } = server;
   const stop = async () => {
     await server?.close();

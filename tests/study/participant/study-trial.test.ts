@@ -1,9 +1,9 @@
-import { defaultCalibration, parseRecording } from 'threepoint/core';
+import { parseRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { maxMotionBytes } from '../../../src/study/model/progress/study-api';
 import { recordingTime } from '../../../src/study/model/records/trial-clock';
-import { PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { epoch, frameSeconds, playedRound } from './played-round';
+import { trialOf } from './played-trial';
 import { OneShotGame } from './study-browser';
 
 describe('a scoring event of a round', () => {
@@ -49,15 +49,7 @@ test('the outcome gives a round’s second 0 and every pause by the device’s c
 test('a round too long for the server keeps its first frames, and the outcome counts them', async () => {
   const game = new OneShotGame();
   await game.prepare({ seat: () => Promise.reject(), participant: 'P01', members: [], seconds: 600 });
-  const step = { kind: 'trial', id: 'archery/1/trial-1', embodiment: { estimator: 'ik' }, seconds: 600 };
-  const host = {
-    calibration: () => defaultCalibration,
-    device: () => ({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' as const }),
-    estimator: () => 'ik' as const,
-    listenToFrames: () => undefined,
-  };
-  const options = { key: 'archery/1/trial-1@1.1', motion: true, seed: 3, now: () => epoch };
-  const trial = new PlayedTrial(step as ConstructorParameters<typeof PlayedTrial>[0], game, host, options);
+  const trial = trialOf(game, { seconds: 600 });
   // A headset's numbers have single precision and are written in double.
   const a = Math.fround(-0.123_456_7);
   const pose = { position: { x: a, y: a, z: a }, orientation: { x: a, y: a, z: a, w: Math.sqrt(1 - 3 * a * a) } };

@@ -3,13 +3,13 @@ import { dirname, join } from 'node:path';
 import { createRouter, type FailedAttempt, GroupCommit, noPage } from 'threepoint-http';
 import { RoomTokens } from 'threepoint-rooms/settings';
 import { expect, onTestFinished } from 'vitest';
-import { serve } from '../../../src/http/web-server';
 import type { StudyPlan } from '../../../src/study/model/plan/plan';
 import { createExporter } from '../../../src/study/server/export/exporter';
 import { StudyDispatcher } from '../../../src/study/server/routes/dispatcher';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { createStudyService, openStudyService } from '../../../src/study/server/service';
 import { openStudyStore, type StudyStore } from '../../../src/study/server/sqlite/study-store';
+import { serve } from '../../http/serve';
 import { isNightly } from '../../nightly';
 import { forkServer } from '../../server/server-child';
 import { testSecret } from '../../server/started-server';
@@ -72,7 +72,7 @@ export async function servedFolder(directory: string, token: string | null = exp
     trustProxy: false,
     log: (line) => lines.push(line),
   });
-  const server = await serve(createRouter([studies.service], noPage), { host: '127.0.0.1', port: 0 });
+  const server = await serve(createRouter([studies.service], noPage));
   let open = true;
   const stop = async () => {
     if (!open) return;
@@ -120,7 +120,7 @@ async function servedInThisThread({ file, maxBytes = 2 ** 30, flush, idleTimeout
     onFailedAttempt: (guess) => attempts.push(guess),
     log: (line) => faults.push(line),
   });
-  const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, idleTimeoutMs });
+  const server = await serve(createRouter([service], noPage), { idleTimeoutMs });
   onTestFinished(async () => {
     await server.close();
     store.close();

@@ -1,10 +1,9 @@
 import { join } from 'node:path';
 import { onTestFinished } from 'vitest';
-import { scheduleFor } from '../../../src/study/model/plan/schedule';
-import type { StoredRecord, StudyRecord } from '../../../src/study/model/records/study-record';
+import { checkedRecord, type StoredRecord, type StudyRecord } from '../../../src/study/model/records/study-record';
 import { openStudyStore, type StudyStore } from '../../../src/study/server/sqlite/study-store';
 import { directoryWith } from '../../temporary-directory';
-import { paperPlan, session } from '../model/studies';
+import { completed, paperPlan } from '../model/studies';
 import { now } from './running-studies';
 
 /** Opens a store in a new file or in this one; it is closed when the test ends. */
@@ -30,13 +29,26 @@ export function withPaperStudy(options = { simulated: false }) {
   return { store, file };
 }
 
-/** Returns the records of a complete session; `motion` is the consent to recordings. */
-export function completed(participant = 'P01', { simulated = false, motion = false } = {}): StudyRecord[] {
-  const schedule = scheduleFor(paperPlan(), participant);
-  const one = session(schedule, simulated);
-  one.tell({ type: 'consent', version: schedule.consentVersion, motion });
-  one.doUntil(({ kind }) => kind === 'end');
-  return one.records;
+/** Opens this file as a store of the paper's study: P01 has finished, P02 has come, P03 is invited. */
+export function startedStudy(file: string) {
+  const store = openStudyStore(file);
+  const at = Date.now() / 1000;
+  const plan = paperPlan();
+  store.plans.add(plan, { simulated: false, at });
+  const claims = { P01: store.places.claim('paper', 'P01', at), P02: store.places.claim('paper', 'P02', at) };
+  const records = completed('P01', { motion: true }).map((record) => checkedRecord(record, plan));
+  store.records.store('paper', 'P01', records, at);
+  const placeOf = (name: string) => store.overview('paper', at).find(({ participant }) => participant === name);
+  return {
+    records,
+    claims,
+    invitation: placeOf('P03')?.invitation,
+    isAsBegun: () =>
+      store.places.holds('paper', 'P01', claims.P01.token) &&
+      store.places.holds('paper', 'P02', claims.P02.token) &&
+      placeOf('P03')?.claimed === false,
+    close: () => store.close(),
+  };
 }
 
 /** Returns a stored record as it was sent, without what the server has added. */

@@ -6,9 +6,9 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { recordVersion, type StudyRecord } from '../../../src/study/model/records/study-record';
 import { directoryWith } from '../../temporary-directory';
-import { paperPlan } from '../model/studies';
+import { completed, paperPlan } from '../model/studies';
 import { now } from './running-studies';
-import { asSent, completed, opened } from './stored-studies';
+import { asSent, opened } from './stored-studies';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 

@@ -4,9 +4,9 @@ import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { begin, type Progress } from '../../../src/study/model/progress/progress';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { reportFigures } from '../../reliability/report-figures';
-import { paperPlan, session } from '../model/studies';
+import { completed, paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';
-import { asSent, completed } from './stored-studies';
+import { asSent } from './stored-studies';
 
 const place = '/api/studies/paper/participants/P01';
 const schedule = scheduleFor(paperPlan(), 'P01');

@@ -1,12 +1,10 @@
-import { io } from 'socket.io-client';
 import { RoomTokens } from 'threepoint-rooms/settings';
+import { createRoomPass } from 'threepoint-rooms/socket';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
-import { createRoomPass } from '../../../src/rooms/client/room-pass';
-import { pageParser } from '../../../src/rooms/protocol/socket-parsers';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
 import { reportFigures } from '../../reliability/report-figures';
-import { rawGuest, rawSocket, tokenFor, until } from '../../rooms/server/running-relay';
+import { rawGuest, rawLobby, rawSocket, tokenFor, until } from '../../rooms/server/running-relay';
 import { type StartedServer, startServer, testSecret } from '../../server/started-server';
 import { paperPlan } from '../model/studies';
 
@@ -40,12 +38,7 @@ const welcomeOf = ({ guest }: Awaited<ReturnType<typeof sitDown>>) =>
 const toldByLobby = () =>
   new Promise<string>((resolve) => {
     let told = '';
-    const socket = io(`${server.url}/lobby`, {
-      path: '/relay',
-      transports: ['websocket'],
-      parser: pageParser,
-      forceNew: true,
-    });
+    const socket = rawLobby(server.url);
     socket.on('rooms', (list) => {
       told += JSON.stringify(list);
     });

@@ -5,9 +5,9 @@ import type { StudyRecord } from '../../../src/study/model/records/study-record'
 import { normalisedCode } from '../../../src/study/server/codes';
 import { unpacked } from '../../../src/study/server/sqlite/study-motion';
 import type { StudyStorage } from '../../../src/study/server/study-storage';
-import { paperPlan, session } from '../model/studies';
+import { completed, paperPlan, session } from '../model/studies';
 import { now } from './running-studies';
-import { asSent, completed, opened } from './stored-studies';
+import { asSent, opened } from './stored-studies';
 
 const day = 86_400;
 

@@ -3,8 +3,9 @@ import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
+import { completed } from '../model/studies';
 import { now } from './running-studies';
-import { asSent, completed, opened, withPaperStudy } from './stored-studies';
+import { asSent, opened, withPaperStudy } from './stored-studies';
 
 describe('a file of SQLite', () => {
   const bytesOf = (file: string) => {

@@ -1,10 +1,8 @@
+import { defaultCalibration, type EstimatorName, type TrackingFrame } from 'threepoint/core';
+import type { TrackedPose } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import type { EstimatorName } from '../../../src/threepoint/core/estimation/pose-estimator';
-import type { TrackedPose } from '../../../src/threepoint/core/math/pose';
 import { deviceBodySize } from '../../../src/threepoint/core/tracking/device-body';
-import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { TrackingGate } from '../../../src/threepoint/core/tracking/tracking-gate';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';

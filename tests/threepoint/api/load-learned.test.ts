@@ -1,10 +1,8 @@
+import { actorFrame, defaultCalibration, type Recording } from 'threepoint/core';
 import { expect, test, vi } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
 import { exportMotion } from '../../../src/threepoint/api/export-motion';
 import { loadLearned } from '../../../src/threepoint/api/load-learned';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
-import type { Recording } from '../../../src/threepoint/core/tracking/recording';
 
 const models = new URL('../../../public/models/', import.meta.url);
 

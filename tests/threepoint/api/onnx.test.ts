@@ -1,12 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
+import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
 import { loadLearned } from '../../../src/threepoint/api/load-learned';
 import { onnxNetworks } from '../../../src/threepoint/api/onnx';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 
 let server: Server;
 let models = '';

@@ -1,7 +1,6 @@
+import { fromAxisAngle, up } from 'threepoint/math';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { installBodyTracking } from '../../../src/threepoint/api/polyfill';
-import { fromAxisAngle } from '../../../src/threepoint/core/math/quat';
-import { up } from '../../../src/threepoint/core/math/vec3';
 import { fakeHeadset } from '../xr/fake-headset';
 
 type Fake = ReturnType<typeof fakeHeadset>;

@@ -1,12 +1,11 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import { act } from '@react-three/fiber';
 import { createElement, createRef } from 'react';
+import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { RemoteAvatar, SelfAvatar } from '../../../src/threepoint/api/react';
 import type { Avatar, BodyTracker } from '../../../src/threepoint/api/three';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { mannequin } from '../avatar/glb';
 import { poseOf } from '../core/estimation/drawn';
 import { openCanvas } from './canvas';

@@ -1,8 +1,7 @@
 import fc from 'fast-check';
+import type { Calibration, TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
-import type { Calibration } from '../../../src/threepoint/core/body/calibration';
-import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { cases } from '../../nightly';
 import { seed } from '../core/arbitraries';
 import { jointsOf } from '../core/estimation/contract-subjects';

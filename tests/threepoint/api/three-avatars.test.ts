@@ -1,10 +1,9 @@
+import { actorFrame, defaultCalibration, type Fingers } from 'threepoint/core';
+import { distance } from 'threepoint/math';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { avatarMotionWriter, loadAvatar } from '../../../src/threepoint/api/three';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import { closedHand, type Fingers, flatHand } from '../../../src/threepoint/core/body/hand-shape';
+import { closedHand, flatHand } from '../../../src/threepoint/core/body/hand-shape';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import { distance } from '../../../src/threepoint/core/math/vec3';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { changed, mannequin } from '../avatar/glb';
 import { poseOf } from '../core/estimation/drawn';
 

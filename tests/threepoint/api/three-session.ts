@@ -1,8 +1,6 @@
 import { Vector3, type WebGLRenderer } from 'three';
+import { fromAxisAngle, identity, invertTransform, type Pose, up, type Vec3 } from 'threepoint/math';
 import { BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../../src/threepoint/api/three';
-import { invertTransform, type Pose } from '../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { up, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { mannequin } from '../avatar/glb';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { controller, fakeHeadset } from '../xr/fake-headset';

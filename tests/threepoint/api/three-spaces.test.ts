@@ -1,7 +1,6 @@
+import { defaultCalibration } from 'threepoint/core';
+import { distance, fromAxisAngle, identity, up } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { distance, up } from '../../../src/threepoint/core/math/vec3';
 import { movingPerson } from '../core/estimation/moving-person';
 import { controller } from '../xr/fake-headset';
 import { begin } from './three-session';

@@ -1,12 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { Group, type Mesh, type Object3D, Quaternion, Vector3 } from 'three';
+import { type Calibration, defaultCalibration } from 'threepoint/core';
+import { fromAxisAngle, identity, up } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
-import { type Calibration, defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { up } from '../../../src/threepoint/core/math/vec3';
 import { poseOf } from '../core/estimation/drawn';
 import { changed } from './glb';
 

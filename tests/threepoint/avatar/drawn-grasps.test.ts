@@ -1,5 +1,8 @@
 import type { Vector3 } from 'three';
-import { ballInPalm, type SimulatedInput } from 'threepoint-games';
+import type { FingerName, MutableHandShape } from 'threepoint/core';
+import { dot, forward, normalise, type Pose, rotate, type Side, subtract, up, type Vec3, vec3 } from 'threepoint/math';
+import { ballInPalm, wristAround } from 'threepoint-games';
+import { bowInHand } from 'threepoint-games/archery';
 import {
   ballRadius,
   ballRules,
@@ -10,29 +13,13 @@ import {
   stations,
 } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { bowInHand } from '../../../src/games/archery/bow-pose';
-import { gripRadius } from '../../../src/games/ball/basket';
-import { createPlayerPostures, makePosture } from '../../../src/games/ball/player-postures';
-import { wristAround } from '../../../src/games/fist';
 import { bodyLabels } from '../../../src/threepoint/avatar/built-in-body-labels';
 import type { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-object';
 import { fingerBoneNames } from '../../../src/threepoint/core/body/finger-bone-names';
 import { distanceToBall, distanceToRod } from '../../../src/threepoint/core/body/grasp';
-import { type FingerName, fingerNames, type MutableHandShape } from '../../../src/threepoint/core/body/hand-shape';
+import { fingerNames } from '../../../src/threepoint/core/body/hand-shape';
 import { createIk, createWithNetwork } from '../../../src/threepoint/core/estimation/estimators';
-import { makeTransform, type Pose } from '../../../src/threepoint/core/math/pose';
-import { rotate } from '../../../src/threepoint/core/math/quat';
-import type { Side } from '../../../src/threepoint/core/math/side';
-import {
-  copyVec3,
-  dot,
-  forward,
-  normalise,
-  subtract,
-  up,
-  type Vec3,
-  vec3,
-} from '../../../src/threepoint/core/math/vec3';
+import { hangingThrower } from '../../games/ball/hanging-thrower';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel } from '../core/estimation/shipped-models';
 import { builtInBody, type DrawnSkin, drawnHands, drawnSkin, wearer } from './drawn-skin';
@@ -96,18 +83,9 @@ function holder(): Thing['wrists'] {
 function tooNear(by: number, inward: number): Thing['wrists'] {
   const wrist = (side: Side, sign: -1 | 1) => {
     const knuckles = normalise(vec3(-sign * Math.tan(inward), 0, -1));
-    return wristAround<'floor'>(side, vec3(sign * (gripRadius - by), 1.1, -0.4), knuckles, up);
+    return wristAround<'floor'>(side, vec3(sign * (basketRadius + 0.01 - by), 1.1, -0.4), knuckles, up);
   };
   return { left: wrist('left', -1), right: wrist('right', 1) };
-}
-
-/** A thrower whose arms hang. */
-function hanging(time: number): SimulatedInput {
-  const postures = createPlayerPostures({ eyeHeight: wearer.eyeHeight, arenaFromFloor: makeTransform() });
-  const posture = makePosture();
-  copyVec3(postures.eyes, posture.eyes);
-  for (const side of sides) postures.hang(side, posture.eyes, posture[side]);
-  return postures.inputFor(posture, time, 1, 1);
 }
 
 /** How near the skin of some bones of one hand comes to a thing, below 0 inside [mm]. */
@@ -153,7 +131,7 @@ describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (
   test.each(['ik', 'learned'] as const)(
     'hold a ball beside the thigh when they hang, not in it: %s',
     async (method) => {
-      const { frame } = hanging(1);
+      const { frame } = hangingThrower(wearer.eyeHeight);
       const estimator = method === 'ik' ? createIk(wearer) : createWithNetwork(method, wearer, openPlainModel());
       for (let step = 0; step <= 30; step++) {
         const time = step / 30;

@@ -1,11 +1,10 @@
 import { readFileSync } from 'node:fs';
 import { SkinnedMesh, Vector3 } from 'three';
+import { type MutableHandShape, makeHandShape } from 'threepoint/core';
+import { makePose, type Pose, type Side } from 'threepoint/math';
 import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-object';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
-import { type MutableHandShape, makeHandShape } from '../../../src/threepoint/core/body/hand-shape';
-import { makePose, type Pose } from '../../../src/threepoint/core/math/pose';
-import type { Side } from '../../../src/threepoint/core/math/side';
 
 /** A person of 1.70 m. */
 export const wearer = { eyeHeight: 1.59, armSpan: 1.39 };

@@ -122,9 +122,12 @@ describe('recorded hands on a rig of the wearer’s size', () => {
     },
   );
 
-  test('a pinch closes: the tips of thumb and index finger are within 1 cm', async () => {
+  test.each([
+    ['of a recorded hand', seen(recordedHands.pinched!)],
+    ['whose fingers are reported apart', { left: { ...flatHand, pinch: 1 }, right: { ...flatHand, pinch: 1 } }],
+  ])('a pinch %s closes: the tips of thumb and index finger are within 1 cm', async (_, shapes) => {
     const { end, show } = await wearer();
-    show(seen(recordedHands.pinched!), 0.1);
+    show(shapes, 0.1);
     for (const side of sides) {
       const gap = 100 * distance(end(side, 'thumb'), end(side, 'index'));
       printFigures(`tips of a pinching ${side} hand [cm]`, { worst: gap.toFixed(2) });

@@ -1,7 +1,6 @@
+import { wristAround } from 'threepoint-games';
 import { basketInHands, basketRadius, rimTube } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import { gripRadius } from '../../../src/games/ball/basket';
-import { wristAround } from '../../../src/games/fist';
 import { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-object';
 import {
   averageHand,
@@ -16,8 +15,8 @@ import type { Side } from '../../../src/threepoint/core/math/side';
 import { distance, dot, forward, length, reject, subtract, up, vec3 } from '../../../src/threepoint/core/math/vec3';
 
 const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
-  left: wristAround('left', vec3(-gripRadius, 1.1, -0.4), forward, up),
-  right: wristAround('right', vec3(gripRadius, 1.1, -0.4), forward, up),
+  left: wristAround('left', vec3(-(basketRadius + 0.01), 1.1, -0.4), forward, up),
+  right: wristAround('right', vec3(basketRadius + 0.01, 1.1, -0.4), forward, up),
 };
 
 test('both hands of a holder surround the basket’s rim, with no fingertip but the thumbs’ inside', () => {

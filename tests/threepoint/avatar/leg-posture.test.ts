@@ -1,17 +1,15 @@
+import { add, distance, fromAxisAngle, multiply, rotate, up, type Vec3, vec3, wrapAngle } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
+import type { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
-import { wrapAngle } from '../../../src/threepoint/core/math/angle';
-import { fromAxisAngle, multiply, rotate } from '../../../src/threepoint/core/math/quat';
-import { add, distance, up, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { yawOf } from '../../../src/threepoint/core/tracking/heading';
-import { eyeHeight, proportions, standing, walking } from './walking-person';
+import { createLegs, proportions, standing, walking } from './walking-person';
 
 const rateHz = 72;
 
 type Person = (time: number) => GaitPoints;
 const feetAfter = (person: Person, seconds: number, look?: (posture: LegPosture, time: number) => void) => {
-  const posture = new LegPosture(proportions, eyeHeight);
+  const posture = createLegs();
   for (let frame = 0; frame <= seconds * rateHz; frame++) {
     posture.update(person(frame / rateHz), frame === 0 ? 0 : 1 / rateHz);
     look?.(posture, frame / rateHz);
@@ -109,7 +107,7 @@ describe('legs', () => {
     ['a recentring', 72, Math.PI / 2],
     ['a recentring after a pause', 4, 3],
   ])('come along at once when %s turns the person where they stand', (_, hz, yaw) => {
-    const posture = new LegPosture(proportions, eyeHeight);
+    const posture = createLegs();
     const around = turned(standing, yaw, vec3(0, 0, 0));
     for (let frame = 0; frame <= 2 * hz; frame++) posture.update(standing(0), 1 / hz);
     const stood = { left: { ...posture.legs.left.ankle }, right: { ...posture.legs.right.ankle } };

@@ -1,14 +1,11 @@
 import { type Bone, Box3, Matrix4, type Mesh, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import { type AvatarPose, actorFrame, type BoneName, defaultCalibration } from 'threepoint/core';
+import { distance, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
 import { parseAvatar, parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { thirdPersonOnlyLayer } from '../../../src/threepoint/avatar/rig/body-meshes';
-import type { AvatarPose } from '../../../src/threepoint/core/body/avatar-pose';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
-import { distance, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { postures } from '../../../tools/avatars/try/postures';
 import { poseOf } from '../core/estimation/drawn';
 import { builtRig, type RigOptions, rigJoints } from './built-rig';

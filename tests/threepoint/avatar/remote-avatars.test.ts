@@ -1,29 +1,28 @@
 import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
+import {
+  type AvatarHash,
+  type AvatarRef,
+  actorFrame,
+  type BuiltInBody,
+  bodyOf,
+  builtInAvatarOf,
+  defaultAvatar,
+  defaultCalibration,
+  forwardKinematics,
+  isBuiltInAvatar,
+  type RemotePerson,
+  skeletonFromCalibration,
+  TransientError,
+  unknownFingers,
+} from 'threepoint/core';
+import { distance, fromAxisAngle, transformPoint, up, vec3 } from 'threepoint/math';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { createAvatarBetweenFrames } from '../../../src/threepoint/avatar/avatar';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { RemoteAvatars } from '../../../src/threepoint/avatar/remote-avatars';
 import { FlatPartsMaterial } from '../../../src/threepoint/avatar/rig/flat-parts';
-import type { AvatarHash, AvatarRef } from '../../../src/threepoint/core/body/avatar-ref';
-import {
-  type BuiltInBody,
-  bodyOf,
-  builtInAvatarOf,
-  defaultAvatar,
-  isBuiltInAvatar,
-} from '../../../src/threepoint/core/body/built-in-bodies';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
-import { unknownFingers } from '../../../src/threepoint/core/body/hand-shape';
-import type { RemotePerson } from '../../../src/threepoint/core/body/remote-person';
-import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
-import { TransientError } from '../../../src/threepoint/core/errors/transient-error';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import { transformPoint } from '../../../src/threepoint/core/math/pose';
-import { fromAxisAngle } from '../../../src/threepoint/core/math/quat';
-import { distance, up, vec3 } from '../../../src/threepoint/core/math/vec3';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { poseOf } from '../core/estimation/drawn';
 
 function bytesOf(body: BuiltInBody): ArrayBuffer {

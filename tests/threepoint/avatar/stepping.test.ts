@@ -1,8 +1,7 @@
+import { distance, type Side, type Vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { type Feet, type Stance, Stepping } from '../../../src/threepoint/avatar/legs/stepping';
 import type { ExpectedFoot } from '../../../src/threepoint/core/estimation/gait/gait';
-import type { Side } from '../../../src/threepoint/core/math/side';
-import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 
 const stance: Stance = { ankleHeight: 0.08, legLength: 0.85 };
 type Goals = Record<Side, ExpectedFoot>;

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
-import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
+import type { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { trackerAtJoint } from '../../../src/threepoint/core/body/tracker-offsets';
@@ -11,7 +11,7 @@ import { fromAxisAngle, multiply, rotate } from '../../../src/threepoint/core/ma
 import { distance, right, up, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import { mannequin } from './glb';
-import { eyeHeight, proportions, standing, walking } from './walking-person';
+import { createLegs, proportions, standing, walking } from './walking-person';
 
 const rateHz = 72;
 
@@ -35,8 +35,8 @@ describe('a tracked foot', () => {
   ] as const)(
     'is exactly where it is tracked while its person %s, and its bones keep their lengths',
     (_, person, pace) => {
-      const posture = new LegPosture(proportions, eyeHeight);
-      const free = new LegPosture(proportions, eyeHeight);
+      const posture = createLegs();
+      const free = createLegs();
       for (let frame = 0; frame < 3 * rateHz; frame++) {
         const time = frame / rateHz;
         const left = kick(time, pace * time);
@@ -51,8 +51,8 @@ describe('a tracked foot', () => {
   );
 
   test('goes back to the gait and comes from it without a jump, within 0.3 s', () => {
-    const posture = new LegPosture(proportions, eyeHeight);
-    const free = new LegPosture(proportions, eyeHeight);
+    const posture = createLegs();
+    const free = createLegs();
     let before: Vec3 | null = null;
     for (let frame = 0; frame < 3 * rateHz; frame++) {
       const time = frame / rateHz;
@@ -69,7 +69,7 @@ describe('a tracked foot', () => {
   });
 
   test('raised until the thigh is above the horizontal does not turn the thigh about itself', () => {
-    const posture = new LegPosture(proportions, eyeHeight);
+    const posture = createLegs();
     let before: Vec3 | null = null;
     let highest = 0;
     for (let frame = 0; frame <= rateHz; frame++) {
@@ -88,7 +88,7 @@ describe('a tracked foot', () => {
   });
 
   test('moves the drawn ankle no further than itself on four ways out of reach and back', () => {
-    const posture = new LegPosture(proportions, eyeHeight);
+    const posture = createLegs();
     let before: { readonly tracked: Vec3; readonly ankle: Vec3 } | null = null;
     for (let frame = 0; frame <= 6 * rateHz; frame++) {
       const time = frame / rateHz;
@@ -105,7 +105,7 @@ describe('a tracked foot', () => {
   });
 
   test('is ignored when no leg reaches it', () => {
-    const [posture, free] = [new LegPosture(proportions, eyeHeight), new LegPosture(proportions, eyeHeight)];
+    const [posture, free] = [createLegs(), createLegs()];
     const far = { position: vec3(-0.1, 0.1, -1.5), orientation: trackerAtJoint.orientation };
     for (let frame = 0; frame < 10; frame++) {
       posture.update(standing(frame / rateHz), 1 / rateHz, { left: far, right: null });

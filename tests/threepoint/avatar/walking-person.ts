@@ -1,7 +1,6 @@
-import type { LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
+import { fromAxisAngle, identity, up, vec3 } from 'threepoint/math';
+import { LegPosture, type LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { up, vec3 } from '../../../src/threepoint/core/math/vec3';
 
 export const eyeHeight = 1.6;
 export const proportions: LegProportions = {
@@ -10,6 +9,10 @@ export const proportions: LegProportions = {
   lower: 0.42,
   ankleHeight: 0.08,
 };
+
+/** Returns the legs that the page draws for a person of these measures. */
+export const createLegs = (): LegPosture => new LegPosture(proportions, eyeHeight);
+
 /** A person 1.6 m high at the eyes who stands at the origin, hands hanging, and leans and sways a little. */
 export function standing(time: number): GaitPoints {
   const sway = 0.015 * Math.sin(1.7 * time);

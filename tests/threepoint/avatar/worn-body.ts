@@ -1,15 +1,10 @@
 import { type SkinnedMesh, Vector3 } from 'three';
+import { actorFrame, type BoneName, defaultCalibration, handBoneRotation, type TrackingFrame } from 'threepoint/core';
+import { distance, down, rotate, vec3 } from 'threepoint/math';
 import { expect } from 'vitest';
 import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
-import { handBoneRotation } from '../../../src/threepoint/core/body/arm-rotations';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
-import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
-import { rotate } from '../../../src/threepoint/core/math/quat';
-import { distance, down, vec3 } from '../../../src/threepoint/core/math/vec3';
-import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
-import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
 import { boxHalf, builtRig, type RigOptions } from './built-rig';
 

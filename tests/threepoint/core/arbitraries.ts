@@ -1,6 +1,5 @@
 import fc from 'fast-check';
-import { fromAxisAngle, multiply, normaliseQuat, type Quat } from '../../../src/threepoint/core/math/quat';
-import { normalise, type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { fromAxisAngle, multiply, normalise, normaliseQuat, type Quat, type Vec3, vec3 } from 'threepoint/math';
 
 /** Every property of core starts from this seed, so that a failure can be repeated. */
 export const seed = 2460;

@@ -1,5 +1,4 @@
-import { fromAxisAngle, multiply, type Quat } from '../../../src/threepoint/core/math/quat';
-import { type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { fromAxisAngle, multiply, type Quat, type Vec3, vec3 } from 'threepoint/math';
 
 /** Ry·Rx·Rz of angles [rad] about x, y, z: the inverse of `toEulerYxz`. */
 export const fromEulerYxz = (angles: Vec3): Quat => {

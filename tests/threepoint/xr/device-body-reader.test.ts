@@ -1,9 +1,8 @@
+import { defaultCalibration, deviceJoint } from 'threepoint/core';
+import { identity, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../../../src/threepoint/core/body/calibration';
-import { identity } from '../../../src/threepoint/core/math/quat';
-import { vec3 } from '../../../src/threepoint/core/math/vec3';
 import { XRBodyPoser } from '../../../src/threepoint/core/motion/xr-body';
-import { deviceJoint, deviceJointNames } from '../../../src/threepoint/core/tracking/device-body';
+import { deviceJointNames } from '../../../src/threepoint/core/tracking/device-body';
 import { DeviceBodyReader } from '../../../src/threepoint/xr/device-body-reader';
 import { TrackedSession } from '../../../src/threepoint/xr/tracked-session';
 import { fakeHeadset, type Seen } from './fake-headset';

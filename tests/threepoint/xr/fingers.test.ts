@@ -1,8 +1,7 @@
+import type { HandShape } from 'threepoint/core';
+import { fromAxisAngle, normalise, type Pose, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { fingerNames, type HandShape, relaxedHand } from '../../../src/threepoint/core/body/hand-shape';
-import type { Pose } from '../../../src/threepoint/core/math/pose';
-import { fromAxisAngle } from '../../../src/threepoint/core/math/quat';
-import { normalise, vec3 } from '../../../src/threepoint/core/math/vec3';
+import { fingerNames, relaxedHand } from '../../../src/threepoint/core/body/hand-shape';
 import { controller, type Input, trackedHeadset } from './fake-headset';
 import { recordedHands, trackedHand } from './recorded-hands';
 

@@ -1,7 +1,6 @@
 import fc from 'fast-check';
+import { distance, dot, rotate, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { rotate } from '../../../src/threepoint/core/math/quat';
-import { distance, dot, vec3 } from '../../../src/threepoint/core/math/vec3';
 import {
   bareHandFit,
   genericFit,

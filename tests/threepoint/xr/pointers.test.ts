@@ -1,9 +1,6 @@
+import { fromAxisAngle, identity, type Pose, transformPose, type Vec3, vec3 } from 'threepoint/math';
 import { ArcheryGestures } from 'threepoint-games/archery';
 import { describe, expect, test } from 'vitest';
-import { defaultArcheryGestureSettings } from '../../../src/games/archery/gestures';
-import { type Pose, transformPose } from '../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { type Vec3, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { bareHand, controller, type Input, trackedHeadset } from './fake-headset';
 
 const at = (x: number, y: number, z: number, orientation = identity): Pose<'floor'> => ({
@@ -151,7 +148,7 @@ describe('a hand that belongs to the device neither points nor presses', () => {
     const bow = bareHand('left', at(0, 1.4, -0.6), open);
     const string = bareHand('right', at(0, 1.4, -0.45), open);
     setInputs(bow, string);
-    const gestures = new ArcheryGestures(() => defaultArcheryGestureSettings);
+    const gestures = new ArcheryGestures(() => ({ bowSide: 'left', oneHanded: false, armed: true }));
     const play = () => gestures.follow(read()!, inputs.buttons);
     for (let frame = 0; frame < 5; frame++) play();
     setGap(string, closed);

@@ -1,7 +1,5 @@
+import { angleBetween, distance, fromAxisAngle, identity, type Pose, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import type { Pose } from '../../../src/threepoint/core/math/pose';
-import { angleBetween, fromAxisAngle, identity } from '../../../src/threepoint/core/math/quat';
-import { distance, up, vec3 } from '../../../src/threepoint/core/math/vec3';
 import { TrackedSession } from '../../../src/threepoint/xr/tracked-session';
 import { reportFigures } from '../../reliability/report-figures';
 import { bareHand, controller, fakeHeadset, trackedHeadset } from './fake-headset';

@@ -1,9 +1,9 @@
 import { type Calibration, type TrackingFrame, writeRecording } from 'threepoint/core';
+import type { Notice } from 'threepoint-ui';
 import { describe, expect, test } from 'vitest';
 import { FileOpener } from '../../../../src/page/shell/input/file-opener';
 import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
-import type { Notice, NoticeLevel } from '../../../../src/ui/notices';
 import { fake } from '../fake';
 
 const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
@@ -65,7 +65,7 @@ function files() {
     files: new FileOpener(
       fake<StageParts>({
         recorder,
-        notices: { show: (level: NoticeLevel, text: string) => void notices.push({ level, text }) },
+        notices: { show: (level: Notice['level'], text: string) => void notices.push({ level, text }) },
         avatar: {
           name: 'robot.vrm',
           async open(source: string | File) {

@@ -13,7 +13,6 @@ import {
 } from '../../../../src/page/shell/panels/vr-menu/menu-buttons';
 import { drawMenu } from '../../../../src/page/shell/panels/vr-menu/menu-drawing';
 import { VrMenu } from '../../../../src/page/shell/panels/vr-menu/vr-menu';
-import { maxNameLength } from '../../../../src/rooms/protocol/player-name';
 import { drawNowhere } from '../drawing-in-node';
 import { expectApart, paper, studioMenu } from '../menu-parts';
 
@@ -98,7 +97,7 @@ describe('the other players in the headset', () => {
 
   test('are written above their buttons, with role and voice, no wider than the sheet', () => {
     const { context, texts } = paper();
-    const long = player(1, { name: 'W'.repeat(maxNameLength) });
+    const long = player(1, { name: 'W'.repeat(20) });
     const state = listing([ben, long]);
     const buttons = menuButtons(state, menuActions);
     drawMenu(context, state, buttons, null);

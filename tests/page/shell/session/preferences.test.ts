@@ -1,8 +1,7 @@
 import fc from 'fast-check';
-import { armSpanRange } from 'threepoint/core';
+import { armSpanRange, eyeHeightFromStature, statureRange } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { createPreferenceStore, parsePreferences } from '../../../../src/page/shell/session/preferences';
-import { eyeHeightRange } from '../../../../src/threepoint/core/body/calibration';
 import { evenly } from '../../../threepoint/core/arbitraries';
 
 function memory(): Pick<Storage, 'getItem' | 'setItem'> {
@@ -100,8 +99,8 @@ describe('the memory of the page', () => {
           const { calibration } = preferences;
           if (!calibration) return;
           seen.calibrations += 1;
-          expect(calibration.eyeHeight).toBeGreaterThanOrEqual(eyeHeightRange.min);
-          expect(calibration.eyeHeight).toBeLessThanOrEqual(eyeHeightRange.max);
+          expect(calibration.eyeHeight).toBeGreaterThanOrEqual(eyeHeightFromStature(statureRange.min));
+          expect(calibration.eyeHeight).toBeLessThanOrEqual(eyeHeightFromStature(statureRange.max));
           expect(calibration.armSpan).toBeGreaterThanOrEqual(armSpanRange.min);
           expect(calibration.armSpan).toBeLessThanOrEqual(armSpanRange.max);
         },

@@ -1,31 +1,17 @@
 import { readFileSync } from 'node:fs';
-import {
-  type Color,
-  type Mesh,
-  MeshStandardMaterial,
-  type Object3D,
-  PropertyBinding,
-  Vector3,
-  type WebGLRenderer,
-} from 'three';
-import { actorFrame, defaultCalibration } from 'threepoint/core';
+import { type Mesh, type Object3D, PropertyBinding, Vector3, type WebGLRenderer } from 'three';
+import { actorFrame, createEstimator, defaultCalibration } from 'threepoint/core';
 import { distance } from 'threepoint/math';
 import { type Avatar, BodyTracker, palettes, skinColors } from 'threepoint/three';
-import { describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { createPreferenceStore } from '../../../../src/page/shell/session/preferences';
 import type { SessionParts } from '../../../../src/page/shell/session/session-parts';
 import { AvatarLoader } from '../../../../src/page/shell/stage/avatar-loader';
 import { BoneMapStore } from '../../../../src/page/shell/stage/bone-map-store';
 import { UserAvatar } from '../../../../src/page/shell/stage/user-avatar';
-import type {
-  AvatarCheckRequest,
-  AvatarCheckResponse,
-} from '../../../../src/threepoint/avatar/file/avatar-check-worker';
-import { checkAvatar } from '../../../../src/threepoint/avatar/file/check-avatar';
-import { FlatPartsMaterial } from '../../../../src/threepoint/avatar/rig/flat-parts';
-import { skinnedMeshesOf } from '../../../../src/threepoint/avatar/scene-meshes';
-import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
 import { builtRig, rigJoints } from '../../../threepoint/avatar/built-rig';
+import { checkFilesHere } from '../../../threepoint/avatar/checked-here';
+import { colourOfMaterial } from '../../../threepoint/avatar/material-colour';
 import { smallOldVrm, smallVrm } from '../../../threepoint/avatar/small-vrms';
 import { poseOf } from '../../../threepoint/core/estimation/drawn';
 import { fake } from '../fake';
@@ -54,15 +40,7 @@ test('our body keeps its seat’s colours when another replaces it, and its tone
     onChange: () => undefined,
   });
   const avatar = new UserAvatar(parts, new AvatarLoader(noBones(), () => Promise.resolve()));
-  const colourOf = (material: string): string => {
-    const found: { readonly name: string; readonly color: Color }[] = [];
-    for (const { material } of skinnedMeshesOf(tracker.object)) {
-      if (material instanceof FlatPartsMaterial) found.push(...material.parts);
-      else if (material instanceof MeshStandardMaterial) found.push(material);
-    }
-    const named = found.find(({ name }) => name === material);
-    return named ? `#${named.color.getHexString()}` : 'none';
-  };
+  const colourOf = (material: string) => colourOfMaterial(tracker.object, material);
   await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('porcelain'), skinColors.dark]);
   avatar.setSeatPalette('ember');
@@ -72,32 +50,6 @@ test('our body keeps its seat’s colours when another replaces it, and its tone
   avatar.setSeatPalette(null);
   expect(colourOf('Top')).toBe(clothes('porcelain'));
 });
-
-/** The check of files on this thread; files of these names are held up until they are let go. */
-function checkFilesHere(...held: readonly string[]) {
-  const waiting = new Map<string, () => void>();
-  class Here extends EventTarget {
-    onmessage: ((event: MessageEvent<AvatarCheckResponse | 'ready'>) => void) | null = null;
-
-    constructor() {
-      super();
-      setImmediate(() => this.#post('ready'));
-    }
-    postMessage({ bytes, ...question }: AvatarCheckRequest): void {
-      const check = () => checkAvatar(bytes, question).then((checked) => this.#post({ checked }));
-      if (held.includes(question.name)) waiting.set(question.name, check);
-      else void check();
-    }
-    terminate(): void {
-      // It ends with its only question.
-    }
-    #post(data: AvatarCheckResponse | 'ready'): void {
-      this.onmessage?.(new MessageEvent('message', { data }));
-    }
-  }
-  vi.stubGlobal('Worker', Here);
-  return (name: string) => waiting.get(name)?.();
-}
 
 /** Bones of unknown names that all hang from the armature: neither names nor structure show a humanoid. */
 const unknownNames = (name: string) => {
@@ -169,7 +121,7 @@ describe('a file that is worn with a wrong bone', () => {
   const right = { leftHand: 'the leftHand', rightHand: 'the rightHand' };
   const wrong = { leftHand: 'the leftIndexProximal', rightHand: 'the rightIndexProximal' };
 
-  const pose = poseOf(createIk(defaultCalibration), actorFrame(9.5, defaultCalibration));
+  const pose = poseOf(createEstimator('ik', defaultCalibration), actorFrame(9.5, defaultCalibration));
 
   /**
    * Returns the distance of a bone of the file from the left hand of the body that is drawn [m]: up to 2 cm where a

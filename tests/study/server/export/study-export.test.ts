@@ -3,8 +3,9 @@ import { describe, expect, test } from 'vitest';
 import { exportZip } from '../../../../src/study/server/export/export-zip';
 import { unpacked } from '../../../../src/study/server/sqlite/study-motion';
 import type { StudyStore } from '../../../../src/study/server/sqlite/study-store';
+import { completed } from '../../model/studies';
 import { now, testSoftware } from '../running-studies';
-import { completed, withPaperStudy } from '../stored-studies';
+import { withPaperStudy } from '../stored-studies';
 
 describe('an export', () => {
   const contentOf = (store: StudyStore, participant?: string) => {

@@ -3,8 +3,9 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, test } from 'vitest';
+import { completed } from '../../model/studies';
 import { now } from '../running-studies';
-import { completed, opened, withPaperStudy } from '../stored-studies';
+import { opened, withPaperStudy } from '../stored-studies';
 
 const root = fileURLToPath(new URL('../../../..', import.meta.url));
 

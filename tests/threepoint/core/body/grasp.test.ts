@@ -1,13 +1,9 @@
+import { type FingerName, makeHandShape } from 'threepoint/core';
+import { lerp, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { closeAround, distanceToBall, distanceToRod } from '../../../../src/threepoint/core/body/grasp';
 import { averageHand, fingerPoints, makeFingerPoints } from '../../../../src/threepoint/core/body/hand-geometry';
-import {
-  closedHand,
-  type FingerName,
-  fingerNames,
-  makeHandShape,
-} from '../../../../src/threepoint/core/body/hand-shape';
-import { lerp, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { closedHand, fingerNames } from '../../../../src/threepoint/core/body/hand-shape';
 
 const hand = averageHand(1.59);
 

@@ -1,24 +1,23 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { swivelAngle } from '../../../../bench/evaluate/measures';
-import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from '../../../../src/threepoint/core/body/joints';
-import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
-import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
-import { fromAxisAngle, multiply, twistAngle } from '../../../../src/threepoint/core/math/quat';
+import { createEstimator, estimatedJoints, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
   cross,
   distance,
+  fromAxisAngle,
+  multiply,
   normalise,
   right,
   subtract,
+  twistAngle,
   up,
   type Vec3,
   vec3,
-} from '../../../../src/threepoint/core/math/vec3';
+} from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import { swivelAngle } from '../../../../bench/evaluate/measures';
+import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { standing, wristOrientation } from './moving-person';

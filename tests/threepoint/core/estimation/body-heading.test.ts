@@ -1,14 +1,7 @@
 import fc from 'fast-check';
+import { angleBetween, fromAxisAngle, multiply, type Quat, twistAngle, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { followBodyHeading, makeBodyHeading } from '../../../../src/threepoint/core/estimation/body-heading';
-import {
-  angleBetween,
-  fromAxisAngle,
-  multiply,
-  type Quat,
-  twistAngle,
-} from '../../../../src/threepoint/core/math/quat';
-import { up, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { readHeading } from '../../../../src/threepoint/core/tracking/heading';
 import { number, rotation, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';

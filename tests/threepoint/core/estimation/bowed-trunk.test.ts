@@ -1,10 +1,9 @@
 import fc from 'fast-check';
+import { chestSpaceBody } from 'threepoint/core';
+import { distance, identity, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { chestSpaceBody } from '../../../../src/threepoint/core/body/skeleton';
 import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import { copyJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
-import { identity } from '../../../../src/threepoint/core/math/quat';
-import { distance, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { evenly, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 import { calibration } from './posed-body';

@@ -1,8 +1,7 @@
 import fc from 'fast-check';
+import { distance, dot, length, normalise, rotate, scale, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { alongArc, directionArc } from '../../../../src/threepoint/core/estimation/arms/direction-arc';
-import { rotate } from '../../../../src/threepoint/core/math/quat';
-import { distance, dot, length, normalise, scale, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { evenly, seed } from '../arbitraries';
 
 const direction = fc

@@ -1,17 +1,5 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
-import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
-import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
-import {
-  multiply,
-  rotate,
-  rotateInverse,
-  rotationBetween,
-  twistAngle,
-  twistOf,
-} from '../../../../src/threepoint/core/math/quat';
+import { type Calibration, headingOf, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -20,14 +8,22 @@ import {
   dot,
   length,
   lerp,
+  multiply,
   normalise,
   reject,
+  rotate,
+  rotationBetween,
   subtract,
+  type TrackedPose,
+  twistAngle,
+  twistOf,
   up,
   type Vec3,
   vec3,
-} from '../../../../src/threepoint/core/math/vec3';
-import { headingOf } from '../../../../src/threepoint/core/tracking/heading';
+} from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
+import { rotateInverse } from '../../../../src/threepoint/core/math/quat';
 import { evenly, rotation, vector } from '../arbitraries';
 import { bodies, jointsOf, openSubject, person, rate, showSecond, times } from './contract-subjects';
 import { type Joints, show } from './drawn';

@@ -1,22 +1,20 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from '../../../../src/threepoint/core/body/joints';
-import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
-import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
-import { fromAxisAngle, rotate } from '../../../../src/threepoint/core/math/quat';
+import { createEstimator, estimatedJoints, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
   copyVec3,
   distance,
+  fromAxisAngle,
   lerp,
   normalise,
+  rotate,
   up,
   type Vec3,
   vec3,
-} from '../../../../src/threepoint/core/math/vec3';
+} from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
 import { standing, transformFrame } from './moving-person';

@@ -1,6 +1,5 @@
+import { createEstimator, defaultCalibration } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import { defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
-import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
 import { numbersIn } from '../numbers-in';
 import { poseOf } from './drawn';
 import { movingPerson } from './moving-person';

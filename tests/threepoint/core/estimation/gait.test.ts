@@ -1,8 +1,7 @@
+import { type Quat, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { Gait, shippedGait } from '../../../../src/threepoint/core/estimation/gait/gait';
 import { GaitFeatures, type GaitPoints } from '../../../../src/threepoint/core/estimation/gait/gait-features';
-import type { Quat } from '../../../../src/threepoint/core/math/quat';
-import { type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { eyeHeight, standing, walking } from '../../avatar/walking-person';
 
 type Person = (time: number) => GaitPoints;

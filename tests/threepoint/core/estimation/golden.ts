@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
-import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import type { Calibration } from 'threepoint/core';
+import { makePose, type Pose, type Quat, transformPose, type Vec3 } from 'threepoint/math';
 import type { CompletedHand } from '../../../../src/threepoint/core/estimation/complete-hands';
 import {
   type HandTurns,
@@ -8,9 +9,6 @@ import {
   turnHands,
 } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import type { SeenHands } from '../../../../src/threepoint/core/estimation/networks/frame-features';
-import { makePose, type Pose, transformPose } from '../../../../src/threepoint/core/math/pose';
-import type { Quat } from '../../../../src/threepoint/core/math/quat';
-import type { Vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { headingFromFloor } from '../../../../src/threepoint/core/tracking/heading';
 
 type Numbers = readonly number[];

@@ -1,12 +1,9 @@
 import fc from 'fast-check';
+import { type Calibration, createEstimator, type TrackingFrame } from 'threepoint/core';
+import { angleBetween, conjugate, distance, forward, multiply, type Quat, rotate, scale, sides } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
 import { handTiltOf, isPlausibleTilt, tiltRotation } from '../../../../src/threepoint/core/body/hand-tilt';
-import { createEstimator, createIk } from '../../../../src/threepoint/core/estimation/estimators';
-import { angleBetween, conjugate, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
-import { sides } from '../../../../src/threepoint/core/math/side';
-import { distance, forward, scale } from '../../../../src/threepoint/core/math/vec3';
-import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
+import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
 import { number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
 import { movingPerson } from './moving-person';

@@ -1,10 +1,7 @@
 import fc from 'fast-check';
+import { type Calibration, createEstimator, type TrackingFrame } from 'threepoint/core';
+import { distance, fromAxisAngle, multiply, right } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
-import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
-import { fromAxisAngle, multiply } from '../../../../src/threepoint/core/math/quat';
-import { distance, right } from '../../../../src/threepoint/core/math/vec3';
-import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
 import { movingPerson } from './moving-person';

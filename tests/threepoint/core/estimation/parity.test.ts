@@ -1,7 +1,8 @@
+import { averageSkeleton, chestSpaceBody, estimatedJoints } from 'threepoint/core';
+import { distance, type Side, sides, subtract, type Vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { tiltRotation } from '../../../../src/threepoint/core/body/hand-tilt';
-import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
-import { averageSkeleton, chestSpaceBody } from '../../../../src/threepoint/core/body/skeleton';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
 import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { paperFeatures } from '../../../../src/threepoint/core/estimation/methods/paper';
@@ -12,8 +13,6 @@ import {
   estimateHandTilts,
   makeHandTiltsState,
 } from '../../../../src/threepoint/core/estimation/online-calibration/estimate-hand-tilts';
-import { type Side, sides } from '../../../../src/threepoint/core/math/side';
-import { distance, subtract, type Vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { floorFromHeading } from '../../../../src/threepoint/core/tracking/heading';
 import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
 

@@ -1,4 +1,5 @@
-import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
+import type { Calibration, Mutable, PoseEstimator } from 'threepoint/core';
+import { invertTransform, type MutablePose, makeTransform, type Pose, transformPose, vec3 } from 'threepoint/math';
 import {
   type TrackerOffset,
   type TrackerOffsets,
@@ -6,16 +7,6 @@ import {
 } from '../../../../src/threepoint/core/body/tracker-offsets';
 import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
 import { pinning } from '../../../../src/threepoint/core/estimation/pinning';
-import type { PoseEstimator } from '../../../../src/threepoint/core/estimation/pose-estimator';
-import {
-  invertTransform,
-  type MutablePose,
-  makeTransform,
-  type Pose,
-  transformPose,
-} from '../../../../src/threepoint/core/math/pose';
-import { vec3 } from '../../../../src/threepoint/core/math/vec3';
-import type { Mutable } from '../../../../src/threepoint/core/records';
 import type { BodyTrackers } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 

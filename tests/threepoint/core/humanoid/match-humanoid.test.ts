@@ -1,10 +1,8 @@
 import fc from 'fast-check';
+import { neededBones, type SkeletonJoint } from 'threepoint/core';
+import { distance, lerp, normaliseQuat, quat, rotate, scale } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { neededBones } from '../../../../src/threepoint/core/humanoid/bones';
-import type { SkeletonJoint } from '../../../../src/threepoint/core/humanoid/joint-tree';
 import { humanoidProblem, matchHumanoid, minConfidence } from '../../../../src/threepoint/core/humanoid/match-humanoid';
-import { normaliseQuat, quat, rotate } from '../../../../src/threepoint/core/math/quat';
-import { distance, lerp, scale } from '../../../../src/threepoint/core/math/vec3';
 import { rigs } from './rigs';
 
 /** The names of the matched joints by bone. */

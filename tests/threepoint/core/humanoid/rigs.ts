@@ -1,6 +1,5 @@
-import type { BoneName } from '../../../../src/threepoint/core/humanoid/bones';
-import type { SkeletonJoint } from '../../../../src/threepoint/core/humanoid/joint-tree';
-import { lerp, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import type { BoneName, SkeletonJoint } from 'threepoint/core';
+import { lerp, type Vec3, vec3 } from 'threepoint/math';
 
 /** The joints of a person of 1.72 m in T-pose, facing +Z [cm]; the left side. */
 const places: Readonly<Record<string, readonly [number, number, number]>> = {

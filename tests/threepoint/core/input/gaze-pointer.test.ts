@@ -1,8 +1,6 @@
+import { GazePointer, type PointerTarget } from 'threepoint/core';
+import { identity, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { GazePointer } from '../../../../src/threepoint/core/input/gaze-pointer';
-import type { PointerTarget } from '../../../../src/threepoint/core/input/pointer';
-import { identity } from '../../../../src/threepoint/core/math/quat';
-import { vec3 } from '../../../../src/threepoint/core/math/vec3';
 
 const head = { position: vec3(0, 1.6, 0), orientation: identity };
 const exit: PointerTarget = { distance: 1, owner: 'menu', id: 'exit' };

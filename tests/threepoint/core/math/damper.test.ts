@@ -1,7 +1,6 @@
 import fc from 'fast-check';
+import { clamp, damp, dampVec3, distance, smoothingFactor, smoothstep, up, vec3, zero } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { clamp, damp, dampVec3, smoothingFactor, smoothstep } from '../../../../src/threepoint/core/math/damper';
-import { distance, up, vec3, zero } from '../../../../src/threepoint/core/math/vec3';
 import { number, seed } from '../arbitraries';
 
 describe('the damper', () => {

@@ -1,36 +1,31 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import {
-  alignDirections,
-  angleBetween,
-  conjugate,
-  fromAxes,
-  fromAxisAngle,
-  identity,
-  limitAngle,
-  multiply,
-  normaliseQuat,
-  type Quat,
-  restDirections,
-  rotate,
-  rotationBetween,
-  slerp,
-  toEulerYxz,
-  twistAngle,
-  twistOf,
-} from '../../../../src/threepoint/core/math/quat';
 import {
   add,
+  angleBetween,
+  conjugate,
   cross,
   distance,
   dot,
+  fromAxes,
+  fromAxisAngle,
+  identity,
   length,
+  multiply,
+  normaliseQuat,
+  type Quat,
   right,
+  rotate,
+  rotationBetween,
   scale,
+  slerp,
+  twistAngle,
+  twistOf,
   up,
   type Vec3,
   vec3,
-} from '../../../../src/threepoint/core/math/vec3';
+} from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import { alignDirections, limitAngle, restDirections, toEulerYxz } from '../../../../src/threepoint/core/math/quat';
 import { direction, number, rotation, seed, vector } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 

@@ -1,40 +1,33 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import {
-  composeTransforms,
-  invertTransform,
-  makePose,
-  transformPoint,
-  transformPose,
-} from '../../../../src/threepoint/core/math/pose';
-import {
-  alignDirections,
-  conjugate,
-  copyQuat,
-  limitAngle,
-  multiply,
-  normaliseQuat,
-  type Quat,
-  restDirections,
-  rotate,
-  rotateInverse,
-  rotationBetween,
-  slerp,
-  twistOf,
-} from '../../../../src/threepoint/core/math/quat';
 import {
   add,
   addScaled,
+  composeTransforms,
+  conjugate,
+  copyQuat,
   copyVec3,
   cross,
+  invertTransform,
   lerp,
+  makePose,
+  multiply,
   normalise,
+  normaliseQuat,
+  type Quat,
   reject,
+  rotate,
+  rotationBetween,
   scale,
+  slerp,
   subtract,
+  transformPoint,
+  transformPose,
+  twistOf,
   up,
   type Vec3,
-} from '../../../../src/threepoint/core/math/vec3';
+} from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import { alignDirections, limitAngle, restDirections, rotateInverse } from '../../../../src/threepoint/core/math/quat';
 import { rotation, seed, vector } from '../arbitraries';
 
 type OfVectors = (a: Vec3, b: Vec3, target?: Vec3) => Vec3;

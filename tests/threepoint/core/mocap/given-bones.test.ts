@@ -1,7 +1,6 @@
+import { type BoneMap, UnknownBonesError } from 'threepoint/core';
+import { distance } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import type { BoneMap } from '../../../../src/threepoint/core/humanoid/bones';
-import { UnknownBonesError } from '../../../../src/threepoint/core/humanoid/unknown-bones-error';
-import { distance } from '../../../../src/threepoint/core/math/vec3';
 import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
 import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { goldenMocap, sourceOf } from './golden-mocap';

@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
-import type { MocapSource } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { type MocapClip, type MocapSource, prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
+import { finishWork } from '../../../../src/threepoint/core/motion/work';
 
 /** A file of a generated person, and what the evaluation makes of it. */
 export interface GoldenMocap {
@@ -29,3 +30,6 @@ export function sourceOf({ motion, files }: Pick<GoldenMocap, 'motion' | 'files'
   const skeleton = Object.keys(files).find((name) => name.endsWith('.asf'))!;
   return { format: 'amc', name: motion, text, skeleton: { name: skeleton, text: files[skeleton]! } };
 }
+
+/** Returns the motion in the file, and what the trackers would have reported of it. */
+export const clipOf = (golden: GoldenMocap): MocapClip => finishWork(prepareMocap(sourceOf(golden))).clips[0]!;

@@ -1,12 +1,10 @@
 import fc from 'fast-check';
+import { actorFrame, defaultCalibration, parseRecording, writeRecording } from 'threepoint/core';
 import { expect, test } from 'vitest';
 import { readGltfMotion } from '../../../../src/threepoint/avatar/file/read-gltf-motion';
-import { defaultCalibration } from '../../../../src/threepoint/core/body/calibration';
 import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/mocap/prepare-mocap';
 import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { writeVrma } from '../../../../src/threepoint/core/motion/write-vrma';
-import { actorFrame } from '../../../../src/threepoint/core/tracking/actor-motion';
-import { parseRecording, writeRecording } from '../../../../src/threepoint/core/tracking/recording';
 import { isNightly } from '../../../nightly';
 import { builtFbx } from '../../avatar/built-fbx';
 import { type FbxNode, fbxBinary, fbxText } from '../../avatar/fbx-file';

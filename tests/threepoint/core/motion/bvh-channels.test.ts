@@ -1,7 +1,6 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
+import { createRandom, distance } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { createRandom } from '../../../../src/threepoint/core/math/random';
-import { distance } from '../../../../src/threepoint/core/math/vec3';
 import { createSkeletonPose } from '../../../../src/threepoint/core/motion/imported-motion';
 import { poseBvh, readBvh } from '../../../../src/threepoint/core/motion/read-bvh';
 import { finishWork } from '../../../../src/threepoint/core/motion/work';

@@ -1,8 +1,7 @@
 import { Quaternion, Vector3 } from 'three';
 import { BVHLoader } from 'three/addons/loaders/BVHLoader.js';
+import { distance, type Quat, type Vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import type { Quat } from '../../../../src/threepoint/core/math/quat';
-import { distance, type Vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { createSkeletonPose } from '../../../../src/threepoint/core/motion/imported-motion';
 import { turnPoint, turnRotation } from '../../../../src/threepoint/core/motion/motion-bones';
 import { type BvhMotion, poseBvh, readBvh } from '../../../../src/threepoint/core/motion/read-bvh';

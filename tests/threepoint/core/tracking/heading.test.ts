@@ -1,9 +1,8 @@
 import fc from 'fast-check';
+import { headingOf } from 'threepoint/core';
+import { distance, forward, fromAxisAngle, multiply, right, rotate, transformPoint, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { transformPoint } from '../../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, multiply, rotate } from '../../../../src/threepoint/core/math/quat';
-import { distance, forward, right, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
-import { floorFromHeading, headingFromFloor, headingOf } from '../../../../src/threepoint/core/tracking/heading';
+import { floorFromHeading, headingFromFloor } from '../../../../src/threepoint/core/tracking/heading';
 import { evenly, rotation, seed, vector } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 

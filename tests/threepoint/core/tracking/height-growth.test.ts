@@ -1,17 +1,13 @@
 import fc from 'fast-check';
+import { type Calibration, calibrationProblem, skeletonFromCalibration, type TrackingFrame } from 'threepoint/core';
+import { fromAxisAngle, identity, multiply, type Quat, right, rotate, subtract, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import {
-  type Calibration,
   calibrationFromHeadHeight,
-  calibrationProblem,
   eyeHeightRange,
   withEyeHeight,
 } from '../../../../src/threepoint/core/body/calibration';
-import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
-import { right, subtract, up, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import { createGrowthDetector } from '../../../../src/threepoint/core/tracking/height-growth';
-import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, seed } from '../arbitraries';
 
 const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };

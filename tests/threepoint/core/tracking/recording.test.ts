@@ -1,19 +1,17 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
-import { flatHand } from '../../../../src/threepoint/core/body/hand-shape';
-import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
-import { slerp } from '../../../../src/threepoint/core/math/quat';
-import { distance, lerp, vec3 } from '../../../../src/threepoint/core/math/vec3';
-import { deviceBodySize } from '../../../../src/threepoint/core/tracking/device-body';
 import {
   parseRecording,
   type Recording,
   recordingDuration,
   sampleRecording,
+  type TrackingFrame,
   writeRecording,
   writeRecordingWithin,
-} from '../../../../src/threepoint/core/tracking/recording';
-import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
+} from 'threepoint/core';
+import { distance, lerp, slerp, type TrackedPose, vec3 } from 'threepoint/math';
+import { describe, expect, test } from 'vitest';
+import { flatHand } from '../../../../src/threepoint/core/body/hand-shape';
+import { deviceBodySize } from '../../../../src/threepoint/core/tracking/device-body';
 import { evenly, number, rotation, seed, vector } from '../arbitraries';
 
 const tracked: fc.Arbitrary<TrackedPose> = fc.record({

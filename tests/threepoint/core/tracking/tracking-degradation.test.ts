@@ -1,15 +1,10 @@
 import fc from 'fast-check';
+import { lerpHandShape, TrackingDegradation, type TrackingFrame } from 'threepoint/core';
+import { angleBetween, distance, fromAxisAngle, multiply, type TrackedPose, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { closedHand, lerpHandShape, relaxedHand } from '../../../../src/threepoint/core/body/hand-shape';
-import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
-import { angleBetween, fromAxisAngle, multiply } from '../../../../src/threepoint/core/math/quat';
-import { distance, vec3 } from '../../../../src/threepoint/core/math/vec3';
+import { closedHand, relaxedHand } from '../../../../src/threepoint/core/body/hand-shape';
 import { deviceBodySize } from '../../../../src/threepoint/core/tracking/device-body';
-import {
-  type DegradationSettings,
-  TrackingDegradation,
-} from '../../../../src/threepoint/core/tracking/tracking-degradation';
-import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
+import type { DegradationSettings } from '../../../../src/threepoint/core/tracking/tracking-degradation';
 import { evenly, seed } from '../arbitraries';
 
 /** A person who stands turned and swings head and hands; where they are at any time [s]. */

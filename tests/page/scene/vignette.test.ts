@@ -2,7 +2,7 @@ import { PerspectiveCamera } from 'three';
 import { identity, vec3 } from 'threepoint/math';
 import { Mirror } from 'threepoint/three';
 import { expect, test } from 'vitest';
-import { createVignette } from '../../src/page/scene/vignette';
+import { createVignette } from '../../../src/page/scene/vignette';
 
 test('the edges darken at a turn and clear within half a second, centred on the eyes', () => {
   const vignette = createVignette();

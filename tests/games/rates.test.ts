@@ -12,9 +12,9 @@ import { type ArcheryState, archeryRules, arrowLength, delayed } from 'threepoin
 import { type BallInput, type BallState, ballRules, rackPosition } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
 import { releaseDirection } from '../../src/games/archery/flight';
-import { hold, inFront, leftThrower, stand, velocityTo } from '../games/ball/playing';
+import { reportFigures } from '../reliability/report-figures';
 import { poseOf } from '../threepoint/core/estimation/drawn';
-import { reportFigures } from './report-figures';
+import { hold, inFront, leftThrower, stand, velocityTo } from './ball/playing';
 
 const rates = [72, 80, 90, 120] as const;
 /** Returns whether a frame is dropped: 30 % are, at most two in a row. */

@@ -12,16 +12,14 @@ import {
 import { distance } from 'threepoint/math';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ArcheryPlay, probeOf } from '../../src/page/archery/archery-play';
-import { BallPlay } from '../../src/page/ball/match/ball-play';
-import { createFrameLoop } from '../../src/page/shell/frame-loop';
-import { FrameTiming } from '../../src/page/shell/session/frame-timing';
-import { Recorder } from '../../src/page/studio/recorder';
-import type { PlayedStep } from '../../src/study/model/plan/schedule';
-import { PlayedTrial } from '../../src/study/participant/trial/study-trial';
-import { actorLoopSeconds } from '../../src/threepoint/core/tracking/actor-motion';
-import { studiedArcher } from '../study/participant/played-round';
-import { reportFigures } from './report-figures';
+import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createFrameLoop } from '../../../src/page/shell/frame-loop';
+import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
+import { Recorder } from '../../../src/page/studio/recorder';
+import { reportFigures } from '../../reliability/report-figures';
+import { trialOf } from '../../study/participant/played-trial';
+import { studiedArcher } from '../archery/studied-archer';
 
 const frameMs = 1000 / 72;
 /** The steps of the page's clock [s], each reverted 4 s later; the short ones run in the full suite only. */
@@ -175,7 +173,8 @@ function goesOn(step: number): void {
         last = { pose, time };
       },
     });
-    run(actorLoopSeconds + 1);
+    // The actor repeats its motion every 36.8 s.
+    run(38);
     const usual = furthest;
     for (const by of [step, -step]) {
       leap(by);
@@ -188,26 +187,7 @@ function goesOn(step: number): void {
   test('a recording and the log of a trial have every frame once, in order', () => {
     const recorder = new Recorder();
     const { play, runner } = studiedArcher(7);
-    const trial = new PlayedTrial(
-      {
-        kind: 'trial',
-        id: 'archery/1/trial-1',
-        task: 'archery',
-        block: 1,
-        repetition: 1,
-        condition: 'ik',
-        embodiment: { estimator: 'ik' },
-        seconds: 70,
-      } as PlayedStep,
-      runner,
-      {
-        calibration: () => defaultCalibration,
-        device: () => ({ name: 'a test', refreshRateHz: 72, input: 'simulated' }),
-        estimator: () => 'ik',
-        listenToFrames: () => undefined,
-      },
-      { key: 'a', motion: true, seed: 7, now: () => 1e9 },
-    );
+    const trial = trialOf(runner, { seconds: 70, seed: 7 });
     recorder.record({ device: 'actor', rateHz: 72, calibration: defaultCalibration });
     let finished: ReturnType<typeof trial.follow> = null;
     const { run, leap, faults } = page({

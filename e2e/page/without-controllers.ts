@@ -1,7 +1,7 @@
 import type { Page } from '@playwright/test';
 import { fromAxisAngle, multiply, right, up } from 'threepoint/math';
-import { lobbySize } from '../src/page/ball/view/lobby-sheet';
-import { type EmulatedHeadset, frames, type Point, type Rotation, type Side } from './emulated-headset';
+import { lobbySize } from '../../src/page/ball/view/lobby-sheet';
+import { type EmulatedHeadset, frames, type Point, type Rotation, type Side } from '../emulated-headset';
 import { menuPoint, waitForCanvasText } from './hands-on-menu';
 
 /** Returns the orientation whose −Z points from one place to another. */

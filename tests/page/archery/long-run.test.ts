@@ -1,10 +1,10 @@
 import { createEstimator, defaultCalibration } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import { ArcheryPlay } from '../../src/page/archery/archery-play';
-import { collectGarbage } from '../collect-garbage.mjs';
-import { isNightly } from '../nightly';
-import { poseOf } from '../threepoint/core/estimation/drawn';
-import { reportFigures } from './report-figures';
+import { ArcheryPlay } from '../../../src/page/archery/archery-play';
+import { collectGarbage } from '../../collect-garbage.mjs';
+import { isNightly } from '../../nightly';
+import { reportFigures } from '../../reliability/report-figures';
+import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 const heap = (): number => {
   collectGarbage();

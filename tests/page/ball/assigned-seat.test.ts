@@ -1,37 +1,18 @@
 import { defaultAvatar } from 'threepoint/core';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { assignedSeat } from '../../../src/page/ball/match/ball-connections';
-import { createExperimenterClient, createParticipantClient } from '../../../src/study/client/study-client';
-import { scheduleFor } from '../../../src/study/model/plan/schedule';
-import type { ParticipantState } from '../../../src/study/model/progress/study-api';
 import { visitor } from '../../rooms/client/people';
 import { until } from '../../rooms/server/running-relay';
-import { forkServer } from '../../server/server-child';
-import { experimenterToken } from '../../server/started-server';
-import { paperPlan } from '../model/studies';
+import { invitedGroup } from '../../study/participant/invited-group';
 
-const trial = { step: 'ball/1/trial-1', run: 1 };
 const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };
 
 /** The server, and what brings each of the first group to the court. */
 async function invited() {
-  const { url: origin } = await forkServer();
+  const { origin, group, seatOf } = await invitedGroup();
   vi.stubGlobal('location', { href: `${origin}/?play=ball` });
-
-  const experimenter = createExperimenterClient(experimenterToken, origin);
-  await experimenter.addStudy(paperPlan(), false);
-  const states = await experimenter.participants('paper');
-  const invitationOf = (name: string) =>
-    states.find(({ participant }: ParticipantState) => participant === name)?.invitation as string;
-  const group = scheduleFor(paperPlan(), 'P01').groups.ball?.members as readonly string[];
-  const client = createParticipantClient(origin);
   const come = async (participant: string) => {
-    const { version } = paperPlan().consent;
-    const { token } = await client.claim({ study: 'paper', participant }, invitationOf(participant), version);
-    const { connect, avatars } = await assignedSeat(
-      () => client.seat({ study: 'paper', participant, token }, trial),
-      clock,
-    );
+    const { connect, avatars } = await assignedSeat(await seatOf(participant), clock);
     expect(avatars).toBeNull();
     const connection = connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());
     onTestFinished(() => connection.leave());

@@ -1,9 +1,9 @@
 import type { Page } from '@playwright/test';
-import type { StudyPlan } from '../src/study/model/plan/plan';
-import type { StudyRecord } from '../src/study/model/records/study-record';
-import type { StudyProbe } from '../src/study/participant/study-run';
-import { type EmulatedHeadset, emulatedHeadset } from './emulated-headset';
-import { expect, freshTest as pageTest } from './page-fixture';
+import type { StudyPlan } from '../../src/study/model/plan/plan';
+import type { StudyRecord } from '../../src/study/model/records/study-record';
+import type { StudyProbe } from '../../src/study/participant/study-run';
+import { type EmulatedHeadset, emulatedHeadset } from '../emulated-headset';
+import { expect, freshTest as pageTest } from '../page-fixture';
 import { experimenter, experimenterToken, serveStudies } from './study-server';
 
 export const test = pageTest.extend<object, { origin: string }>({

@@ -4,16 +4,16 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { studyLink } from '../src/study/client/study-link';
-import { parsePlan, type StudyPlan } from '../src/study/model/plan/plan';
-import { scheduleFor } from '../src/study/model/plan/schedule';
-import { begin } from '../src/study/model/progress/progress';
-import type { NumberedCommand, ParticipantState } from '../src/study/model/progress/study-api';
-import { recordVersion } from '../src/study/model/records/study-record';
+import { studyLink } from '../../src/study/client/study-link';
+import { parsePlan, type StudyPlan } from '../../src/study/model/plan/plan';
+import { scheduleFor } from '../../src/study/model/plan/schedule';
+import { begin } from '../../src/study/model/progress/progress';
+import type { NumberedCommand, ParticipantState } from '../../src/study/model/progress/study-api';
+import { recordVersion } from '../../src/study/model/records/study-record';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
-const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
+const atRoot = (path: string) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
 
 /**
  * Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes.

@@ -1,6 +1,6 @@
+import { createStatusLine } from 'threepoint-ui';
 import { beforeEach, expect, test, vi } from 'vitest';
-import { recorderText } from '../../src/page/shell/panels/recording-page';
-import { createStatusLine } from '../../src/ui/status-line';
+import { recorderText } from '../../../../src/page/shell/panels/recording-page';
 
 /** The part of an element that a line of text needs; it counts how often its text was set. */
 class Element {

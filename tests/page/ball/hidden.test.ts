@@ -1,9 +1,9 @@
 import { allReleased, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import { BallPlay } from '../../src/page/ball/match/ball-play';
-import { poseOf } from '../threepoint/core/estimation/drawn';
-import { reportFigures } from './report-figures';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { reportFigures } from '../../reliability/report-figures';
+import { poseOf } from '../../threepoint/core/estimation/drawn';
 
 const released = { left: allReleased, right: allReleased };
 

@@ -2,9 +2,9 @@ import { allReleased } from 'threepoint/core';
 import { ArcheryGestures } from 'threepoint-games/archery';
 import { expect, test } from 'vitest';
 import { defaultArcheryGestureSettings } from '../../src/games/archery/gestures';
-import { bowman, posed } from '../games/archery/bowman';
-import { ballThrower } from './ball-thrower';
-import { reportFigures } from './report-figures';
+import { reportFigures } from '../reliability/report-figures';
+import { bowman, posed } from './archery/bowman';
+import { ballThrower } from './ball/ball-thrower';
 
 /** The duration of the system menu [s]: hands and buttons are absent, the head stays tracked. */
 const menuSeconds = 10;

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
-import { bowman } from '../games/archery/bowman';
-import { ballThrower } from './ball-thrower';
-import { reportFigures } from './report-figures';
+import { reportFigures } from '../reliability/report-figures';
+import { bowman } from './archery/bowman';
+import { ballThrower } from './ball/ball-thrower';
 
 test('a controller that goes off drops its ball to the rack and returns with nothing', () => {
   const thrower = ballThrower().carry(1);

@@ -9,8 +9,8 @@ import { statedPerformanceModel } from '../../src/study/simulation/performance-m
 import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { expect, joinedRoom } from '../page-fixture';
-import { openResults, signIn, test } from '../study-participant';
-import { experimenter } from '../study-server';
+import { openResults, signIn, test } from './study-participant';
+import { experimenter } from './study-server';
 
 /** What another person may write where a page shows it; as markup it would be an element of this class. */
 const mark = '<b class=foreign>x';
@@ -98,7 +98,7 @@ test('markup in names of files is text in what pages say of them @full', async (
 test('markup in the name of another player is text @full', async ({ page, origin }) => {
   await page.goto(`${origin}/?play=ball&room=foreign&bots=off&panel=off&quality=low&estimator=ik&overlay=off`);
   await joinedRoom(page);
-  const script = fileURLToPath(new URL('../guest-process.ts', import.meta.url));
+  const script = fileURLToPath(new URL('../rooms/guest-process.ts', import.meta.url));
   const guest = fork(script, [origin, 'foreign', mark], { execArgv: ['--import', 'tsx'], serialization: 'advanced' });
   try {
     await once(guest, 'message');

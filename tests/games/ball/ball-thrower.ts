@@ -9,8 +9,8 @@ import {
   vec3,
 } from 'threepoint/math';
 import { BallGestures, ballRules, rackPosition, stations } from 'threepoint-games/ball';
-import { wristAround } from '../../src/games/fist';
-import { leftThrower, told } from '../games/ball/playing';
+import { wristAround } from '../../../src/games/fist';
+import { leftThrower, told } from './playing';
 
 type Side = 'left' | 'right';
 type Hand = {

@@ -22,10 +22,10 @@ import {
   vec3,
 } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
-import { show } from '../threepoint/core/estimation/drawn';
-import { openShippedModel } from '../threepoint/core/estimation/shipped-models';
-import { reportFigures } from './report-figures';
+import { Pipeline } from '../../../../src/threepoint/core/estimation/pipeline';
+import { reportFigures } from '../../../reliability/report-figures';
+import { show } from './drawn';
+import { openShippedModel } from './shipped-models';
 
 /** The floor frame after the device has recentred: turned by a quarter turn and moved by 1 m. */
 const newFromOld: Transform<'floor', 'floor'> = {

@@ -1,16 +1,16 @@
+import { Body, type PoseRegressor, ReplayedBody } from 'threepoint';
+import {
+  type Calibration,
+  type EstimatorName,
+  estimatedJoints,
+  forwardKinematics,
+  skeletonFromCalibration,
+} from 'threepoint/core';
+import { distance } from 'threepoint/math';
 import { describe, expect, test, vi } from 'vitest';
 import { Recorder } from '../../../src/page/studio/recorder';
-import { Body } from '../../../src/threepoint/api/body';
-import { ReplayedBody } from '../../../src/threepoint/api/replayed-body';
-import type { Calibration } from '../../../src/threepoint/core/body/calibration';
-import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from '../../../src/threepoint/core/body/joints';
-import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
-import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
-import type { EstimatorName } from '../../../src/threepoint/core/estimation/pose-estimator';
-import { distance } from '../../../src/threepoint/core/math/vec3';
-import { movingPerson } from '../core/estimation/moving-person';
-import { openPlainModel } from '../core/estimation/shipped-models';
+import { movingPerson } from '../../threepoint/core/estimation/moving-person';
+import { openPlainModel } from '../../threepoint/core/estimation/shipped-models';
 
 const calibration: Calibration = { eyeHeight: 1.65, armSpan: 1.56 };
 const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
