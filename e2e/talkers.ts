@@ -2,7 +2,7 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test as base, chromium, expect, type Page } from '@playwright/test';
-import type { VoicesProbe } from '../src/page/ball/voices/voices';
+import type { VoicesProbe } from '../src/page/people/voices/voices';
 import { drawSeldom } from './draw-seldom';
 import { writeFakeVoice } from './fake-voice';
 import { joinedRoom, probe } from './page-fixture';

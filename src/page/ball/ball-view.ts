@@ -1,6 +1,10 @@
 import type { Group } from 'three';
 import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/math';
 import { type BallCue, type BallEvent, type BallState, stations } from 'threepoint-games/ball';
+import type { DisplayedMatch, DisplayedPlayer } from '../people/view/displayed-match';
+import { createLobbySheet, type LobbySheet } from '../people/view/lobby-sheet';
+import { createNameLabels, type NameLabels } from '../people/view/name-labels';
+import type { SeatVoices } from '../people/voices/seat-voices';
 import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
 import type { AudibleStage } from '../scene/sound/sound-stage';
@@ -13,12 +17,8 @@ import { createAimArc } from './view/aim-arc';
 import { Balls } from './view/balls';
 import { type Boards, createBoards } from './view/boards';
 import { CatchPopups } from './view/catch-popups';
-import type { DisplayedMatch, DisplayedPlayer } from './view/displayed-match';
-import { createLobbySheet, type LobbySheet } from './view/lobby-sheet';
 import { eventLine, waitingLine } from './view/match-texts';
-import { createNameLabels, type NameLabels } from './view/name-labels';
 import { createWickerBasket } from './view/wicker-basket';
-import type { SeatVoices } from './voices/seat-voices';
 
 /** A player at the court as they are drawn in this frame. */
 export type DrawnPlayer = DisplayedPlayer & Pick<PlayerFrame, 'head' | 'palms' | 'opacity'>;

@@ -1,5 +1,5 @@
 import type { Activity } from '../activity/activity';
-import type { BallActivity } from './ball-activity';
+import type { BallActivity } from '../people/match/match-activity';
 
 export const ball = {
   name: 'ball',
@@ -7,11 +7,11 @@ export const ball = {
   place: 'The ball court',
   floor: { halfWidth: 1.75, ahead: 5.6, behind: 0.5 },
   async load(context) {
-    const { openBallActivity } = await import('./ball-activity');
+    const { openBallActivity } = await import('../people/match/match-activity');
     return openBallActivity(context);
   },
   async createRunner(services) {
-    const { createBallRunner } = await import('./ball-runner');
+    const { createBallRunner } = await import('../people/match/match-runner');
     return createBallRunner(services);
   },
 } as const satisfies Activity<BallActivity>;

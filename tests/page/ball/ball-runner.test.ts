@@ -2,8 +2,8 @@ import { allReleased, type Buttons, createEstimator, defaultCalibration, unknown
 import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
-import { createBallRunner } from '../../../src/page/ball/ball-runner';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createBallRunner } from '../../../src/page/people/match/match-runner';
 import type { PlayedStep } from '../../../src/study/model/plan/schedule';
 import { type FinishedTrial, PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { poseOf } from '../../threepoint/core/estimation/drawn';

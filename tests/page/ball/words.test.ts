@@ -10,11 +10,11 @@ import {
 import { describe, expect, it } from 'vitest';
 import { cueCaption, eventCaption } from '../../../src/page/ball/sound/ball-captions';
 import { eventHaptics } from '../../../src/page/ball/sound/ball-haptics';
-import type { DisplayedMatch, DisplayedPlayer } from '../../../src/page/ball/view/displayed-match';
-import { displayName, markedName } from '../../../src/page/ball/view/displayed-match';
-import { lobbyButtons, seatOfButton } from '../../../src/page/ball/view/lobby-sheet';
 import { eventLine, waitingLine, waitingSentence } from '../../../src/page/ball/view/match-texts';
-import { labelScale } from '../../../src/page/ball/view/name-labels';
+import type { DisplayedMatch, DisplayedPlayer } from '../../../src/page/people/view/displayed-match';
+import { displayName, markedName } from '../../../src/page/people/view/displayed-match';
+import { lobbyButtons, seatOfButton } from '../../../src/page/people/view/lobby-sheet';
+import { labelScale } from '../../../src/page/people/view/name-labels';
 import { createSettling, settlingSeconds } from '../../../src/page/scene/boards/sheet';
 
 const person = (name: string, more: Partial<DisplayedPlayer> = {}): DisplayedPlayer => ({

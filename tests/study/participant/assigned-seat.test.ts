@@ -1,6 +1,6 @@
 import { defaultAvatar } from 'threepoint/core';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { assignedSeat } from '../../../src/page/ball/match/ball-connections';
+import { assignedSeat } from '../../../src/page/people/match/room-place';
 import { createExperimenterClient, createParticipantClient } from '../../../src/study/client/study-client';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { ParticipantState } from '../../../src/study/model/progress/study-api';

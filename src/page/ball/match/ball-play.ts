@@ -13,11 +13,11 @@ import {
 } from 'threepoint-games/ball';
 import { RoomClient } from 'threepoint-rooms';
 import type { ConnectionStatus, Visitor, VoiceChannel } from 'threepoint-rooms/room';
+import { CourtPeople } from '../../people/match/seated-people';
 import { BallBots, readyAfter } from './ball-bots';
 import type { BallFrame } from './ball-frame';
 import type { BallProbe } from './ball-probe';
 import { probeOf } from './ball-probe';
-import { CourtPeople } from './court-people';
 import { joined, SimulatedPlayer } from './simulated-player';
 import type { BotKnowledge } from './simulated-seat';
 import { createGestures, playFrame } from './simulated-seat';

@@ -21,6 +21,7 @@ import {
   stations,
   type TimedLaunch,
 } from 'threepoint-games/ball';
+import type { DisplayedPlayer } from '../../people/view/displayed-match';
 import {
   createSoundStage,
   type Recipe,
@@ -30,7 +31,6 @@ import {
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import type { PlayerFrame } from '../match/ball-frame';
-import type { DisplayedPlayer } from '../view/displayed-match';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 

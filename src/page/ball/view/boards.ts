@@ -1,13 +1,13 @@
 import { Group } from 'three';
 import { ballsLeft } from 'threepoint-games/ball';
 import { drawText } from 'threepoint-ui/vr';
+import type { DisplayedMatch } from '../../people/view/displayed-match';
 import { ink, paintGround } from '../../scene/boards/board-style';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import { court } from '../court/court-plan';
-import type { DisplayedMatch } from './displayed-match';
 
 const boardSize = { width: 1024, height: 588 } as const;
 

@@ -1,5 +1,5 @@
 import { type BallEvent, rotationForRound } from 'threepoint-games/ball';
-import { type DisplayedMatch, type DisplayedPlayer, markedName } from './displayed-match';
+import { type DisplayedMatch, type DisplayedPlayer, markedName } from '../../people/view/displayed-match';
 
 /** Returns the line of the board for an event; null: none. */
 export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | null)[]): string | null {

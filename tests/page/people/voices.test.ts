@@ -1,8 +1,8 @@
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import type { VoiceSettings } from 'threepoint-rooms';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
-import { BlockList } from '../../../src/page/ball/voices/block-list';
-import { Voices } from '../../../src/page/ball/voices/voices';
+import { BlockList } from '../../../src/page/people/voices/block-list';
+import { Voices } from '../../../src/page/people/voices/voices';
 import { visitor } from '../../rooms/client/people';
 
 const told: VoiceSettings = { voices: true, iceServers: [], ttlSeconds: null };

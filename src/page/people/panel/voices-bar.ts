@@ -1,5 +1,5 @@
 import { button, element, toggle } from 'threepoint-ui';
-import { seatLooks } from '../seat-looks';
+import { seatLooks } from '../view/seat-looks';
 import { consentText, type VoicesState } from '../voices/voices-state';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type SeatRow } from './other-players';
 

@@ -1,7 +1,7 @@
 import type { AvatarPose } from 'threepoint/core';
 import { identity, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { proximityFade } from '../../../src/page/ball/match/proximity-fade';
+import { proximityFade } from '../../../src/page/people/match/proximity-fade';
 
 const tracked = (position: Vec3) => ({ position, orientation: identity, tracking: 'tracked' as const });
 const standing = (hand: Vec3 | null = null): AvatarPose => ({

@@ -1,8 +1,8 @@
 import { transformPose, type Vec3 } from 'threepoint/math';
-import type { Watched } from '../activity/activity';
-import type { ActivityContext } from '../activity/activity-context';
-import type { CameraScene } from '../scene/desktop-view';
-import type { BallPlay } from './match/ball-play';
+import type { Watched } from '../../activity/activity';
+import type { ActivityContext } from '../../activity/activity-context';
+import type { BallPlay } from '../../ball/match/ball-play';
+import type { CameraScene } from '../../scene/desktop-view';
 
 /** The middle of the court, which a spectator's camera looks at first, floor frame [m]. */
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };

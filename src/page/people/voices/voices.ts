@@ -1,7 +1,7 @@
 import { firstLine, reasonOf } from 'threepoint/core';
 import { hasRelay, IceServerCache, Microphone, type VoiceSettings } from 'threepoint-rooms';
 import type { VoiceChannel } from 'threepoint-rooms/room';
-import type { BallPlay } from '../match/ball-play';
+import type { BallPlay } from '../../ball/match/ball-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
 import { VoiceCall } from './voice-call';

@@ -1,6 +1,6 @@
 import type { BallState } from 'threepoint-games/ball';
-import type { PlayerFrame } from '../match/ball-frame';
-import { seatLooks } from '../seat-looks';
+import type { PlayerFrame } from '../../ball/match/ball-frame';
+import { seatLooks } from './seat-looks';
 
 /** A player on a seat, as boards and labels write of them. */
 export type DisplayedPlayer = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me' | 'station'>;

@@ -4,9 +4,9 @@ import { drawText, textWidth } from 'threepoint-ui/vr';
 import { ink } from '../../scene/boards/board-style';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
-import { paintSeatMark, roleTexts } from '../seat-looks';
 import type { DisplayedPlayer } from './displayed-match';
 import { displayName } from './displayed-match';
+import { paintSeatMark, roleTexts } from './seat-looks';
 
 export interface Label {
   readonly person: DisplayedPlayer;

@@ -1,10 +1,10 @@
 import { type BallState, ballsLeft } from 'threepoint-games/ball';
 import { bannerText, connectionText } from 'threepoint-rooms';
-import type { BallFrame } from '../match/ball-frame';
-import type { BallPlay } from '../match/ball-play';
-import { roleTexts } from '../seat-looks';
+import type { BallFrame } from '../../ball/match/ball-frame';
+import type { BallPlay } from '../../ball/match/ball-play';
+import { waitingSentence } from '../../ball/view/match-texts';
 import { displayName, markedName } from '../view/displayed-match';
-import { waitingSentence } from '../view/match-texts';
+import { roleTexts } from '../view/seat-looks';
 import type { PersonVoice, VoicesState } from '../voices/voices-state';
 import type { SeatRow } from './other-players';
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { hideLabel, muteLabel, otherPlayers, type SeatRow } from '../../../src/page/ball/panel/other-players';
+import { hideLabel, muteLabel, otherPlayers, type SeatRow } from '../../../src/page/people/panel/other-players';
 
 const seated = (seat: number, change: Partial<SeatRow> = {}): SeatRow => ({
   ...{ seat, name: `Player ${seat}`, station: seat, label: `${seat + 1} · Player ${seat}`, role: 'Right thrower' },

@@ -1,8 +1,8 @@
 import { linkTo, qrCode } from 'threepoint-ui';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../../activity/activity-menu';
-import type { BallPlay } from '../match/ball-play';
-import type { BallRound } from '../panel/ball-round';
+import type { BallPlay } from '../../ball/match/ball-play';
+import type { BallRound } from '../panel/match-round';
 import { type OtherPlayer, otherPlayers } from '../panel/other-players';
 import type { BlockList } from '../voices/block-list';
 import type { Voices } from '../voices/voices';

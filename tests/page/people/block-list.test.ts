@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { BlockList } from '../../../src/page/ball/voices/block-list';
+import { BlockList } from '../../../src/page/people/voices/block-list';
 
 const person = (name: string) => ({ name, bot: false });
 const bot = (name: string) => ({ name, bot: true });

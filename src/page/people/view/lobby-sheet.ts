@@ -1,12 +1,12 @@
 import { Group } from 'three';
 import { catchesOf } from 'threepoint-games/ball';
 import { drawText, type TextStyle, textWidth } from 'threepoint-ui/vr';
+import { waitingSentence } from '../../ball/view/match-texts';
 import { ink, paintCard } from '../../scene/boards/board-style';
 import { createSheet, paintButton, type SheetButton } from '../../scene/boards/sheet';
 import type { Quality } from '../../scene/renderer';
-import { paintSeatMark, roleTexts } from '../seat-looks';
 import { type DisplayedMatch, displayName, ownName } from './displayed-match';
-import { waitingSentence } from './match-texts';
+import { paintSeatMark, roleTexts } from './seat-looks';
 
 export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';
 export const lobbySize = { width: 1024, height: 900 } as const;

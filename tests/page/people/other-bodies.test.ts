@@ -1,6 +1,6 @@
 import { TransientError } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import { BuiltInBodies } from '../../../src/page/ball/court-avatars';
+import { BuiltInBodies } from '../../../src/page/people/match/other-bodies';
 
 test('a built-in body whose download failed is fetched again when it is needed again', async () => {
   let asked = 0;

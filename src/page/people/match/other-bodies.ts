@@ -3,10 +3,10 @@ import { checkInWorker, loadUntrustedAvatar, parseAvatar } from 'threepoint/file
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
 import type { AvatarExchange } from 'threepoint-rooms';
 import { RoomBodies } from 'threepoint-rooms/three';
-import type { ActivityContext } from '../activity/activity-context';
-import { decoders } from '../scene/decoders';
-import type { BallPlay } from './match/ball-play';
-import type { Voices } from './voices/voices';
+import type { ActivityContext } from '../../activity/activity-context';
+import type { BallPlay } from '../../ball/match/ball-play';
+import { decoders } from '../../scene/decoders';
+import type { Voices } from '../voices/voices';
 
 export interface CourtAvatarsOptions {
   readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchBuiltInAvatar'>;

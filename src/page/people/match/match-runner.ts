@@ -1,8 +1,8 @@
 import { PhrasedError } from 'threepoint-study';
 import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant';
-import type { ActivityRunner, RunnerServices } from '../activity/activity';
-import type { BallFrame } from './match/ball-frame';
-import type { BallPlay } from './match/ball-play';
+import type { ActivityRunner, RunnerServices } from '../../activity/activity';
+import type { BallFrame } from '../../ball/match/ball-frame';
+import type { BallPlay } from '../../ball/match/ball-play';
 
 /** The part of the ball game that a study uses. */
 export interface StudiedBall {

@@ -1,6 +1,6 @@
 import { ballRulesText } from 'threepoint-games/ball';
 import { button, createRoomLink, element, isTouchFirst, type ServerState, sentenceList, toggle } from 'threepoint-ui';
-import type { BallRound } from './ball-round';
+import type { BallRound } from './match-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
 

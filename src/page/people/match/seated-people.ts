@@ -20,8 +20,8 @@ import {
   isInZone,
   type Opening,
 } from 'threepoint-games/ball';
-import { seatLooks } from '../seat-looks';
-import type { PlayerFrame } from './ball-frame';
+import type { PlayerFrame } from '../../ball/match/ball-frame';
+import { seatLooks } from '../view/seat-looks';
 import { proximityFade } from './proximity-fade';
 
 /** The frame of one seat, with the buffers that it overwrites. */

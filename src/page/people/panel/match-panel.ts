@@ -1,12 +1,12 @@
 import { createInvitation, type Invitation } from 'threepoint-ui';
 import type { ActivityPanel } from '../../activity/activity';
 import type { ActivityContext } from '../../activity/activity-context';
-import type { CourtCamera } from '../court-camera';
-import type { BallPlay } from '../match/ball-play';
+import type { BallPlay } from '../../ball/match/ball-play';
+import type { CourtCamera } from '../match/match-camera';
 import type { BlockList } from '../voices/block-list';
 import type { Voices } from '../voices/voices';
-import { type BallBarActions, type BallBarState, createBallBar } from './ball-bar';
-import type { BallRound } from './ball-round';
+import { type BallBarActions, type BallBarState, createBallBar } from './match-bar';
+import type { BallRound } from './match-round';
 
 /** What the panel shows and acts on. */
 export interface CourtControls {

@@ -9,7 +9,7 @@ import {
   menuMargin,
 } from '../../activity/activity-menu';
 import { hideLabel, muteLabel, type OtherPlayer } from '../panel/other-players';
-import { paintSeatMark } from '../seat-looks';
+import { paintSeatMark } from '../view/seat-looks';
 
 /** The top of the first player [pixels]. */
 const playersTop = 124;
