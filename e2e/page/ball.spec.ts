@@ -1,8 +1,8 @@
 import { spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
+import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import type { BallProbe } from '../../src/page/ball/match/ball-probe';
-import type { BallActivityProbe } from '../../src/page/people/match/match-activity';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, goOn, holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';

@@ -2,7 +2,7 @@ import type { Page } from '@playwright/test';
 import { archeryRules } from 'threepoint-games/archery';
 import { stations } from 'threepoint-games/ball';
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
-import type { BallActivityProbe } from '../../src/page/people/match/match-activity';
+import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import { type EmulatedHeadset, frames, type Point } from '../emulated-headset';
 import { recordCanvasText } from '../hands-on-menu';
 import { enterVr, expect, keepPicture, openWithHeadset, probe, freshTest as test } from '../page-fixture';

@@ -1,5 +1,5 @@
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
-import type { BallActivityProbe } from '../../src/page/people/match/match-activity';
+import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import { driveTime, holdAt, pass } from '../driven-time';
 import { card, choose, errors } from '../mocap-card';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';

@@ -2,8 +2,9 @@ import { allReleased, type Buttons, createEstimator, defaultCalibration, unknown
 import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
+import { ballTask } from '../../../src/page/ball/ball-task';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
-import { createBallRunner } from '../../../src/page/people/match/match-runner';
+import { createMatchRunner } from '../../../src/page/people/match/match-runner';
 import type { PlayedStep } from '../../../src/study/model/plan/schedule';
 import { type FinishedTrial, PlayedTrial } from '../../../src/study/participant/trial/study-trial';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
@@ -87,7 +88,7 @@ async function group({ stopped = false } = {}) {
       });
       const { settings, writer } = activityServices();
       const court = { play };
-      const runner = createBallRunner({
+      const runner = createMatchRunner(ballTask, {
         settings,
         writer,
         opened: () => court,

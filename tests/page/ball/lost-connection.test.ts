@@ -118,7 +118,7 @@ function court() {
       self.hold(addScaled(ahead, vec3(0, 3, -4), 15 / 60), 0, 0.2);
     },
     sit: (seat: number) => page.sit(seat),
-    rotate: (on: boolean) => page.rotate(on),
+    rotate: (on: boolean) => page.setOption(on),
     lose: () => wire.lose(),
     connect: () => wire.connect(),
     /** The page is loaded again; the pass that it finds makes it the same person. */

@@ -1,4 +1,5 @@
 import { defaultAvatar } from 'threepoint/core';
+import { ballClientPolicy } from 'threepoint-games/ball';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { assignedSeat } from '../../../src/page/people/match/room-place';
 import { createExperimenterClient, createParticipantClient } from '../../../src/study/client/study-client';
@@ -29,6 +30,7 @@ async function invited() {
     const { version } = paperPlan().consent;
     const { token } = await client.claim({ study: 'paper', participant }, invitationOf(participant), version);
     const { connect, avatars } = await assignedSeat(
+      ballClientPolicy,
       () => client.seat({ study: 'paper', participant, token }, trial),
       clock,
     );

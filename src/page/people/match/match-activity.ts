@@ -5,71 +5,107 @@ import {
   defaultAvatar,
   type Fingers,
   type HapticPulse,
-  type MutableHandShape,
   nothingPressed,
   type PointerTarget,
   type TrackingFrame,
 } from 'threepoint/core';
-import type { Pose, Ray, Side, Transform } from 'threepoint/math';
-import type { ObjectHolds } from 'threepoint/three';
+import type { Pose, Ray, Transform } from 'threepoint/math';
 import type { SimulatedInput } from 'threepoint-games';
-import { defaultBallOptions } from 'threepoint-games/ball';
 import { bannerText } from 'threepoint-rooms';
+import type { HostedGame } from 'threepoint-rooms/room';
 import type { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../../activity/activity';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu } from '../../activity/activity-menu';
-import { BallView } from '../../ball/ball-view';
-import { graspAtCourt } from '../../ball/court-grasp';
-import { CourtInput } from '../../ball/court-input';
-import type { BallFrame } from '../../ball/match/ball-frame';
-import { BallPlay } from '../../ball/match/ball-play';
-import { type BallProbe, playerProbes } from '../../ball/match/ball-probe';
-import { eventHaptics } from '../../ball/sound/ball-haptics';
 import type { CameraScene } from '../../scene/desktop-view';
-import { BallMenu } from '../menu/people-menu';
-import { createBallPanel } from '../panel/match-panel';
-import { type BallRound, ballRound } from '../panel/match-round';
+import type { AudibleStage } from '../../scene/sound/sound-stage';
+import type { Surroundings } from '../../scene/surroundings';
+import { PeopleMenu } from '../menu/people-menu';
+import { createMatchPanel } from '../panel/match-panel';
+import { type MatchRound, matchRound } from '../panel/match-round';
 import { ownName } from '../view/displayed-match';
 import { type LobbyButton, seatOfButton } from '../view/lobby-sheet';
+import type { PeopleScene, PeopleView } from '../view/people-view';
 import { seatLooks } from '../view/seat-looks';
 import { BlockList } from '../voices/block-list';
-import { Voices, type VoicesProbe } from '../voices/voices';
-import { CourtCamera } from './match-camera';
-import { createCourtAvatars } from './other-bodies';
-import { assignedSeat, type BallPlace, connectionsFor } from './room-place';
+import { Voices } from '../voices/voices';
+import { MatchCamera, type MatchScenes } from './match-camera';
+import type { MatchFrame, SeatFrame } from './match-frame';
+import type { MatchPlay, MatchPlayOptions } from './match-play';
+import { createOtherBodies } from './other-bodies';
+import { playerProbes } from './player-probes';
+import { type RoomPlace, roomFor } from './room-place';
+import type { SeatedGame } from './seated-game';
 
-/** The state of a match and of its voices, for tests and tools. */
-export type BallActivityProbe = BallProbe & { readonly voices: VoicesProbe };
+/** One frame of a match as its view draws it. */
+export type MatchScene<Game extends HostedGame, Frame extends MatchFrame<Game>> = Frame &
+  PeopleScene<Game> & {
+    /** The viewer's eyes and ears, floor frame of the user. */
+    readonly head: Pose<'floor'>;
+  };
 
-type Players = BallFrame['players'];
+/** The view of a game, with the people in it but without their bodies. */
+export interface MatchView<Game extends HostedGame, Frame extends MatchFrame<Game>> {
+  readonly people: PeopleView<Game>;
+  readonly sound: AudibleStage;
+  /** Returns the place of the game for the user's floor frame; called after every change of the seat. */
+  placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
+  /** Shows or hides the boards. A phone's window is covered by the bar, which has their figures. */
+  showBoards?(visible: boolean): void;
+  show(scene: MatchScene<Game, Frame>): void;
+  /** Plays and captions the events since the last frame. Called after `show`. */
+  playEvents(events: readonly Game['event'][], frame: Frame): void;
+  dispose(): void;
+}
 
-const noBodies: BallFrame['bodies'] = [];
-const noEvents: BallFrame['events'] = [];
+/** The parts of an activity that its game supplies. */
+export interface MatchParts<Game extends HostedGame, Frame extends MatchFrame<Game>, Play> {
+  readonly game: SeatedGame<Game>;
+  readonly view: MatchView<Game, Frame>;
+  readonly scenes: MatchScenes;
+  /** A simulated player moves the user's body: no person can be asked. */
+  acting(): boolean;
+  createPlay(options: MatchPlayOptions<Game>): Play;
+}
+
+/** What a match is opened with: the page, the room, and the file of the body that other players have. */
+export interface MatchOpening<Game extends HostedGame> {
+  readonly context: ActivityContext;
+  readonly room: RoomPlace<Game>;
+  readonly mannequin: ArrayBuffer;
+}
+
+const noBodies: MatchFrame['bodies'] = [];
+const noEvents: readonly never[] = [];
 const noSeats: readonly never[] = [];
 /** How long the notice of a voided match is shown [s]. */
 const noticeSeconds = 8;
 const voidedNotice = 'The server was restarted, so this round does not count. You can start a new one.';
 
-/** The ball game in the page: the court, the other players' bodies, and the user's part in the match. */
-export class BallActivity implements OpenActivity {
-  readonly play: BallPlay;
-  readonly sound: BallView['sound'];
+/** A game of several people in the page: its place, the other players' bodies, and the user's part in the match. */
+export abstract class MatchActivity<
+  Game extends HostedGame,
+  Frame extends MatchFrame<Game> = MatchFrame<Game>,
+  Play extends MatchPlay<Game, Frame> = MatchPlay<Game, Frame>,
+> implements OpenActivity
+{
+  readonly game: SeatedGame<Game>;
+  readonly play: Play;
+  readonly sound: AudibleStage;
   readonly voices: Voices;
   readonly blocked = new BlockList(() => this.voices.seats.applyBlocks());
-  readonly camera: CourtCamera;
+  readonly camera: MatchCamera;
   readonly mirrorSide = null;
-  readonly #context: ActivityContext;
-  readonly #view: BallView;
-  readonly #avatars: RoomBodies;
-  readonly #menu: BallMenu;
-  readonly #input: CourtInput;
+  protected readonly context: ActivityContext;
+  readonly #parts: MatchParts<Game, Frame, Play>;
+  readonly #bodies: RoomBodies;
+  readonly #menu: PeopleMenu;
   /** The width up to which the bar lies over the picture. */
   readonly #phone = matchMedia('(max-width: 480px)');
   /** The user joined without a name, and reads “You” instead of the one that others see. */
   readonly #unnamed: boolean;
   /** The result of `#named`; the next call overwrites it. */
-  readonly #written: Players[number][] = [];
+  readonly #written: (SeatFrame | null)[] = [];
   #placedAt: Transform<'floor', 'arena'> | null = null;
   #newestFrame: TrackingFrame | null = null;
   /** The number of voided matches that the user was notified of. */
@@ -77,13 +113,14 @@ export class BallActivity implements OpenActivity {
   #notice: { readonly text: string; readonly until: number } | null = null;
   #now = 0;
 
-  /** `mannequin`: the file of the body that other players have. */
-  constructor(context: ActivityContext, room: BallPlace, mannequin: ArrayBuffer) {
-    const { quality, place, settings, switches, body, layout, stage, onCaption } = context;
-    this.#context = context;
-    this.#input = new CourtInput(context, () => this.play ?? null);
+  constructor({ context, room, mannequin }: MatchOpening<Game>, parts: MatchParts<Game, Frame, Play>) {
+    const { place, settings, switches, body, stage } = context;
+    const { game, view, scenes, acting } = parts;
+    this.context = context;
+    this.game = game;
+    this.#parts = parts;
     this.#unnamed = place === null && settings.name === '';
-    this.play = new BallPlay({
+    this.play = parts.createPlay({
       connect: room.connect,
       visitor: {
         name: place?.participant || settings.name || settings.defaultName,
@@ -91,32 +128,29 @@ export class BallActivity implements OpenActivity {
         ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
-      bots: () => settings.bots && place === null,
-      acting: () => this.#input.isActor,
-      steering: () => this.#input.steering(),
-      seed: layout.seed,
+      acting,
     });
-    this.#view = new BallView({ quality, balls: defaultBallOptions.balls, onCaption });
-    this.sound = this.#view.sound;
+    const { play } = this;
+    this.sound = view.sound;
     this.voices = new Voices({
-      play: this.play,
+      play,
       blocked: this.blocked,
       terms: room.voiceTerms,
       openAudio: () => this.sound.open(),
       relayOnly: () => settings.voicesByRelay,
     });
-    this.#avatars = createCourtAvatars({
-      context,
-      exchange: room.avatars,
-      mannequin,
-      play: this.play,
-      voices: this.voices,
-    });
-    this.camera = new CourtCamera({ context, play: this.play, hipsOf: (seat) => this.#avatars.jointsOf(seat)?.hips });
-    this.#menu = new BallMenu(this, context);
-    stage.studio.scene.add(this.#view.own, this.#avatars.object);
+    this.#bodies = createOtherBodies({ context, exchange: room.avatars, mannequin, play, voices: this.voices });
+    this.camera = new MatchCamera({ context, play, scenes, hipsOf: (seat) => this.#bodies.jointsOf(seat)?.hips });
+    this.#menu = new PeopleMenu(this, context);
+    stage.studio.scene.add(view.people.lobby.object, this.#bodies.object);
     this.#place();
   }
+
+  /** Returns the input of the simulated player on the user's seat, or of the one that a pointer steers. */
+  abstract act(time: number): SimulatedInput | null;
+
+  /** Returns the state of the match and of its voices, for tests and tools; null: there is no match. */
+  abstract probe(): object | null;
 
   get scene(): CameraScene {
     return this.camera.scene;
@@ -125,8 +159,8 @@ export class BallActivity implements OpenActivity {
   /** The colours of the user's seat; null: a spectator. */
   get palette(): string | null {
     const newest = this.play.newest;
-    const station = newest && newest.me !== null ? newest.state.players[newest.me]?.station : undefined;
-    return station === undefined ? null : (seatLooks[station]?.palette ?? null);
+    if (!newest || newest.me === null) return null;
+    return seatLooks[this.game.stationOf(newest.state, newest.me)]?.palette ?? null;
   }
 
   get watched(): Watched | null {
@@ -142,54 +176,48 @@ export class BallActivity implements OpenActivity {
     this.play.begin(time);
     this.blocked.update(this.play.room?.seats ?? noSeats);
     this.voices.begin();
-    this.#avatars.share();
+    this.#bodies.share();
     this.#place();
     const voided = this.play.room?.voidedRounds ?? 0;
     if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
     this.#voided = voided;
   }
 
-  act(time: number): SimulatedInput | null {
-    return this.play.act(time, !this.#context.headset.worn);
-  }
-
   update(frame: TrackingFrame, buttons: Buttons): readonly HapticPulse[] {
     this.#newestFrame = frame;
-    return this.#follow(frame.time, frame, this.#context.study.run?.idle ? nothingPressed : buttons);
+    const pressed = this.context.study.run?.idle ? nothingPressed : buttons;
+    return this.play.follow(frame.time, frame, pressed)?.haptics ?? [];
   }
 
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
     this.play.send(frame, pose, fingers);
   }
 
-  grasp(side: Side, wrist: Pose<'floor'>, holding: ObjectHolds, target: MutableHandShape): boolean {
-    return graspAtCourt(this.play, side, wrist, holding, target);
-  }
-
   show(time: number, frame: TrackingFrame | null): void {
-    if (!frame) this.#follow(time, null, nothingPressed);
+    if (!frame) this.play.follow(time, null, nothingPressed);
     const newest = this.play.newest;
     const bodies = newest?.bodies ?? noBodies;
     this.voices.seats.locate(bodies);
-    this.#avatars.show(this.blocked.visible(bodies), time);
+    this.#bodies.show(this.blocked.visible(bodies), time);
     if (!newest) return;
-    const { pose } = this.#context.stage.view;
-    this.#view.showBoards(this.#context.headset.worn || !this.#phone.matches);
-    this.#view.show({
+    const { headset, stage } = this.context;
+    const { view, acting } = this.#parts;
+    view.showBoards?.(headset.worn || !this.#phone.matches);
+    view.show({
       ...newest,
       attendants: this.#named(newest.players),
-      head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? pose,
+      head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? stage.view.pose,
       pageTime: time,
       inRoom: !this.#ended,
-      acting: this.acting,
+      acting: acting(),
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
-    this.#view.playEvents(newest.resumed ? noEvents : newest.events, newest.cues);
+    view.playEvents(newest.resumed ? noEvents : newest.events, newest);
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
-    const { lobby } = this.#view;
+    const { lobby } = this.#parts.view.people;
     const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
     lobby.setHovered(hit?.id ?? null);
     if (!hit) return null;
@@ -223,41 +251,36 @@ export class BallActivity implements OpenActivity {
   }
 
   createPanel(): ActivityPanel {
-    return createBallPanel(this, this.#context);
+    return createMatchPanel(this, this.context);
   }
 
   menu(): ActivityMenu {
     return this.#menu.state();
   }
 
-  round(): BallRound | null {
+  round(): MatchRound | null {
     const frame = this.play.newest;
     if (!frame) return null;
-    const { play, voices, acting } = this;
-    const players = this.#named(frame.players);
-    return ballRound({ play, frame, players, acting, voices });
-  }
-
-  probe(): BallActivityProbe | null {
-    const probe = this.play.probe();
-    return probe && { ...probe, voices: this.voices.probe() };
+    const { game, play, voices } = this;
+    return matchRound(game, {
+      play,
+      frame,
+      players: this.#named(frame.players),
+      acting: this.#parts.acting(),
+      voices,
+    });
   }
 
   players(): readonly PlayerProbe[] {
-    return playerProbes(this.play, this.#avatars);
+    return playerProbes(this.play, this.#bodies);
   }
 
   dispose(): void {
     this.voices.dispose();
     this.play.leave();
-    this.#context.stage.studio.setSurroundings(null);
-    this.#avatars.dispose();
-    this.#view.dispose();
-  }
-
-  /** A simulated player moves the user's body: no person can be asked. */
-  get acting(): boolean {
-    return this.#input.isActor;
+    this.context.stage.studio.setSurroundings(null);
+    this.#bodies.dispose();
+    this.#parts.view.dispose();
   }
 
   /** This page is no longer in the room. */
@@ -265,16 +288,16 @@ export class BallActivity implements OpenActivity {
     return this.play.status.phase === 'ended';
   }
 
-  /** Turns the court around the user, after every change of seat. */
+  /** Turns the place of the game around the user, after every change of seat. */
   #place(): void {
     const at = this.play.floorFromArena;
     if (at === this.#placedAt) return;
     this.#placedAt = at;
-    this.#context.stage.studio.setSurroundings(this.#view.placed(at));
+    this.context.stage.studio.setSurroundings(this.#parts.view.placed(at));
   }
 
   /** The players with the names that this page shows; the list is valid until the next call. */
-  #named(players: Players): Players {
+  #named(players: MatchFrame['players']): MatchFrame['players'] {
     if (!this.#unnamed) return players;
     const written = this.#written;
     written.length = players.length;
@@ -284,38 +307,21 @@ export class BallActivity implements OpenActivity {
     return written;
   }
 
-  #follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly HapticPulse[] {
-    const newest = this.play.follow(time, frame, buttons);
-    if (!newest) return [];
-    const { me, role, events, haptics } = newest;
-    if (me === null || role === null || events.length === 0) return haptics;
-    return [...haptics, ...eventHaptics(events, me, role)];
-  }
-
   #press(id: LobbyButton): void {
     const seat = seatOfButton(id);
-    const newest = this.play.newest;
-    if (seat !== null) this.play.sit(seat);
-    else if (id === 'rotate') this.play.rotate(!(newest?.state.rotate ?? false));
-    else this.play.ready(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
+    const { play } = this;
+    const newest = play.newest;
+    if (seat !== null) play.sit(seat);
+    else if (id === 'option') play.setOption?.(!(newest && this.game.option?.isOn(newest.state)));
+    else play.ready(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
   }
 }
 
-/** Returns the room to play in: the one that a study assigned, the one in the address, or one in this page. */
-async function roomFor({ place, switches, clock, server, layout }: ActivityContext): Promise<BallPlace> {
-  if (place) return assignedSeat(place.seat, clock);
-  // A server that does not answer now may answer later. Without a server the match is in this page.
-  const hosted = switches.room !== null && (await server.whenKnown()) !== 'none';
-  return connectionsFor(hosted ? switches.room : null, {
-    seed: layout.seed,
-    clock,
-    ...(switches.seconds && { seconds: switches.seconds }),
-    ...(switches.balls && { balls: switches.balls }),
-  });
-}
-
-/** Downloads the body of other players and connects to the room. Rejects with a reason. */
-export async function openBallActivity(context: ActivityContext): Promise<BallActivity> {
-  const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(defaultAvatar), roomFor(context)]);
-  return new BallActivity(context, room, mannequin);
+/** Downloads the body of other players and connects to the room of a game. Rejects with a reason. */
+export async function openMatch<Game extends HostedGame>(
+  game: SeatedGame<Game>,
+  context: ActivityContext,
+): Promise<MatchOpening<Game>> {
+  const [mannequin, room] = await Promise.all([context.fetchBuiltInAvatar(defaultAvatar), roomFor(game, context)]);
+  return { context, room, mannequin };
 }

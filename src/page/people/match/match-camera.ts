@@ -1,42 +1,33 @@
 import { transformPose, type Vec3 } from 'threepoint/math';
+import type { HostedGame } from 'threepoint-rooms/room';
 import type { Watched } from '../../activity/activity';
 import type { ActivityContext } from '../../activity/activity-context';
-import type { BallPlay } from '../../ball/match/ball-play';
 import type { CameraScene } from '../../scene/desktop-view';
+import type { MatchPlay } from './match-play';
 
-/** The middle of the court, which a spectator's camera looks at first, floor frame [m]. */
-const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
+/** The views of a game at the desktop. */
+export interface MatchScenes {
+  /** The view past a player to the others. */
+  readonly player: CameraScene;
+  /** The whole place, for a spectator. */
+  readonly spectator: CameraScene;
+  /** The point that a spectator's camera looks at first, floor frame [m]. */
+  readonly middle: Vec3;
+}
 
-/** The view past a player to the others, whose names are above their heads. */
-const courtScene: CameraScene = {
-  'third-person': {
-    offset: { x: -0.8, y: 1.05, z: 3.5 },
-    aim: { x: 0.3, y: 0.12, z: -2.4 },
-    fovDegrees: 50,
-    headroom: 0.5,
-  },
-  front: { offset: { x: -1.9, y: 0.6, z: -3.1 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 50 },
-};
-
-/** The whole court from the side, for a spectator. */
-const standsScene: CameraScene = {
-  'third-person': { offset: { x: 4.6, y: 2.1, z: 4.6 }, aim: { x: 0.4, y: 0.15, z: 0 }, fovDegrees: 54 },
-  front: { offset: { x: -4.6, y: 1.7, z: -3.6 }, aim: { x: 0, y: -0.1, z: 0 }, fovDegrees: 50 },
-  free: true,
-};
-
-export interface CourtCameraOptions {
+export interface MatchCameraOptions {
   readonly context: Pick<ActivityContext, 'settings' | 'writer' | 'stage' | 'headset' | 'placeCamera'>;
-  readonly play: Pick<BallPlay, 'newest'>;
+  readonly play: Pick<MatchPlay<HostedGame>, 'newest'>;
+  readonly scenes: MatchScenes;
   /** The hips of the player on a seat as drawn, floor frame of the user; undefined: nobody is drawn there. */
   hipsOf(seat: number): Vec3 | undefined;
 }
 
-/** The desktop camera at the court: behind the user's body or, for a spectator, free or with a player. */
-export class CourtCamera {
-  readonly #options: CourtCameraOptions;
+/** The desktop camera at a match: behind the user's body or, for a spectator, free or with a player. */
+export class MatchCamera {
+  readonly #options: MatchCameraOptions;
 
-  constructor(options: CourtCameraOptions) {
+  constructor(options: MatchCameraOptions) {
     this.#options = options;
   }
 
@@ -47,15 +38,17 @@ export class CourtCamera {
   }
 
   get scene(): CameraScene {
-    return this.spectating && this.#options.context.settings.following === null ? standsScene : courtScene;
+    const { context, scenes } = this.#options;
+    return this.spectating && context.settings.following === null ? scenes.spectator : scenes.player;
   }
 
   /** The person that a spectator's camera looks at; null: the user has a body. */
   get watched(): Watched | null {
     if (!this.spectating) return null;
-    const { settings, stage } = this.#options.context;
+    const { context, scenes } = this.#options;
+    const { settings, stage } = context;
     const followed = settings.following === null ? null : this.#bodyOf(settings.following);
-    return followed ?? { pelvis: courtMiddle, eyes: stage.view.pose };
+    return followed ?? { pelvis: scenes.middle, eyes: stage.view.pose };
   }
 
   /** Lets a spectator's camera follow the player on this seat; null: the camera is free. */

@@ -1,31 +1,32 @@
-import { PhrasedError } from 'threepoint-study';
+import type { HostedGame } from 'threepoint-rooms/room';
+import { type GameName, PhrasedError } from 'threepoint-study';
 import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant';
 import type { ActivityRunner, RunnerServices } from '../../activity/activity';
-import type { BallFrame } from '../../ball/match/ball-frame';
-import type { BallPlay } from '../../ball/match/ball-play';
+import type { MatchFrame } from './match-frame';
+import type { MatchPlay } from './match-play';
+import type { SeatedGame } from './seated-game';
 
-/** The part of the ball game that a study uses. */
-export interface StudiedBall {
-  readonly play: Pick<BallPlay, 'newest' | 'room' | 'ready' | 'pause'>;
+/** The part of an activity that a study uses. */
+export interface StudiedMatch<Game extends HostedGame> {
+  readonly play: Pick<MatchPlay<Game>, 'newest' | 'room' | 'ready' | 'pause'>;
+}
+
+/** A game as a task: its figures, and what its events are for participants. */
+export interface MatchTask<Game extends HostedGame> extends Pick<SeatedGame<Game>, 'figures'> {
+  /** The name of the game in plans. */
+  readonly name: GameName;
+  /** Returns what an event is for the participant on this seat, at this second of their trial. */
+  taskEvents(event: Game['event'], me: number | null, at: number): readonly TaskEvent[];
 }
 
 /** The longest delay of the room's bell after this page's [s]: the room counts from the moment it started the match. */
 const bellDelay = 4;
 
-/** What an event of the match is for the participant on this seat, at this second of their trial. */
-function taskEvents(event: BallFrame['events'][number], me: number | null, at: number): TaskEvent[] {
-  if (event.type === 'thrown' && event.player === me) return [{ type: 'shot' }];
-  if (event.type === 'missed' && event.player === me) return [{ type: 'miss', time: at, points: 0 }];
-  // A point is the group's: it is a hit of the thrower, and a catch for the others.
-  if (event.type === 'caught') return [{ type: event.player === me ? 'hit' : 'catch', time: at, points: 1 }];
-  return [];
-}
-
 /**
  * One participant's trial: which part of the match on the page counts for it, what happens to them there, and how it
  * ends.
  */
-class BallTrial {
+class MatchTrial<Game extends HostedGame> {
   /** Second of the match at which it began; null: not yet. */
   #from: number | null = null;
   /** The room that it began in. */
@@ -43,6 +44,7 @@ class BallTrial {
    * before, and it is the rest of it that counts.
    */
   constructor(
+    private readonly task: MatchTask<Game>,
     private readonly seconds: number,
     private readonly members: readonly string[],
     private readonly joinsLate: boolean,
@@ -51,7 +53,7 @@ class BallTrial {
   }
 
   /** `getReady`: asks the room to count this participant as ready. */
-  played(frame: BallFrame, getReady: () => void): void {
+  played(frame: MatchFrame<Game>, getReady: () => void): void {
     if (this.end || this.interrupted) return;
     const { state, connection } = frame;
     const over = state.phase === 'over';
@@ -64,12 +66,12 @@ class BallTrial {
     if (this.#from !== null) this.#follow(frame, frame.time - this.#from);
   }
 
-  #begin({ state, me, players, time, epoch }: BallFrame, getReady: () => void): void {
+  #begin({ state, me, players, time, epoch }: MatchFrame<Game>, getReady: () => void): void {
     const there = players.flatMap((player) => (player?.ready ? [player.name] : []));
     this.#missing = this.members.filter((name) => !there.includes(name));
     if (state.phase === 'running') {
       // However late this page draws its first frame of the match.
-      this.#from = this.joinsLate ? time : (state.startedAt ?? time);
+      this.#from = this.joinsLate ? time : (this.task.figures(state).startedAt ?? time);
       this.#epoch = epoch;
     } else if (me !== null && !state.players[me]?.ready) {
       // The room may have forgotten: a server that was restarted, a seat that was only now given.
@@ -78,19 +80,20 @@ class BallTrial {
   }
 
   /** since: the trial's beginning [s]. */
-  #follow({ state, connection, me, events }: BallFrame, since: number): void {
+  #follow({ state, connection, me, events }: MatchFrame<Game>, since: number): void {
     const at = Math.max(0, since);
-    this.#happened.push(...events.flatMap((event) => taskEvents(event, me, at)));
+    this.#happened.push(...events.flatMap((event) => this.task.taskEvents(event, me, at)));
+    const figures = this.task.figures(state);
     // If the room's own bell rings no later, it decides: a ball may still be in the air.
-    const limit = state.options.seconds <= this.seconds ? this.seconds + bellDelay : this.seconds;
+    const limit = figures.seconds <= this.seconds ? this.seconds + bellDelay : this.seconds;
     const over = state.phase === 'over';
     // Without a connection this page does not know the score: it waits for the connection.
     if (!over && (at < limit || connection !== 'joined')) return;
     this.end = {
       seconds: Math.min(at, limit),
-      ended: (over && state.end) || 'time',
-      score: state.score,
-      maximum: state.options.balls,
+      ended: (over && figures.end) || 'time',
+      score: figures.score,
+      maximum: figures.of,
     };
   }
 
@@ -109,21 +112,24 @@ class BallTrial {
   }
 }
 
-/** The ball game as a task of a study. */
-export function createBallRunner(services: RunnerServices<StudiedBall>): ActivityRunner {
+/** Makes a game of several people a task of a study. */
+export function createMatchRunner<Game extends HostedGame>(
+  task: MatchTask<Game>,
+  services: RunnerServices<StudiedMatch<Game>>,
+): ActivityRunner {
   let place: TaskPlace | null = null;
-  let trial: BallTrial | null = null;
+  let trial: MatchTrial<Game> | null = null;
   const play = () => services.opened()?.play;
   const getReady = () => play()?.ready(true);
 
   return {
     async prepare(next) {
       place = next;
-      if (!(await services.open(next))) throw new PhrasedError('round.ball');
+      if (!(await services.open(next))) throw new PhrasedError(`round.${task.name}`);
     },
     start({ seconds }) {
       const match = play();
-      trial = new BallTrial(seconds, place?.members ?? [], match?.room?.match?.phase === 'running');
+      trial = new MatchTrial(task, seconds, place?.members ?? [], match?.room?.match?.phase === 'running');
       // The room still applies the pause that this page requested before it was reloaded.
       match?.pause(false);
       match?.ready(true);

@@ -2,19 +2,20 @@ import { type BuiltInBody, defaultAvatar } from 'threepoint/core';
 import { checkInWorker, loadUntrustedAvatar, parseAvatar } from 'threepoint/files';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
 import type { AvatarExchange } from 'threepoint-rooms';
+import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityContext } from '../../activity/activity-context';
-import type { BallPlay } from '../../ball/match/ball-play';
 import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';
+import type { MatchPlay } from './match-play';
 
-export interface CourtAvatarsOptions {
+export interface OtherBodiesOptions {
   readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchBuiltInAvatar'>;
   /** null: avatar files are not exchanged in this room. */
   readonly exchange: AvatarExchange | null;
   /** The file of the body that other players have. */
   readonly mannequin: ArrayBuffer;
-  readonly play: Pick<BallPlay, 'room' | 'wear'>;
+  readonly play: Pick<MatchPlay<HostedGame>, 'room' | 'wear'>;
   readonly voices: Pick<Voices, 'seats'>;
 }
 
@@ -42,7 +43,7 @@ export class BuiltInBodies {
 }
 
 /** Creates the bodies of the other players as drawn here, and shares the user's avatar with the others. */
-export function createCourtAvatars({ context, exchange, mannequin, play, voices }: CourtAvatarsOptions): RoomBodies {
+export function createOtherBodies({ context, exchange, mannequin, play, voices }: OtherBodiesOptions): RoomBodies {
   const { settings, avatar, notices } = context;
   const builtIn = new BuiltInBodies(mannequin, (name) => context.fetchBuiltInAvatar(name));
   return new RoomBodies({

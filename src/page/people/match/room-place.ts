@@ -1,15 +1,21 @@
-import { type BallConnection, type BallTerms, ballClientPolicy, createBallLoopbackHost } from 'threepoint-games/ball';
 import { type AvatarExchange, fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms';
-import type { LocalClock, Visitor } from 'threepoint-rooms/room';
+import {
+  type ClientPolicy,
+  type Connection,
+  type HostedGame,
+  type LocalClock,
+  LoopbackHost,
+  type Visitor,
+} from 'threepoint-rooms/room';
 import type { SignedSeat } from 'threepoint-study';
 import { pageFolder } from 'threepoint-ui';
-
-/** Makes one visitor's place in a room; `time`: the page's clock [s]. */
-export type Connect = (visitor: Visitor, time: number) => BallConnection;
+import type { ActivityContext } from '../../activity/activity-context';
+import type { SeatedGame } from './seated-game';
 
 /** A room to play in. */
-export interface BallPlace {
-  readonly connect: Connect;
+export interface RoomPlace<Game extends HostedGame> {
+  /** Makes one visitor's place in the room; `time`: the page's clock [s]. */
+  connect(visitor: Visitor, time: number): Connection<Game>;
   /** The exchange of the players' avatar files; null: avatars are not exchanged. */
   readonly avatars: AvatarExchange | null;
   /** Asks whether its people can talk; null: they cannot. */
@@ -20,34 +26,46 @@ export interface BallPlace {
  * Connects to the seat that a server assigns by a signed pass. An expired pass is requested again. All players wear the
  * same avatar there.
  */
-export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
+export async function assignedSeat<Game extends HostedGame>(
+  policy: ClientPolicy<Game>,
+  seat: () => Promise<SignedSeat>,
+  clock: LocalClock,
+): Promise<RoomPlace<Game>> {
   const [{ RoomAddress }, first] = await Promise.all([import('threepoint-rooms/socket'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
-  const address = new RoomAddress(ballClientPolicy, { url: pageFolder(), room: first.room, clock, pass });
+  const address = new RoomAddress(policy, { url: pageFolder(), room: first.room, clock, pass });
   return { connect: (visitor) => address.connect(visitor), avatars: null, voiceTerms: null };
 }
 
-/**
- * Places in a room of this name on the server that the page came from; null: in a Room of this page's own. `terms`: of
- * the match, on a server those of the first page in the room; a room of one's own may be paused in any case.
- */
-export async function connectionsFor(
-  room: string | null,
-  { seed, clock, ...terms }: BallTerms & { readonly seed: number; readonly clock: LocalClock },
-): Promise<BallPlace> {
-  if (room === null) {
-    const host = createBallLoopbackHost({ seed, ball: terms });
-    return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
-  }
+/** Connects to the room of this name on the page's server. The first page in it sets its terms. */
+async function sharedRoom<Game extends HostedGame>(
+  policy: ClientPolicy<Game>,
+  room: string,
+  terms: object,
+  clock: LocalClock,
+): Promise<RoomPlace<Game>> {
   const { RoomAddress, tabStorage } = await import('threepoint-rooms/socket');
   const storage = tabStorage();
-  const address = new RoomAddress(ballClientPolicy, {
-    ...{ url: pageFolder(), room, clock, terms },
-    ...(storage && { storage }),
-  });
+  const url = pageFolder();
+  const address = new RoomAddress(policy, { ...{ url, room, clock, terms }, ...(storage && { storage }) });
   return {
     connect: (visitor) => address.connect(visitor),
     avatars: address.avatars,
-    voiceTerms: () => fetchVoiceSettings(pageFolder(), room, address.pass),
+    voiceTerms: () => fetchVoiceSettings(url, room, address.pass),
   };
+}
+
+/** Returns the room to play in: the one that a study assigned, the one in the address, or one in this page. */
+export async function roomFor<Game extends HostedGame>(
+  game: SeatedGame<Game>,
+  { place, switches, clock, server, layout }: ActivityContext,
+): Promise<RoomPlace<Game>> {
+  if (place) return assignedSeat(game.policy, place.seat, clock);
+  // A server that does not answer now may answer later. Without a server the match is in this page.
+  const terms = game.terms(switches);
+  if (switches.room !== null && (await server.whenKnown()) !== 'none') {
+    return sharedRoom(game.policy, switches.room, terms, clock);
+  }
+  const host = new LoopbackHost(game.matchPolicy(terms, layout.seed), game.policy);
+  return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
 }

@@ -1,8 +1,10 @@
+import type { HostedGame } from 'threepoint-rooms/room';
 import { linkTo, qrCode } from 'threepoint-ui';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../../activity/activity-menu';
-import type { BallPlay } from '../../ball/match/ball-play';
-import type { BallRound } from '../panel/match-round';
+import type { MatchPlay } from '../match/match-play';
+import type { SeatedGame } from '../match/seated-game';
+import type { MatchRound } from '../panel/match-round';
 import { type OtherPlayer, otherPlayers } from '../panel/other-players';
 import type { BlockList } from '../voices/block-list';
 import type { Voices } from '../voices/voices';
@@ -10,7 +12,7 @@ import { consentText, type VoicesState } from '../voices/voices-state';
 import { invitationSheet, type ShownInvitation } from './invitation-sheet';
 import { playersSheet } from './players-sheet';
 
-export interface BallMenuState {
+export interface PeopleMenuState {
   /** Before and after a match, whether the user is ready; null: the user is not asked. */
   readonly ready: boolean | null;
   readonly plainOthers: boolean;
@@ -20,7 +22,7 @@ export interface BallMenuState {
   readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'microphoneMissing'>;
 }
 
-export interface BallMenuActions {
+export interface PeopleMenuActions {
   ready(on: boolean): void;
   setPlainOthers(on: boolean): void;
   listOthers(): void;
@@ -32,8 +34,8 @@ export interface BallMenuActions {
 }
 
 function voiceEntries(
-  { voices: { phase, muted, microphoneMissing } }: BallMenuState,
-  actions: BallMenuActions,
+  { voices: { phase, muted, microphoneMissing } }: PeopleMenuState,
+  actions: PeopleMenuActions,
 ): MenuEntry[] {
   switch (phase) {
     case 'off':
@@ -52,8 +54,8 @@ function voiceEntries(
   }
 }
 
-/** Returns the ball game's buttons of the menu in the headset. */
-export function ballEntries(state: BallMenuState, actions: BallMenuActions): readonly MenuEntry[] {
+/** Returns a match's buttons of the menu in the headset. */
+export function peopleEntries(state: PeopleMenuState, actions: PeopleMenuActions): readonly MenuEntry[] {
   const { ready, plainOthers, others, canInvite, voices } = state;
   const entries: MenuEntry[] = [];
   if (ready !== null)
@@ -69,24 +71,25 @@ export function ballEntries(state: BallMenuState, actions: BallMenuActions): rea
 }
 
 /** What the menu shows and acts on. */
-export interface MenuCourt {
-  readonly play: Pick<BallPlay, 'ready'>;
+export interface MenuMatch {
+  readonly game: Pick<SeatedGame<HostedGame>, 'name'>;
+  readonly play: Pick<MatchPlay<HostedGame>, 'ready'>;
   readonly voices: Voices;
   readonly blocked: BlockList;
-  round(): BallRound | null;
+  round(): MatchRound | null;
   banner(): string | null;
 }
 
-/** The ball game's part of the menu in the headset. */
-export class BallMenu {
-  readonly #court: MenuCourt;
+/** A match's part of the menu in the headset. */
+export class PeopleMenu {
+  readonly #match: MenuMatch;
   readonly #context: ActivityContext;
   #invitation: ShownInvitation | null = null;
   /** The list of players replaces the menu. */
   #listed = false;
 
-  constructor(court: MenuCourt, context: ActivityContext) {
-    this.#court = court;
+  constructor(match: MenuMatch, context: ActivityContext) {
+    this.#match = match;
     this.#context = context;
   }
 
@@ -98,13 +101,13 @@ export class BallMenu {
 
   state(): ActivityMenu {
     const { settings } = this.#context;
-    const court = this.#court;
-    const round = court.round();
-    const { phase, muted, microphoneMissing, message } = court.voices.state;
+    const match = this.#match;
+    const round = match.round();
+    const { phase, muted, microphoneMissing, message } = match.voices.state;
     const isAsked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
     const others = round ? otherPlayers(round, phase === 'in') : [];
     const canInvite = this.#openRoom() !== null;
-    const state: BallMenuState = {
+    const state: PeopleMenuState = {
       ready: isAsked ? round.ready : null,
       plainOthers: settings.plainOthers,
       others,
@@ -112,9 +115,9 @@ export class BallMenu {
       voices: { phase, muted, microphoneMissing },
     };
     return {
-      entries: ballEntries(state, this.#actions()),
+      entries: peopleEntries(state, this.#actions()),
       sheet: this.#sheet(canInvite, round === null ? null : others),
-      notice: (phase === 'asked' ? consentText : message) ?? court.banner(),
+      notice: (phase === 'asked' ? consentText : message) ?? match.banner(),
       hint: round?.waiting ?? round?.connection ?? null,
     };
   }
@@ -126,7 +129,7 @@ export class BallMenu {
       });
     if (canInvite && this.#invitation) return invitationSheet(this.#invitation, close);
     if (!this.#listed || others === null) return null;
-    const { blocked } = this.#court;
+    const { blocked } = this.#match;
     return playersSheet(others, {
       silence: (seat, on) => this.#change(() => blocked.set('silenced', seat, on)),
       hide: (seat, on) => this.#change(() => blocked.set('hidden', seat, on)),
@@ -134,9 +137,9 @@ export class BallMenu {
     });
   }
 
-  #actions(): BallMenuActions {
+  #actions(): PeopleMenuActions {
     const { writer } = this.#context;
-    const { play, voices } = this.#court;
+    const { play, voices } = this.#match;
     return {
       ready: (on) => play.ready(on),
       setPlainOthers: (plainOthers) => writer.keep({ plainOthers }),
@@ -166,7 +169,7 @@ export class BallMenu {
   #invite(): void {
     const room = this.#openRoom();
     if (room === null) return;
-    const link = linkTo(room);
+    const link = linkTo(this.#match.game.name, room);
     const show = (code: ShownInvitation['code']) =>
       this.#change(() => {
         this.#invitation = { ...link, code };

@@ -1,13 +1,14 @@
-import { ballRulesText } from 'threepoint-games/ball';
+import type { HostedGame } from 'threepoint-rooms/room';
 import { button, createRoomLink, element, isTouchFirst, type ServerState, sentenceList, toggle } from 'threepoint-ui';
-import type { BallRound } from './match-round';
+import type { SeatedGame } from '../match/seated-game';
+import type { MatchRound } from './match-round';
 import { otherPlayers } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
 
-/** The ball game as the bar shows it. */
-export interface BallBarState {
+/** A match as the bar shows it. */
+export interface MatchBarState {
   /** null: not in the room yet. */
-  readonly round: BallRound | null;
+  readonly round: MatchRound | null;
   /** null: in this page alone. */
   readonly room: string | null;
   /** The state of the server, which hosts shared rooms. */
@@ -24,9 +25,12 @@ export interface BallBarState {
   readonly following: number | null;
 }
 
-export interface BallBarActions {
+/** What the bar has from its game. */
+export type GameOnBar = Pick<SeatedGame<HostedGame>, 'name' | 'roles' | 'rules' | 'option'>;
+
+export interface MatchBarActions {
   ready(on: boolean): void;
-  rotate(on: boolean): void;
+  setOption(on: boolean): void;
   sit(seat: number | null): void;
   setBots(on: boolean): void;
   setName(name: string): void;
@@ -46,10 +50,10 @@ export interface BallBarActions {
 }
 
 /** This page is no longer in the room. */
-const isOut = (round: BallRound | null): boolean => (round?.ended ?? null) !== null;
+const isOut = (round: MatchRound | null): boolean => (round?.ended ?? null) !== null;
 
 /** Before and after a match, while another person could take a place. */
-const isWaitedFor = (round: BallRound | null): boolean =>
+const isWaitedFor = (round: MatchRound | null): boolean =>
   round !== null && !isOut(round) && round.phase !== 'running' && round.people.some(({ free }) => free);
 
 /** A button for a seat; null: for none. */
@@ -81,9 +85,10 @@ function createOffers(attributes: Record<string, string>) {
 }
 
 /** Players and rules, in a section that can be folded. */
-function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void) {
+function createPlayers(game: GameOnBar, actions: MatchBarActions, setSound: (on: boolean) => void) {
   const bots = toggle('Bots take free places', actions.setBots);
-  const rotate = toggle('Swap roles after each match', actions.rotate);
+  const option = toggle(game.option?.label ?? '', actions.setOption);
+  option.node.hidden = game.option === undefined;
   const sound = toggle('Sound', setSound);
   const name = element('input', { type: 'text', maxlength: 24, autocomplete: 'nickname', 'aria-label': 'Your name' });
   name.addEventListener('change', () => actions.setName(name.value));
@@ -96,20 +101,20 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
     rules,
     element('label', { class: 'toggle' }, element('span', {}, 'Your name'), name),
     bots.node,
-    rotate.node,
+    option.node,
     sound.node,
   );
   return {
     node,
-    show({ round, bots: botsOn, name: given, defaultName }: BallBarState, soundOn: boolean) {
-      const sentences = ballRulesText(round?.of ?? 20, round?.seconds ?? 90);
+    show({ round, bots: botsOn, name: given, defaultName }: MatchBarState, soundOn: boolean) {
+      const sentences = round?.rules ?? game.rules(null);
       if (sentences.join() !== rulesShown) {
         rulesShown = sentences.join();
         rules.replaceChildren(sentenceList(sentences));
       }
       bots.input.checked = botsOn;
-      rotate.input.checked = round?.rotate ?? false;
-      rotate.input.disabled = round?.seat === null || isOut(round);
+      option.input.checked = round?.option ?? false;
+      option.input.disabled = round?.seat === null || isOut(round);
       sound.input.checked = soundOn;
       name.placeholder = defaultName;
       if (document.activeElement !== name) name.value = given;
@@ -118,7 +123,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
 }
 
 /** Describes the room, the user's role and the quality of the connection. */
-function whereText({ round, room }: BallBarState): string {
+function whereText({ round, room }: MatchBarState): string {
   const place = room ? `Room “${room}”` : 'Your own room';
   if (!round) return `${place} · joining …`;
   // A spectator counts among the spectators, and knows that already.
@@ -127,38 +132,24 @@ function whereText({ round, room }: BallBarState): string {
   return [place, round.role, watching, round.connection].filter(Boolean).join(' · ');
 }
 
-/** Balls in the basket, balls left, and the time. */
+/** The score, what is left to play, and the time. */
 function createScore() {
   const score = element('output', { class: 'score', 'aria-label': 'Score' });
   const left = element('span', { class: 'arrows' });
   const time = element('span', { class: 'time' });
   return {
     node: element('div', { class: 'row board' }, score, left, time),
-    show(round: BallRound | null): void {
+    show(round: MatchRound | null): void {
       score.textContent = round ? `${round.score} / ${round.of}` : '–';
-      left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
+      left.textContent = round?.remainder ?? '';
       const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
       time.textContent = round?.paused ? `${seconds}, paused` : seconds;
     },
   };
 }
 
-/** How a player without a headset plays. */
-const hints = {
-  mouse: {
-    throwing:
-      'Point at the basket and hold the button. The ring shows where the ball will land. Release the button when it is green. Esc cancels the throw.',
-    catching: 'Point to where you want the basket. It turns towards the balls by itself.',
-  },
-  touch: {
-    throwing:
-      'Put a finger on the basket. The ring shows where the ball will land. Lift the finger when the ring is green. A second finger cancels the throw.',
-    catching: 'Put a finger where you want the basket. It turns towards the balls by itself.',
-  },
-} as const;
-
 /** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
-function createButtons(actions: BallBarActions) {
+function createButtons(actions: MatchBarActions) {
   let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
   const rejoin = button('Rejoin', actions.rejoin, { class: 'primary' });
@@ -173,7 +164,7 @@ function createButtons(actions: BallBarActions) {
     node: element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
     /** How a mouse or a finger plays. */
     hint,
-    show({ round, acting, mouse }: BallBarState): void {
+    show({ round, acting, mouse }: MatchBarState): void {
       const out = isOut(round);
       const seated = round !== null && round.seat !== null;
       isReady = round?.ready ?? false;
@@ -181,22 +172,23 @@ function createButtons(actions: BallBarActions) {
       ready.hidden = !seated || round.phase === 'running' || acting;
       ready.textContent = isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready';
       ready.classList.toggle('primary', !isReady && !out);
-      steer.hidden = !seated || mouse !== false;
+      const text = round?.hints[touch ? 'touch' : 'mouse'] ?? null;
+      steer.hidden = !seated || mouse !== false || text === null;
       steer.classList.toggle('primary', !out);
       rest.hidden = !seated || mouse !== true;
       watch.hidden = !seated;
       for (const each of [ready, steer, rest, watch]) each.disabled = out;
       hint.hidden = !seated || mouse !== true || out;
-      hint.textContent = hints[touch ? 'touch' : 'mouse'][round?.throws ? 'throwing' : 'catching'];
+      hint.textContent = text;
     },
   };
 }
 
 /** The places that are free, and for a spectator the players to follow. */
-function createSeats(actions: BallBarActions) {
+function createSeats(actions: MatchBarActions) {
   const places = createOffers({ class: 'places', role: 'group', 'aria-label': 'Places' });
   const cameras = createOffers({ class: 'segments', role: 'group', 'aria-label': 'Camera' });
-  const sit = ({ seat, role }: BallRound['people'][number]): Offer => ({
+  const sit = ({ seat, role }: MatchRound['people'][number]): Offer => ({
     seat,
     label: `Play as ${role.toLowerCase()}`,
     act: () => actions.sit(seat),
@@ -210,7 +202,7 @@ function createSeats(actions: BallBarActions) {
   return {
     places: places.node,
     cameras: cameras.node,
-    show({ round, following }: BallBarState): void {
+    show({ round, following }: MatchBarState): void {
       const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
       places.show(free.map(sit), isOut(round));
       const followed = round?.seat === null ? otherPlayers(round, false) : null;
@@ -233,12 +225,12 @@ const serverTexts: Readonly<Record<ServerState, string | null>> = {
 };
 
 /** Creates the controls for playing with other people, or the reason why there is no shared room. */
-function createCompany(actions: BallBarActions) {
+function createCompany(game: GameOnBar, actions: MatchBarActions) {
   const openRoom = button('Play with others', actions.openRoom);
   const invite = button('Invite others', actions.invite);
   const status = element('p', { class: 'hint', role: 'status' });
   const ask = button('Ask again', actions.askServer);
-  const link = createRoomLink({ main: false });
+  const link = createRoomLink(game.name, { main: false });
   /** The room that the link leads to; null: none yet. */
   let linked: string | null = null;
   return {
@@ -249,7 +241,7 @@ function createCompany(actions: BallBarActions) {
       link.node,
       element('div', { class: 'row' }, openRoom, invite, ask),
     ),
-    show({ room, server, round }: BallBarState): void {
+    show({ room, server, round }: MatchBarState): void {
       // In a room the banner describes the problem with its server.
       const text = room === null ? serverTexts[server] : null;
       if (status.textContent !== (text ?? '')) status.textContent = text;
@@ -268,16 +260,16 @@ function createCompany(actions: BallBarActions) {
   };
 }
 
-/** Score, places and settings of the ball game. */
-export function createBallBar(actions: BallBarActions, setSound: (on: boolean) => void) {
+/** Score, places and settings of a match. */
+export function createMatchBar(game: GameOnBar, actions: MatchBarActions, setSound: (on: boolean) => void) {
   const score = createScore();
   const where = element('p', { class: 'hint' });
   const waiting = element('p', { class: 'waiting', role: 'status' });
   const seats = createSeats(actions);
   const buttons = createButtons(actions);
-  const company = createCompany(actions);
+  const company = createCompany(game, actions);
   const voices = createVoicesBar(actions.voices);
-  const players = createPlayers(actions, setSound);
+  const players = createPlayers(game, actions, setSound);
   const node = element(
     'div',
     { class: 'round' },
@@ -295,7 +287,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   node.hidden = true;
   return {
     node,
-    show(state: BallBarState | null, soundOn: boolean): void {
+    show(state: MatchBarState | null, soundOn: boolean): void {
       node.hidden = state === null;
       if (!state) return;
       const { round } = state;

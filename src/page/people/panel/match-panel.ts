@@ -1,20 +1,23 @@
+import type { HostedGame } from 'threepoint-rooms/room';
 import { createInvitation, type Invitation } from 'threepoint-ui';
 import type { ActivityPanel } from '../../activity/activity';
 import type { ActivityContext } from '../../activity/activity-context';
-import type { BallPlay } from '../../ball/match/ball-play';
-import type { CourtCamera } from '../match/match-camera';
+import type { MatchCamera } from '../match/match-camera';
+import type { MatchPlay } from '../match/match-play';
+import type { SeatedGame } from '../match/seated-game';
 import type { BlockList } from '../voices/block-list';
 import type { Voices } from '../voices/voices';
-import { type BallBarActions, type BallBarState, createBallBar } from './match-bar';
-import type { BallRound } from './match-round';
+import { createMatchBar, type MatchBarActions, type MatchBarState } from './match-bar';
+import type { MatchRound } from './match-round';
 
 /** What the panel shows and acts on. */
-export interface CourtControls {
-  readonly play: Pick<BallPlay, 'ready' | 'rotate' | 'sit'>;
+export interface MatchControls {
+  readonly game: SeatedGame<HostedGame>;
+  readonly play: Pick<MatchPlay<HostedGame>, 'ready' | 'setOption' | 'sit'>;
   readonly voices: Voices;
   readonly blocked: BlockList;
-  readonly camera: Pick<CourtCamera, 'follow'>;
-  round(): BallRound | null;
+  readonly camera: Pick<MatchCamera, 'follow'>;
+  round(): MatchRound | null;
 }
 
 /** The fragment of an address that opens a new room and its invitation. */
@@ -28,18 +31,18 @@ function newRoomName(): string {
   return Array.from(random, (byte) => roomLetters[byte % roomLetters.length]).join('');
 }
 
-/** The ball game's part of the play bar: its buttons act on the court and on the page. */
-class BallPanel implements ActivityPanel {
+/** A match's part of the play bar: its buttons act on the match and on the page. */
+class MatchPanel implements ActivityPanel {
   readonly node: HTMLElement;
-  readonly #court: CourtControls;
+  readonly #match: MatchControls;
   readonly #context: ActivityContext;
-  readonly #bar: ReturnType<typeof createBallBar>;
+  readonly #bar: ReturnType<typeof createMatchBar>;
   #invitation: Invitation | null = null;
 
-  constructor(court: CourtControls, context: ActivityContext) {
-    this.#court = court;
+  constructor(match: MatchControls, context: ActivityContext) {
+    this.#match = match;
     this.#context = context;
-    this.#bar = createBallBar(this.#actions(), (on) => context.setSound(on));
+    this.#bar = createMatchBar(match.game, this.#actions(), (on) => context.setSound(on));
     this.node = this.#bar.node;
     if (location.hash !== invitingHash) return;
     history.replaceState(null, '', `${location.pathname}${location.search}`);
@@ -51,23 +54,23 @@ class BallPanel implements ActivityPanel {
     this.#bar.show(this.#state(), this.#context.settings.sound);
   }
 
-  #actions(): BallBarActions {
+  #actions(): MatchBarActions {
     const { writer, notices, chooseInput, reopen } = this.#context;
-    const { play, voices, blocked } = this.#court;
+    const { game, play, voices, blocked } = this.#match;
     return {
       ready: (on) => play.ready(on),
-      rotate: (on) => play.rotate(on),
+      setOption: (on) => play.setOption?.(on),
       sit: (seat) => play.sit(seat),
       setBots: (on) => writer.keep({ bots: on }),
       setName(name) {
         writer.keep({ name });
         notices.show('info', 'The other players will see your new name when you join a room again.');
       },
-      openRoom: () => location.assign(`?play=ball&room=${newRoomName()}${invitingHash}`),
+      openRoom: () => location.assign(`?play=${game.name}&room=${newRoomName()}${invitingHash}`),
       askServer: () => void this.#askServer(),
       invite: () => this.#invite(),
       rejoin: reopen,
-      follow: (seat) => this.#court.camera.follow(seat),
+      follow: (seat) => this.#match.camera.follow(seat),
       steer: (on) => chooseInput(on ? 'mouse' : 'actor'),
       voices: {
         ask: (on) => voices.ask(on),
@@ -90,14 +93,15 @@ class BallPanel implements ActivityPanel {
 
   #invite(): void {
     const { room } = this.#context.switches;
-    this.#invitation ??= createInvitation();
+    const { game } = this.#match;
+    this.#invitation ??= createInvitation(game.name, game.roles.length);
     if (room) this.#invitation.open(room);
   }
 
-  #state(): BallBarState {
+  #state(): MatchBarState {
     const { settings, switches, headset, server } = this.#context;
     return {
-      round: this.#court.round(),
+      round: this.#match.round(),
       room: server.state === 'none' ? null : switches.room,
       server: server.state,
       bots: settings.bots,
@@ -110,5 +114,5 @@ class BallPanel implements ActivityPanel {
   }
 }
 
-export const createBallPanel = (court: CourtControls, context: ActivityContext): ActivityPanel =>
-  new BallPanel(court, context);
+export const createMatchPanel = (match: MatchControls, context: ActivityContext): ActivityPanel =>
+  new MatchPanel(match, context);

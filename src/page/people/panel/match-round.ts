@@ -1,23 +1,22 @@
-import { type BallState, ballsLeft } from 'threepoint-games/ball';
 import { bannerText, connectionText } from 'threepoint-rooms';
-import type { BallFrame } from '../../ball/match/ball-frame';
-import type { BallPlay } from '../../ball/match/ball-play';
-import { waitingSentence } from '../../ball/view/match-texts';
+import type { HostedGame } from 'threepoint-rooms/room';
+import type { MatchFrame } from '../match/match-frame';
+import type { MatchPlay } from '../match/match-play';
+import type { SeatedGame } from '../match/seated-game';
 import { displayName, markedName } from '../view/displayed-match';
-import { roleTexts } from '../view/seat-looks';
+import { waitingSentence } from '../view/waiting-sentence';
 import type { PersonVoice, VoicesState } from '../voices/voices-state';
 import type { SeatRow } from './other-players';
 
 /** A match as panels and menus show it. */
-export interface BallRound {
+export interface MatchRound {
   readonly phase: 'ready' | 'running' | 'over';
   readonly score: number;
   readonly of: number;
-  readonly ballsLeft: number;
+  /** What is left to play, such as "12 balls". */
+  readonly remainder: string;
   /** Seconds until the bell; after a match, the seconds that were left at its end. */
   readonly secondsLeft: number;
-  /** The length of a match [s]. */
-  readonly seconds: number;
   /** The clock is stopped. */
   readonly paused: boolean;
   /** A sentence about what the match waits for; null: it waits for nothing. */
@@ -26,62 +25,66 @@ export interface BallRound {
   readonly connection: string | null;
   /** Why this page is no longer in the room; null: it is in the room. */
   readonly ended: string | null;
-  /** The user is a thrower. */
-  readonly throws: boolean;
+  readonly rules: readonly string[];
+  /** How the user plays without a headset, with a mouse and by touch; null: not at all. */
+  readonly hints: { readonly mouse: string | null; readonly touch: string | null };
   readonly role: string;
   /** The user's seat; null: a spectator. */
   readonly seat: number | null;
   readonly ready: boolean;
-  readonly rotate: boolean;
+  /** Whether the game's option is on. */
+  readonly option: boolean;
   readonly spectators: number;
   /** All seats; `free`: a person can take it. */
   readonly people: readonly (SeatRow & { readonly free: boolean })[];
   readonly voices: VoicesState;
 }
 
-export interface BallRoundParts {
-  readonly play: Pick<BallPlay, 'status' | 'room'>;
-  readonly frame: BallFrame;
+export interface MatchRoundParts<Game extends HostedGame> {
+  readonly play: Pick<MatchPlay<Game>, 'status' | 'room'>;
+  readonly frame: MatchFrame<Game>;
   /** The players with the names that this page shows. */
-  readonly players: BallFrame['players'];
+  readonly players: MatchFrame['players'];
   /** A simulated player has the user's seat. */
   readonly acting: boolean;
   readonly voices: { readonly state: VoicesState; readonly seats: { voiceOf(seat: number): PersonVoice } };
 }
 
-const stationOf = (state: BallState, player: number): number => state.players[player]?.station ?? player;
-const roleOf = (state: BallState, player: number): string => roleTexts[stationOf(state, player)] ?? '';
-
 /** Summarises a frame of a match. */
-export function ballRound({ play, frame, players, acting, voices }: BallRoundParts): BallRound {
+export function matchRound<Game extends HostedGame>(
+  game: SeatedGame<Game>,
+  { play, frame, players, acting, voices }: MatchRoundParts<Game>,
+): MatchRound {
   const { state, secondsLeft, me, spectators, paused } = frame;
   const ended = play.status.phase === 'ended';
-  const own = me === null ? null : state.players[me];
-  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, acting };
   const delay = play.room?.responseTime ?? null;
+  const roleOf = (seat: number) => game.roles[game.stationOf(state, seat)] ?? '';
+  const hint = (touch: boolean) => (me === null ? null : game.hint(state, me, touch));
+  const { score, of } = game.figures(state);
+  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, acting };
   return {
     phase: state.phase,
-    score: state.score,
-    of: state.options.balls,
-    ballsLeft: ballsLeft(state),
+    score,
+    of,
+    remainder: game.remainder(state),
     secondsLeft,
-    seconds: state.options.seconds,
     paused,
-    waiting: ended ? null : waitingSentence(standing),
+    waiting: ended ? null : waitingSentence(game, standing),
     connection: delay === null || ended ? null : connectionText(delay),
     ended: ended ? (bannerText(play.status) ?? 'The connection has ended.') : null,
-    throws: own?.role === 'thrower',
-    role: me === null ? 'Watching' : roleOf(state, me),
+    rules: game.rules(state),
+    hints: { mouse: hint(false), touch: hint(true) },
+    role: me === null ? 'Watching' : roleOf(me),
     seat: me,
-    ready: own?.ready ?? false,
-    rotate: state.rotate,
+    ready: me !== null && (state.players[me]?.ready ?? false),
+    option: game.option?.isOn(state) ?? false,
     spectators,
     people: players.map((player, seat) => ({
       seat,
       name: player && (player.me ? player.name : displayName(player)),
-      station: stationOf(state, seat),
+      station: game.stationOf(state, seat),
       label: player ? markedName(player) : '',
-      role: roleOf(state, seat),
+      role: roleOf(seat),
       free: player === null || (player.bot && !player.me),
       ...voices.seats.voiceOf(seat),
     })),

@@ -1,13 +1,13 @@
-import type { BallState } from 'threepoint-games/ball';
-import type { PlayerFrame } from '../../ball/match/ball-frame';
+import type { MatchState } from 'threepoint-rooms/room';
+import type { SeatFrame } from '../match/match-frame';
 import { seatLooks } from './seat-looks';
 
 /** A player on a seat, as boards and labels write of them. */
-export type DisplayedPlayer = Pick<PlayerFrame, 'name' | 'bot' | 'presence' | 'me' | 'station'>;
+export type DisplayedPlayer = Pick<SeatFrame, 'name' | 'bot' | 'presence' | 'me' | 'station'>;
 
 /** A match as boards show it: the state of this frame and the person on each seat. */
-export interface DisplayedMatch {
-  readonly state: BallState;
+export interface DisplayedMatch<State extends MatchState = MatchState> {
+  readonly state: State;
   /** Whole seconds until the bell, rounded up. */
   readonly seconds: number;
   readonly players: readonly (DisplayedPlayer | null)[];

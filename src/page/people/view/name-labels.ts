@@ -6,7 +6,7 @@ import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import type { DisplayedPlayer } from './displayed-match';
 import { displayName } from './displayed-match';
-import { paintSeatMark, roleTexts } from './seat-looks';
+import { paintSeatMark } from './seat-looks';
 
 export interface Label {
   readonly person: DisplayedPlayer;
@@ -86,10 +86,10 @@ function labelWidth(context: CanvasRenderingContext2D, { person, voice }: Pick<L
 const voiceWidth = 60;
 
 /** Draws a label; the middle of its mark, from the left [pixels]. */
-function paint(context: CanvasRenderingContext2D, { person, voice }: Label): number {
+function paint(context: CanvasRenderingContext2D, { person, voice }: Label, roles: readonly string[]): number {
   const { width, height } = size;
   const name = displayName(person);
-  const under = person.presence === 'here' ? (roleTexts[person.station] ?? '') : 'Away';
+  const under = person.presence === 'here' ? (roles[person.station] ?? '') : 'Away';
   const wide = labelWidth(context, { person, voice });
   const text = wide - 134 - (voice === 'none' ? 0 : voiceWidth);
   const left = (width - wide) / 2;
@@ -112,7 +112,7 @@ function paint(context: CanvasRenderingContext2D, { person, voice }: Label): num
 }
 
 /** Creates a label. The ring around the mark shows speech: the louder, the clearer. */
-function createLabel(quality: Quality, ringTexture: CanvasTexture) {
+function createLabel(roles: readonly string[], quality: Quality, ringTexture: CanvasTexture) {
   const { texture, draw } = createCanvasTexture(size.width, size.height, quality);
   const material = new SpriteMaterial({
     map: texture,
@@ -158,7 +158,7 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
       if (key !== shown) {
         shown = key;
         draw((context) => {
-          const mark = paint(context, label);
+          const mark = paint(context, label, roles);
           // A sprite turns around its centre, which for this one is the mark, not its own middle.
           ring.center.x = 0.5 - ((mark / size.width - 0.5) * metres) / wide;
         });
@@ -170,13 +170,13 @@ function createLabel(quality: Quality, ringTexture: CanvasTexture) {
   };
 }
 
-/** Names and roles over heads; arena frame. */
-export function createNameLabels(count: number, quality: Quality) {
+/** Names and roles over heads, for a player of each role; arena frame. */
+export function createNameLabels(roles: readonly string[], quality: Quality) {
   const object = new Group();
   object.name = 'names';
   const ring = createCanvasTexture(ringSize, ringSize, quality);
   ring.draw(paintRing);
-  const labels = Array.from({ length: count }, () => createLabel(quality, ring.texture));
+  const labels = roles.map(() => createLabel(roles, quality, ring.texture));
   object.add(...labels.flatMap(({ sprites }) => sprites));
   return {
     object,

@@ -1,6 +1,6 @@
 import { drawText } from 'threepoint-ui/vr';
 
-/** The look of a seat in paint and words. Two throwers and the holder differ in hue, brightness and mark. */
+/** The look of a station in paint and words. Looks differ in hue, brightness and mark. */
 interface SeatLook {
   readonly color: string;
   readonly ink: string;
@@ -33,5 +33,3 @@ export function paintSeatMark(
   const font = `800 ${Math.round((radius * 7) / 6)}px`;
   drawText(context, look.mark, [x, y + 3], { font, color: look.ink, align: 'center', baseline: 'middle' });
 }
-
-export const roleTexts = ['Thrower 1', 'Thrower 2', 'Basket holder'] as const;

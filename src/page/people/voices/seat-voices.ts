@@ -1,6 +1,6 @@
 import type { RemotePerson } from 'threepoint/core';
 import { smoothstep, transformPoint, vec3 } from 'threepoint/math';
-import type { BallRoomView } from 'threepoint-games/ball';
+import type { HostedGame, RoomView } from 'threepoint-rooms/room';
 import type { BlockList } from './block-list';
 import type { VoiceCall } from './voice-call';
 import type { PersonVoice } from './voices-state';
@@ -12,7 +12,7 @@ const mouthOpenAt = 0.95;
 /** The voices of a room by the seats of their players: level, position, and what the user has blocked. */
 export class SeatVoices {
   readonly #blocked: Pick<BlockList, 'has' | 'mutes'>;
-  readonly #room: () => BallRoomView | null;
+  readonly #room: () => RoomView<HostedGame> | null;
   /** The session of the player on each seat; null: the player takes no part in the voices. */
   readonly #sessions: (string | null)[] = [];
   readonly #levels: number[] = [];
@@ -20,7 +20,7 @@ export class SeatVoices {
   #mySeat: number | null = null;
   #call: VoiceCall | null = null;
 
-  constructor(blocked: Pick<BlockList, 'has' | 'mutes'>, room: () => BallRoomView | null) {
+  constructor(blocked: Pick<BlockList, 'has' | 'mutes'>, room: () => RoomView<HostedGame> | null) {
     this.#blocked = blocked;
     this.#room = room;
   }

@@ -1,14 +1,14 @@
 import { firstLine, reasonOf } from 'threepoint/core';
 import { hasRelay, IceServerCache, Microphone, type VoiceSettings } from 'threepoint-rooms';
-import type { VoiceChannel } from 'threepoint-rooms/room';
-import type { BallPlay } from '../../ball/match/ball-play';
+import type { HostedGame, VoiceChannel } from 'threepoint-rooms/room';
+import type { MatchPlay } from '../match/match-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
 import { VoiceCall } from './voice-call';
 import type { VoicesState } from './voices-state';
 
 export interface VoicesOptions {
-  readonly play: Pick<BallPlay, 'room' | 'status' | 'voices'>;
+  readonly play: Pick<MatchPlay<HostedGame>, 'room' | 'status' | 'voices'>;
   readonly blocked: Pick<BlockList, 'has' | 'mutes'>;
   /** Requests the server's terms of voices; null: the room is in this page, or belongs to a study. */
   readonly terms: (() => Promise<VoiceSettings>) | null;
