@@ -3,12 +3,13 @@ import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
-import { type BallState, ballKind, ballRoomKind } from 'threepoint-games/ball';
+import { type BallState, ballKind } from 'threepoint-games/ball';
 import { relayConfigurationFrom } from 'threepoint-rooms/settings';
 import type * as v from 'valibot';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer as startFromSource } from '../../server/start-server';
+import { ballRoomKind } from '../../src/games/ball/ball-room-kind';
 import { poseEvent } from '../../src/rooms/protocol/socket-parsers';
 import { RoomTokens } from '../../src/rooms/server/access/room-tokens';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
@@ -162,7 +163,7 @@ test('every route of the server has a row, and every row a route', async () => {
     studyDirectory: directoryWith(),
     experimenterToken,
     relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
-    games: shippedRoomKinds({}),
+    games: await shippedRoomKinds({}),
     secret: testSecret,
     host: '127.0.0.1',
     port: 0,

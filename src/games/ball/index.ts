@@ -6,7 +6,6 @@ export { ballKind } from './ball-messages';
 export type { BallGame } from './ball-policy';
 export { BallPolicy } from './ball-policy';
 export type { BallTerms } from './ball-room-kind';
-export { ballRoomKind } from './ball-room-kind';
 export type { BallEvent, BallInput, BallPlace, BallRole, BallState, Refusal, TimedLaunch } from './ball-state';
 export type { Opening } from './basket';
 export { basketDepth, basketInHands, basketRadius, landsIn, rimTube } from './basket';

@@ -30,7 +30,7 @@ export async function startRelay(environment: Record<string, string> = {}, port 
     behindProxy: configuration.trustProxy,
   });
   const kinds = new Map<string, RoomKind>([
-    ...shippedRoomKinds(environment),
+    ...(await shippedRoomKinds(environment)),
     [countingKind, countingRoomKind(maxSeats)],
   ]);
   const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);

@@ -1,5 +1,6 @@
+import type { GameName } from 'threepoint-games/all';
 import type { HostedGame } from 'threepoint-rooms/room';
-import { type GameName, PhrasedError } from 'threepoint-study';
+import { PhrasedError } from 'threepoint-study';
 import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant';
 import type { ActivityRunner, RunnerServices } from '../../activity/activity';
 import type { MatchFrame } from './match-frame';

@@ -1,4 +1,5 @@
 import type { Catalogue } from './english';
+import { gamePhrases } from './game-phrases';
 
 /** The German phrases of the page. */
 export const german = {
@@ -143,10 +144,7 @@ export const german = {
 
   'ready.title': 'Bereit?',
   'ready.again': 'Der letzte Versuch wurde unterbrochen und zählt nicht.',
-  'ready.archery':
-    'Schießen Sie bis zu fünf Pfeile auf die vier Zielscheiben. Jede Scheibe zählt einmal; je weiter entfernt, desto mehr Punkte.',
-  'ready.ball':
-    'Zwei von Ihnen werfen Bälle, die dritte Person fängt sie mit dem Korb. Jeder Ball im Korb ist ein Punkt für alle drei.',
+  ...gamePhrases('de', 'ready'),
   'ready.practice': {
     one: 'Probieren Sie es {count} Sekunde lang aus. Das zählt noch nicht.',
     other: 'Probieren Sie es {count} Sekunden lang aus. Das zählt noch nicht.',
@@ -158,8 +156,7 @@ export const german = {
   'ready.raise': 'Um zu pausieren oder abzubrechen, halten Sie beide Hände über den Kopf.',
   'round.failed': 'Diese Runde kann nicht beginnen',
   'round.body': 'Der Körper für diese Runde konnte nicht geladen werden.',
-  'round.archery': 'Der Schießstand konnte nicht geöffnet werden.',
-  'round.ball': 'Das Ballspielfeld konnte nicht geöffnet werden.',
+  ...gamePhrases('de', 'round'),
   'round.game': 'Das Spiel dieser Aufgabe kann auf dieser Seite nicht gespielt werden.',
   'waiting.title': 'Sie sind bereit',
   'waiting.for': {
