@@ -54,7 +54,7 @@ export interface MatchView<Game extends HostedGame, Frame extends MatchFrame<Gam
   showBoards?(visible: boolean): void;
   show(scene: MatchScene<Game, Frame>): void;
   /** Plays and captions the events since the last frame. Called after `show`. */
-  playEvents(events: readonly Game['event'][], frame: Frame): void;
+  playEvents?(events: readonly Game['event'][], frame: Frame): void;
   dispose(): void;
 }
 
@@ -213,7 +213,7 @@ export abstract class MatchActivity<
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
-    view.playEvents(newest.resumed ? noEvents : newest.events, newest);
+    view.playEvents?.(newest.resumed ? noEvents : newest.events, newest);
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
