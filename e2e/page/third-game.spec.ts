@@ -1,5 +1,6 @@
 import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
+import { copyFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import type { Page } from '@playwright/test';
@@ -18,6 +19,8 @@ async function buildWithThirdGame(): Promise<void> {
   const vite = ['node_modules/vite/bin/vite.js', 'build', '--config', config, '--outDir', `${built}dist`];
   await promisify(execFile)(process.execPath, [...vite, '--emptyOutDir', '--logLevel', 'error'], { cwd: root });
   await buildServer(`${built}dist-server`, [thirdGame]);
+  // The server reads its version next to its folder.
+  copyFileSync(`${root}package.json`, `${built}package.json`);
 }
 
 /** Starts the built server; resolves with its address and the function that ends it. */
@@ -28,7 +31,10 @@ async function startServer() {
     env: { ...process.env, THREEPOINT_LOG_LEVEL: 'error' },
     stdio: ['ignore', 'pipe', 'inherit'],
   });
-  await once(server.stdout, 'data');
+  await Promise.race([
+    once(server.stdout, 'data'),
+    once(server, 'exit').then(([code]) => Promise.reject(new Error(`the server ended with ${code}`))),
+  ]);
   return {
     origin: `http://localhost:${port}`,
     async close() {

@@ -45,7 +45,7 @@ function page(options: {
     const performed = acting ? player.act(time) : null;
     const seen = player.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
     events.push(...(seen?.events ?? []));
-    if (performed) player.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
+    if (performed) player.sendPose(performed.frame.time, poseOf(estimator, performed.frame), unknownFingers);
     return seen;
   };
   return {
@@ -98,7 +98,7 @@ describe('one person with two bots', () => {
     const waiting = page({ acting: false });
     for (let i = 0; i < 5 * usualHz; i++) waiting.frame();
     expect(waiting.player.probe()).toMatchObject({ phase: 'ready', ready: false });
-    waiting.player.ready(true);
+    waiting.player.connection?.setReady(true);
     waiting.until(() => waiting.player.probe()?.phase === 'running', 3);
   });
 
@@ -134,7 +134,7 @@ describe('one person with two bots', () => {
   it('stands still in a pause, and the match goes on afterwards unchanged', () => {
     const { player, until, events, frame } = page({ seat: 0 });
     until(() => (player.probe()?.ballsLeft ?? 20) < 18, 30);
-    player.pause(true);
+    player.connection?.setPaused(true);
     until(() => player.probe()?.paused === true, 1);
     frame();
     const { secondsLeft, score } = player.probe() ?? {};
@@ -148,7 +148,7 @@ describe('one person with two bots', () => {
     });
     player.setOption(true);
     frame();
-    player.pause(false);
+    player.connection?.setPaused(false);
     until(() => player.probe()?.phase === 'over', 110);
     expect(player.probe()).toMatchObject({ end: 'balls', ballsLeft: 0, rotate: true });
     expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);

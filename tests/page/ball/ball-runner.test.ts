@@ -123,7 +123,7 @@ async function group({ stopped = false } = {}) {
           play.begin(time);
           const performed = play.act(time);
           play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-          if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
+          if (performed) play.sendPose(performed.frame.time, poseOf(estimator, performed.frame), unknownFingers);
           runner.played();
           timeFrame?.();
           if (!finished) finished = trial?.follow(time, performed?.frame ?? null) ?? null;
@@ -146,7 +146,7 @@ async function group({ stopped = false } = {}) {
     }
   };
   pass(1);
-  pages[1]?.play.pause(stopped);
+  pages[1]?.play.connection?.setPaused(stopped);
   return {
     pages,
     pass,

@@ -48,7 +48,7 @@ function seated() {
   const play = createBallLoopbackHost().connect(visitor('Ann'), 0);
   const answers: (() => void)[] = [];
   const voices = new Voices({
-    play: { room: play.room, status: play.status, voices: play.voices },
+    client: { room: play.room, status: play.status, connection: play },
     blocked: new BlockList(),
     terms: () => new Promise((resolve) => answers.push(() => resolve(told))),
     // Nothing plays a sound here: no connection comes as far.

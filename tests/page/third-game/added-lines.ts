@@ -17,6 +17,7 @@ export const thirdGame = {
     if (!addition) return undefined;
     const { from, before } = addition;
     if (!code.includes(before)) throw new Error(`${id}: expected "${before}"`);
-    return `import { touch } from '${game}${from}';\n${code.replace(before, `${before} touch,`)}`;
+    const line = `import { touch } from '${game}${from}';`;
+    return { code: `${line}\n${code.replace(before, `${before} touch,`)}`, map: null };
   },
 } as const;

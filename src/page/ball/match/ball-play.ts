@@ -116,7 +116,7 @@ export class BallPlay extends MatchPlay<BallGame, BallFrame> {
 
   protected override completeFrame(shared: MatchFrame<BallGame>, connection: BallConnection): BallFrame {
     const { state, me } = shared;
-    this.#hands.update(connection, state, this.people.poses);
+    this.#hands.update(connection, state, this.seated.poses);
     const { palms, opening } = this.#hands;
     this.#sight.opening = opening;
     const missed = this.#simulated.takeMissed();

@@ -133,7 +133,7 @@ export abstract class MatchActivity<
     const { play } = this;
     this.sound = view.sound;
     this.voices = new Voices({
-      play,
+      client: play,
       blocked: this.blocked,
       terms: room.voiceTerms,
       openAudio: () => this.sound.open(),
@@ -190,7 +190,7 @@ export abstract class MatchActivity<
   }
 
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
-    this.play.send(frame, pose, fingers);
+    this.play.sendPose(frame.time, pose, fingers);
   }
 
   show(time: number, frame: TrackingFrame | null): void {
@@ -311,9 +311,9 @@ export abstract class MatchActivity<
     const seat = seatOfButton(id);
     const { play } = this;
     const newest = play.newest;
-    if (seat !== null) play.sit(seat);
+    if (seat !== null) play.connection?.changeSeat(seat);
     else if (id === 'option') play.setOption?.(!(newest && this.game.option?.isOn(newest.state)));
-    else play.ready(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
+    else play.connection?.setReady(!(newest && newest.me !== null && newest.state.players[newest.me]?.ready));
   }
 }
 

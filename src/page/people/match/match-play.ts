@@ -1,15 +1,6 @@
-import type { AvatarPose, AvatarRef, Buttons, Calibration, Fingers, HapticPulse, TrackingFrame } from 'threepoint/core';
-import type { Transform } from 'threepoint/math';
+import type { Buttons, Calibration, HapticPulse, TrackingFrame } from 'threepoint/core';
 import { RoomClient } from 'threepoint-rooms';
-import type {
-  Connection,
-  ConnectionStatus,
-  ConnectionUpdate,
-  HostedGame,
-  RoomView,
-  Visitor,
-  VoiceChannel,
-} from 'threepoint-rooms/room';
+import type { Connection, ConnectionUpdate, HostedGame, Visitor } from 'threepoint-rooms/room';
 import type { MatchFrame } from './match-frame';
 import type { SeatedGame } from './seated-game';
 import { SeatedPeople } from './seated-people';
@@ -28,11 +19,13 @@ const rematchAfter = 7;
 
 const none: readonly never[] = [];
 
-/** A match of several people, without the view. A game extends it with its gestures. */
-export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFrame<Game> = MatchFrame<Game>> {
+/** A page's client of a match of several people, without the view. A game extends it with its gestures. */
+export abstract class MatchPlay<
+  Game extends HostedGame,
+  Frame extends MatchFrame<Game> = MatchFrame<Game>,
+> extends RoomClient<Game> {
   newest: Frame | null = null;
-  protected readonly client: RoomClient<Game>;
-  protected readonly people: SeatedPeople<Game>;
+  protected readonly seated: SeatedPeople<Game>;
   readonly #game: SeatedGame<Game>;
   readonly #options: MatchPlayOptions<Game>;
   #events: readonly Game['event'][] = none;
@@ -42,35 +35,10 @@ export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFram
   #waitingSince: { readonly phase: string; readonly at: number } | null = null;
 
   constructor(game: SeatedGame<Game>, options: MatchPlayOptions<Game>) {
+    super((time) => options.connect(options.visitor, time));
     this.#game = game;
     this.#options = options;
-    this.client = new RoomClient((time) => options.connect(options.visitor, time));
-    this.people = new SeatedPeople(game);
-  }
-
-  get status(): ConnectionStatus {
-    return this.client.status;
-  }
-
-  get room(): RoomView<Game> | null {
-    return this.client.room;
-  }
-
-  /** The channel for setting up voice connections; null: not connected yet. */
-  get voices(): VoiceChannel | null {
-    return this.connection?.voices ?? null;
-  }
-
-  /**
-   * The arena in the user's floor frame, by the user's seat. A spectator's floor frame is the arena frame. Every change
-   * yields another object.
-   */
-  get floorFromArena(): Transform<'floor', 'arena'> {
-    return this.client.floorFromArena;
-  }
-
-  protected get connection(): Connection<Game> | null {
-    return this.client.connection;
+    this.seated = new SeatedPeople(game);
   }
 
   /** Plays the hands of a frame: sends the actions of their gestures. Returns haptic pulses. */
@@ -85,7 +53,7 @@ export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFram
 
   /** Receives messages from the room. Call it first in every frame. */
   begin(time: number): ConnectionUpdate<Game> {
-    const update = this.client.update(time);
+    const update = this.update(time);
     if (update.changes.includes('resumed')) this.#resumed = true;
     if (update.events.length > 0) this.#events = [...this.#events, ...update.events];
     this.#readyByItself(time);
@@ -104,7 +72,7 @@ export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFram
     const haptics = frame && me !== null ? this.playHands(connection, frame, buttons) : none;
     const seen = connection.room ?? before;
     const state = seen.match ?? before.match;
-    this.people.update(connection, seen, frame, this.client.people);
+    this.seated.update(connection, seen, frame, this.people);
     this.#secondsLeft = this.#game.secondsLeft(state, this.#secondsLeft);
     const shared: MatchFrame<Game> = {
       state,
@@ -115,8 +83,8 @@ export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFram
       me,
       spectators: before.spectators,
       paused: before.paused,
-      players: this.people.players,
-      bodies: this.people.bodies,
+      players: this.seated.players,
+      bodies: this.seated.bodies,
       events: this.#events,
       resumed: this.#resumed,
       haptics,
@@ -127,31 +95,8 @@ export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFram
     return this.newest;
   }
 
-  /** Sends the solved body of this frame to the others. */
-  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
-    this.client.sendPose(frame.time, pose, fingers);
-  }
-
-  /** The user's floor frame changes with the next frame: others see a jump without interpolation. */
-  discontinuity(): void {
-    this.client.discontinuity();
-  }
-
-  ready(on: boolean): void {
-    this.connection?.setReady(on);
-  }
-
   /** Sets the game's option for the room; absent: the game has none. */
   setOption?(on: boolean): void;
-
-  sit(seat: number | null): void {
-    this.connection?.changeSeat(seat);
-  }
-
-  /** Pauses the match's clock, or withdraws the pause. Refused if the room's terms do not allow it. */
-  pause(on: boolean): void {
-    this.connection?.setPaused(on);
-  }
 
   away(on: boolean): void {
     this.connection?.setAway(on);
@@ -159,11 +104,6 @@ export abstract class MatchPlay<Game extends HostedGame, Frame extends MatchFram
 
   calibrate(next: Calibration): void {
     this.connection?.calibrate(next);
-  }
-
-  /** Shows the others this player with another avatar. */
-  wear(avatar: AvatarRef): void {
-    this.connection?.setAvatar(avatar);
   }
 
   leave(): void {

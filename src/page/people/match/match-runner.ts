@@ -9,7 +9,7 @@ import type { SeatedGame } from './seated-game';
 
 /** The part of an activity that a study uses. */
 export interface StudiedMatch<Game extends HostedGame> {
-  readonly play: Pick<MatchPlay<Game>, 'newest' | 'room' | 'ready' | 'pause'>;
+  readonly play: Pick<MatchPlay<Game>, 'newest' | 'room' | 'connection'>;
 }
 
 /** A game as a task: its figures, and what its events are for participants. */
@@ -121,7 +121,7 @@ export function createMatchRunner<Game extends HostedGame>(
   let place: TaskPlace | null = null;
   let trial: MatchTrial<Game> | null = null;
   const play = () => services.opened()?.play;
-  const getReady = () => play()?.ready(true);
+  const getReady = () => play()?.connection?.setReady(true);
 
   return {
     async prepare(next) {
@@ -132,8 +132,8 @@ export function createMatchRunner<Game extends HostedGame>(
       const match = play();
       trial = new MatchTrial(task, seconds, place?.members ?? [], match?.room?.match?.phase === 'running');
       // The room still applies the pause that this page requested before it was reloaded.
-      match?.pause(false);
-      match?.ready(true);
+      match?.connection?.setPaused(false);
+      match?.connection?.setReady(true);
     },
     played() {
       const newest = play()?.newest;
@@ -152,7 +152,7 @@ export function createMatchRunner<Game extends HostedGame>(
     get interrupted() {
       return trial?.interrupted ?? false;
     },
-    pause: (on) => play()?.pause(on),
+    pause: (on) => play()?.connection?.setPaused(on),
     abort() {
       trial = null;
       services.leave();

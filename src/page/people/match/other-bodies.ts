@@ -1,13 +1,12 @@
 import { type BuiltInBody, defaultAvatar } from 'threepoint/core';
 import { checkInWorker, loadUntrustedAvatar, parseAvatar } from 'threepoint/files';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
-import type { AvatarExchange } from 'threepoint-rooms';
+import type { AvatarExchange, RoomClient } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityContext } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';
-import type { MatchPlay } from './match-play';
 
 export interface OtherBodiesOptions {
   readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchBuiltInAvatar'>;
@@ -15,7 +14,7 @@ export interface OtherBodiesOptions {
   readonly exchange: AvatarExchange | null;
   /** The file of the body that other players have. */
   readonly mannequin: ArrayBuffer;
-  readonly play: Pick<MatchPlay<HostedGame>, 'room' | 'wear'>;
+  readonly play: Pick<RoomClient<HostedGame>, 'room' | 'connection'>;
   readonly voices: Pick<Voices, 'seats'>;
 }
 
@@ -49,7 +48,7 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
   return new RoomBodies({
     exchange,
     room: () => play.room,
-    send: (worn) => play.wear(worn),
+    send: (worn) => play.connection?.setAvatar(worn),
     wear: () => (settings.shareAvatar || avatar.isBuiltIn ? avatar.worn : null),
     notify: (level, text) => notices.show(level, text),
     onRefused: (text) => notices.show('info', text),

@@ -1,8 +1,8 @@
+import type { RoomClient } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
 import { linkTo, qrCode } from 'threepoint-ui';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../../activity/activity-menu';
-import type { MatchPlay } from '../match/match-play';
 import type { SeatedGame } from '../match/seated-game';
 import type { MatchRound } from '../panel/match-round';
 import { type OtherPlayer, otherPlayers } from '../panel/other-players';
@@ -73,7 +73,7 @@ export function peopleEntries(state: PeopleMenuState, actions: PeopleMenuActions
 /** What the menu shows and acts on. */
 export interface MenuMatch {
   readonly game: Pick<SeatedGame<HostedGame>, 'name'>;
-  readonly play: Pick<MatchPlay<HostedGame>, 'ready'>;
+  readonly play: Pick<RoomClient<HostedGame>, 'connection'>;
   readonly voices: Voices;
   readonly blocked: BlockList;
   round(): MatchRound | null;
@@ -141,7 +141,7 @@ export class PeopleMenu {
     const { writer } = this.#context;
     const { play, voices } = this.#match;
     return {
-      ready: (on) => play.ready(on),
+      ready: (on) => play.connection?.setReady(on),
       setPlainOthers: (plainOthers) => writer.keep({ plainOthers }),
       listOthers: () =>
         this.#change(() => {

@@ -13,7 +13,7 @@ import type { MatchRound } from './match-round';
 /** What the panel shows and acts on. */
 export interface MatchControls {
   readonly game: SeatedGame<HostedGame>;
-  readonly play: Pick<MatchPlay<HostedGame>, 'ready' | 'setOption' | 'sit'>;
+  readonly play: Pick<MatchPlay<HostedGame>, 'connection' | 'setOption'>;
   readonly voices: Voices;
   readonly blocked: BlockList;
   readonly camera: Pick<MatchCamera, 'follow'>;
@@ -58,9 +58,9 @@ class MatchPanel implements ActivityPanel {
     const { writer, notices, chooseInput, reopen } = this.#context;
     const { game, play, voices, blocked } = this.#match;
     return {
-      ready: (on) => play.ready(on),
+      ready: (on) => play.connection?.setReady(on),
       setOption: (on) => play.setOption?.(on),
-      sit: (seat) => play.sit(seat),
+      sit: (seat) => play.connection?.changeSeat(seat),
       setBots: (on) => writer.keep({ bots: on }),
       setName(name) {
         writer.keep({ name });

@@ -1,7 +1,6 @@
-import { bannerText, connectionText } from 'threepoint-rooms';
+import { bannerText, connectionText, type RoomClient } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
 import type { MatchFrame } from '../match/match-frame';
-import type { MatchPlay } from '../match/match-play';
 import type { SeatedGame } from '../match/seated-game';
 import { displayName, markedName } from '../view/displayed-match';
 import { waitingSentence } from '../view/waiting-sentence';
@@ -41,7 +40,7 @@ export interface MatchRound {
 }
 
 export interface MatchRoundParts<Game extends HostedGame> {
-  readonly play: Pick<MatchPlay<Game>, 'status' | 'room'>;
+  readonly play: Pick<RoomClient<Game>, 'status' | 'room'>;
   readonly frame: MatchFrame<Game>;
   /** The players with the names that this page shows. */
   readonly players: MatchFrame['players'];

@@ -1,14 +1,13 @@
 import { firstLine, reasonOf } from 'threepoint/core';
-import { hasRelay, IceServerCache, Microphone, type VoiceSettings } from 'threepoint-rooms';
+import { hasRelay, IceServerCache, Microphone, type RoomClient, type VoiceSettings } from 'threepoint-rooms';
 import type { HostedGame, VoiceChannel } from 'threepoint-rooms/room';
-import type { MatchPlay } from '../match/match-play';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
 import { VoiceCall } from './voice-call';
 import type { VoicesState } from './voices-state';
 
 export interface VoicesOptions {
-  readonly play: Pick<MatchPlay<HostedGame>, 'room' | 'status' | 'voices'>;
+  readonly client: Pick<RoomClient<HostedGame>, 'room' | 'status' | 'connection'>;
   readonly blocked: Pick<BlockList, 'has' | 'mutes'>;
   /** Requests the server's terms of voices; null: the room is in this page, or belongs to a study. */
   readonly terms: (() => Promise<VoiceSettings>) | null;
@@ -46,13 +45,13 @@ export class Voices {
   constructor(options: VoicesOptions) {
     this.#options = options;
     this.#terms = options.terms && new IceServerCache(options.terms);
-    this.seats = new SeatVoices(options.blocked, () => options.play.room);
+    this.seats = new SeatVoices(options.blocked, () => options.client.room);
   }
 
   get state(): VoicesState {
-    const { play, relayOnly } = this.#options;
+    const { client, relayOnly } = this.#options;
     const terms = this.#terms?.newest ?? null;
-    const offered = terms?.voices === true && play.room !== null && play.status.phase !== 'ended';
+    const offered = terms?.voices === true && client.room !== null && client.status.phase !== 'ended';
     const relay = terms !== null && hasRelay(terms);
     return {
       phase: offered ? this.#phase : 'none',
@@ -66,21 +65,22 @@ export class Voices {
 
   /** Once per frame, after the room's messages were received. */
   begin(): void {
-    const { play } = this.#options;
-    if (play.voices !== this.#channel) {
-      this.#channel = play.voices;
+    const { client } = this.#options;
+    const channel = client.connection?.voices ?? null;
+    if (channel !== this.#channel) {
+      this.#channel = channel;
       this.#channel?.setListener({
         onSeatsChanged: () => this.seats.update(),
         onSignal: (from, body) => this.#call?.mesh.receive(from, body),
       });
       this.seats.update();
     }
-    if (!this.#requested && this.#terms && play.room) {
+    if (!this.#requested && this.#terms && client.room) {
       this.#requested = true;
       // reason: a server that does not answer has no voices
       void this.#terms.refresh().catch(() => undefined);
     }
-    if ((this.#call || this.#phase === 'joining') && play.status.phase === 'ended') this.leave();
+    if ((this.#call || this.#phase === 'joining') && client.status.phase === 'ended') this.leave();
   }
 
   /** Shows or hides the consent text. */
@@ -161,7 +161,7 @@ export class Voices {
 
   get #message(): string | null {
     if (this.#phase !== 'in') return this.#fault;
-    if (this.#options.play.room?.mySeat === null) return 'You are watching. Only players on the seats can talk.';
+    if (this.#options.client.room?.mySeat === null) return 'You are watching. Only players on the seats can talk.';
     const { errorMessage } = this.#microphone;
     return errorMessage && `${errorMessage} You can still hear the others.`;
   }
@@ -201,7 +201,7 @@ export class Voices {
   }
 
   #watch(): void {
-    this.#call?.watch(this.#options.play.status.phase === 'joined');
+    this.#call?.watch(this.#options.client.status.phase === 'joined');
     void this.#terms
       ?.refreshIfDue()
       .then((renewed) => renewed && this.#call?.mesh.configure(this.#configurationOf(renewed)));
