@@ -44,7 +44,7 @@ export const touchEvent = v.strictObject({
 export type TouchEvent = v.InferOutput<typeof touchEvent>;
 
 /** A hand is at a target within this distance [m]. */
-export const reach = 0.12;
+export const reach = 0.14;
 const tickSeconds = 1 / 30;
 const floors: readonly Transform<'arena', 'floor'>[] = [-0.7, 0.7].map((x) => ({
   position: vec3(x, 0, 0),
