@@ -122,7 +122,8 @@ const shellRooms = {
 const knownStudyRooms = Object.keys(studyRooms).map((room) =>
   room === 'model' ? `model/(${Object.keys(modelRooms).join('|')})` : room,
 );
-const activities = 'archery|ball|mocap|studio';
+/** The folders of the page that are no activity. */
+const floors = 'activity|bones|check|emulator|offline|passthrough|people|scene|shell';
 
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
@@ -205,15 +206,22 @@ export default {
       comment:
         'Each activity of the page can be removed: activities import neither each other nor the shell. They know the shell by activity/.',
       severity: 'error',
-      from: { path: `^src/page/(${activities})/` },
-      to: { path: '^src/page/', pathNot: '^src/page/($1|scene|activity|bones)/' },
+      from: { path: `^src/page/(?!(?:${floors})/)([^/]+)/` },
+      to: { path: '^src/page/', pathNot: '^src/page/($1|people|scene|activity|bones)/' },
     },
     {
       name: 'shell-knows-activities-by-registry',
       comment: 'A new game is one line of shell/activity-registry.ts: no other file of the shell names a game.',
       severity: 'error',
       from: { path: '^src/page/(shell|activity)/', pathNot: '^src/page/shell/activity-registry\\.ts$' },
-      to: { path: '^src/page/(archery|ball)/' },
+      to: { path: `^src/page/(?!(?:${floors}|mocap|studio)/)[^/]+/` },
+    },
+    {
+      name: 'people-are-for-every-game',
+      comment: 'page/people holds what any game of several people needs; it imports none of them.',
+      severity: 'error',
+      from: { path: '^src/page/people/' },
+      to: { path: '^src/page/', pathNot: '^src/page/(people|activity|scene)/' },
     },
     {
       name: 'scene-draws-for-activities',

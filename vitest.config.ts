@@ -1,5 +1,6 @@
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
 import { isNightly } from './tests/nightly.ts';
+import { thirdGame } from './tests/page/third-game/added-lines.ts';
 
 /**
  * Tests in processes of their own: pages with dynamic imports, because a file may end while an import is pending, which
@@ -7,18 +8,22 @@ import { isNightly } from './tests/nightly.ts';
  */
 const apart = ['tests/page/shell/**/*.test.ts', 'tests/ui/vr-touch.test.ts'];
 
+/** Tests with a third game in the registries. */
+const withThirdGame = ['tests/page/third-game/*.test.ts', 'tests/study/third-game.test.ts'];
+
 const projects: TestProjectConfiguration[] = [
   {
     extends: true,
     test: {
       name: 'shared',
       include: ['tests/**/*.test.ts'],
-      exclude: apart,
+      exclude: [...apart, ...withThirdGame],
       isolate: false,
       globalSetup: 'tests/server/built-server.ts',
     },
   },
   { extends: true, test: { name: 'apart', include: apart } },
+  { extends: true, plugins: [thirdGame], test: { name: 'third-game', include: withThirdGame } },
 ];
 
 export default defineConfig({

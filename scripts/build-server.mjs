@@ -36,8 +36,9 @@ const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'packa
 /**
  * Bundles the server's own files into `out`; packages and Node's modules are imported at run time. The written
  * package.json names those packages alone, so that npm prune removes the page's packages. Writes their licences, too.
+ * `plugins`: of Rolldown.
  */
-export async function buildServer(out) {
+export async function buildServer(out, plugins = []) {
   const { version, type } = manifestIn('.');
   const manifests = packages.map(manifestIn);
   const dependencies = Object.assign({}, ...manifests.map((manifest) => manifest.dependencies));
@@ -45,6 +46,7 @@ export async function buildServer(out) {
   const packageOf = (id) => Object.keys(dependencies).find((known) => id === known || id.startsWith(`${known}/`));
   const bundle = await rolldown({
     input: entries(),
+    plugins,
     cwd: root,
     platform: 'node',
     external: (id) => id.startsWith('node:') || packageOf(id) !== undefined,

@@ -27,7 +27,7 @@ async function main(): Promise<void> {
       : pathInRepository('study-data'),
     experimenterToken,
     relay,
-    games: shippedRoomKinds(process.env),
+    games: await shippedRoomKinds(process.env),
     secret: relay.secret ?? loadOrCreateSecret(pathInRepository('.cache/relay-secret')),
     host: relay.host ?? (addresses ? '0.0.0.0' : '127.0.0.1'),
     port: configuration.port,

@@ -1,7 +1,17 @@
-import { ballKind, ballRoomKind } from 'threepoint-games/ball';
-import type { RoomKinds } from 'threepoint-rooms/room';
+import { type GameDescription, games } from 'threepoint-games/all';
+import type { RoomKind, RoomKinds } from 'threepoint-rooms/room';
 import { type Environment, numberFrom } from 'threepoint-rooms/settings';
 
-/** Returns the games of this project. Throws a ConfigurationError. */
-export const shippedRoomKinds = (environment: Environment): RoomKinds =>
-  new Map([[ballKind, ballRoomKind(numberFrom(environment, 'THREEPOINT_BALL_SECONDS', 90, 1, 3600))]]);
+/**
+ * Returns the games of this project that have rooms; THREEPOINT_NAME_SECONDS is the length of a round. Rejects with a
+ * ConfigurationError.
+ */
+export async function shippedRoomKinds(environment: Environment): Promise<RoomKinds> {
+  const kinds = new Map<string, RoomKind>();
+  for (const [name, { rooms }] of Object.entries<GameDescription>(games)) {
+    if (!rooms) continue;
+    const seconds = numberFrom(environment, `THREEPOINT_${name.toUpperCase()}_SECONDS`, rooms.seconds, 1, 3600);
+    kinds.set(name, await rooms.createKind(seconds));
+  }
+  return kinds;
+}

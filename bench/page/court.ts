@@ -83,6 +83,7 @@ export class Court {
       state: ballRules.start(['a', 'b', 'c'], 1),
       time: 0,
       attendants: [null, null, null],
+      palms: [],
       me: null,
       opening: null,
       aim: null,

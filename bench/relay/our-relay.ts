@@ -14,7 +14,10 @@ const connectionLimiter = new ConnectionLimiter({
   perAddress: configuration.connectionsPerAddress,
   behindProxy: configuration.trustProxy,
 });
-const kinds = new Map<string, RoomKind>([...shippedRoomKinds(process.env), [countingKind, countingRoomKind(maxSeats)]]);
+const kinds = new Map<string, RoomKind>([
+  ...(await shippedRoomKinds(process.env)),
+  [countingKind, countingRoomKind(maxSeats)],
+]);
 const relay = createRelay(configuration, configuration.secret ?? '', connectionLimiter, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
   upgrade: relay.upgrade,

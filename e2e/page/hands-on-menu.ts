@@ -1,6 +1,6 @@
 import type { Page } from '@playwright/test';
 import { menuHeight, menuWidth } from '../../src/page/activity/activity-menu';
-import { playerHeight } from '../../src/page/ball/menu/players-sheet';
+import { playerHeight } from '../../src/page/people/menu/players-sheet';
 import { emulatedHeadset, frames, type Point } from '../emulated-headset';
 
 /** A text drawn on one of the headset's sheets, and its position on the canvas [pixels]. */

@@ -1,6 +1,6 @@
 import type { Page } from '@playwright/test';
 import { fromAxisAngle, multiply, right, up } from 'threepoint/math';
-import { lobbySize } from '../../src/page/ball/view/lobby-sheet';
+import { lobbySize } from '../../src/page/people/view/lobby-sheet';
 import { type EmulatedHeadset, frames, type Point, type Rotation, type Side } from '../emulated-headset';
 import { menuPoint, waitForCanvasText } from './hands-on-menu';
 

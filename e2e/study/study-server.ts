@@ -17,10 +17,11 @@ const atRoot = (path: string) => fileURLToPath(new URL(`../../${path}`, import.m
 
 /**
  * Starts the server as `npm start` does, with these settings, on a free port; its records are deleted when it closes.
+ * `main`: Node's arguments for another build of the server.
  */
-export async function serveStudies(settings: Settings = {}) {
+export async function serveStudies(settings: Settings = {}, main = ['--import', 'tsx', 'server/main.ts']) {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
-  const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {
+  const child = spawn(process.execPath, [...main, '--port', '0', '--studies', directory], {
     cwd: atRoot('.'),
     env: { ...process.env, EXPERIMENTER_TOKEN: experimenterToken, THREEPOINT_LOG_LEVEL: 'error', ...settings },
     stdio: ['ignore', 'pipe', 'inherit'],

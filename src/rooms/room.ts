@@ -14,5 +14,5 @@ export { LoopbackHost } from './client/loopback-host';
 export type { RoomMessage } from './protocol/messages';
 export { finiteWithin, integerWithin, roomMessageReader, seconds } from './protocol/messages';
 export type { SignalBody } from './protocol/voice-messages';
-export type { HostedMatch, MatchPolicy } from './room/match-policy';
+export type { HostedGame, HostedMatch, MatchPolicy, MatchState } from './room/match-policy';
 export type { RoomKind, RoomKinds } from './room/room-kind';

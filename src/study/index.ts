@@ -1,5 +1,4 @@
 // "threepoint-study": what other packages know of a study.
 export { PhrasedError } from './model/phrases/phrases';
 export type { Embodiment } from './model/plan/embodiment';
-export { gameNames, studiedGames } from './model/plan/studied-games';
 export type { SignedSeat } from './model/progress/study-api';

@@ -13,17 +13,17 @@ export interface RoomLink {
   readonly limit: string | null;
 }
 
-/** Returns the link to a room of the ball game on this page's server. */
-export const linkTo = (room: string): RoomLink => ({
+/** Returns the link to a room of a game on this page's server. */
+export const linkTo = (game: string, room: string): RoomLink => ({
   room,
-  address: `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`,
+  address: `${pageFolder()}/?play=${game}&room=${encodeURIComponent(room)}`,
   limit: onlyHere(location.hostname)
     ? 'This address works only on this computer. For other devices, start the server with --lan and open the https:// address that it prints.'
     : null,
 });
 
-/** The link to a room, to copy and as a QR code. `main`: copying is the primary action of the dialog. */
-export function createRoomLink({ main }: { readonly main: boolean }) {
+/** The link to a room of a game, to copy and as a QR code. `main`: copying is the primary action of the dialog. */
+export function createRoomLink(game: string, { main }: { readonly main: boolean }) {
   // Two lines: a bar is too narrow for an address, and its end names the room.
   const link = element('textarea', { rows: 2, readonly: true, 'aria-label': 'Link for the others' });
   const code = element('div', { class: 'qr' });
@@ -47,7 +47,7 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
   return {
     node,
     show(room: string): void {
-      const { address, limit } = linkTo(room);
+      const { address, limit } = linkTo(game, room);
       link.value = address;
       status.textContent = limit;
       code.replaceChildren();
@@ -59,14 +59,17 @@ export function createRoomLink({ main }: { readonly main: boolean }) {
   };
 }
 
-/** Offers the address of a room: as a link to copy, and as a QR code for a device with a camera. */
-export function createInvitation() {
-  const link = createRoomLink({ main: true });
+/**
+ * Offers the address of a room for this number of players: as a link to copy, and as a QR code for a device with a
+ * camera.
+ */
+export function createInvitation(game: string, players: number) {
+  const link = createRoomLink(game, { main: true });
   const dialog = element(
     'dialog',
     { class: 'invitation', 'aria-labelledby': 'invitation-title' },
     element('h2', { id: 'invitation-title' }, 'Play with others'),
-    element('p', {}, 'Up to three people play in this room. Send them the link, or let them scan the code.'),
+    element('p', {}, `Up to ${players} people play in this room. Send them the link, or let them scan the code.`),
     link.node,
     element(
       'div',

@@ -3,7 +3,8 @@ import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
-import { type BallState, ballKind, ballRoomKind } from 'threepoint-games/ball';
+import { games } from 'threepoint-games/all';
+import { type BallState, ballKind } from 'threepoint-games/ball';
 import { RoomTokens, relayConfigurationFrom } from 'threepoint-rooms/settings';
 import type * as v from 'valibot';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
@@ -142,7 +143,7 @@ test('every route of the server has a row, and every row a route', async () => {
     studyDirectory: directoryWith(),
     experimenterToken,
     relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
-    games: shippedRoomKinds({}),
+    games: await shippedRoomKinds({}),
     secret: testSecret,
     host: '127.0.0.1',
     port: 0,
@@ -360,8 +361,8 @@ describe('the terms of a room', () => {
     }
   });
 
-  test('have a row for every field of their schemas', () => {
-    const { openTerms, assignedTerms } = ballRoomKind(90);
+  test('have a row for every field of their schemas', async () => {
+    const { openTerms, assignedTerms } = await games.ball.rooms.createKind(90);
     for (const schema of [openTerms, assignedTerms]) {
       const fields = Object.keys((schema as v.StrictObjectSchema<v.ObjectEntries, undefined>).entries);
       expect(fields.length).toBeGreaterThan(0);

@@ -3,7 +3,7 @@ export type { BallBot } from './ball-bot';
 export { type BallConnection, type BallRoomView, ballClientPolicy, createBallLoopbackHost } from './ball-client';
 export { ballKind } from './ball-messages';
 export { type BallGame, BallPolicy } from './ball-policy';
-export { type BallTerms, ballRoomKind } from './ball-room-kind';
+export type { BallTerms } from './ball-room-kind';
 export type { BallEvent, BallInput, BallPlace, BallRole, BallState, Refusal, TimedLaunch } from './ball-state';
 export { basketDepth, basketInHands, basketRadius, landsIn, type Opening, rimTube } from './basket';
 export { ballInAir, ballRadius } from './flight';

@@ -11,7 +11,10 @@ export const ball = {
     return openBallActivity(context);
   },
   async createRunner(services) {
-    const { createBallRunner } = await import('./ball-runner');
-    return createBallRunner(services);
+    const [{ createMatchRunner }, { ballTask }] = await Promise.all([
+      import('../people/match/match-runner'),
+      import('./ball-task'),
+    ]);
+    return createMatchRunner(ballTask, services);
   },
 } as const satisfies Activity<BallActivity>;

@@ -72,6 +72,7 @@ export class CheckWorlds {
     this.#ballScene = {
       state: ballRules.start(['a', 'b', 'c'], 1),
       attendants: [null, null, null],
+      palms: [],
       me: null,
       opening: null,
       aim: null,

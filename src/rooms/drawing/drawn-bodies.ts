@@ -1,6 +1,6 @@
 import { Group, type Object3D } from 'three';
-import { type Calibration, reasonOf, sameMeasures } from 'threepoint/core';
-import { type Avatar, loadMannequin } from 'threepoint/three';
+import { reasonOf } from 'threepoint/core';
+import { type Avatar, loadMannequin, PlacedAvatar } from 'threepoint/three';
 import type { RemotePose } from '../peers/remote-poses';
 
 /**
@@ -59,13 +59,11 @@ class DrawnBody {
   readonly peer: string;
   readonly #load: AvatarLoader;
   readonly #parent: Object3D;
-  #avatar: Avatar | null = null;
-  #calibration: Calibration | null = null;
+  #placed: PlacedAvatar | null = null;
   /** The reference of the avatar that is drawn or on its way; undefined: none was requested yet. */
   #reference: string | null | undefined = undefined;
   #loading = false;
   #nextChange = Number.NEGATIVE_INFINITY;
-  #opacity = 1;
   #disposed = false;
 
   constructor(peer: string, load: AvatarLoader, parent: Object3D) {
@@ -74,39 +72,29 @@ class DrawnBody {
     this.#parent = parent;
   }
 
-  draw({ avatar: reference, calibration, pose, mouth, placement, opacity }: DrawnPose, time: number): void {
+  draw(person: DrawnPose, time: number): void {
+    const { avatar: reference, mouth, placement } = person;
     if (reference !== this.#reference && !this.#loading && time >= this.#nextChange) {
       this.#nextChange = time + changeSeconds;
       void this.#change(reference);
     }
-    const avatar = this.#avatar;
-    if (!avatar) return;
-    if (!this.#calibration || !sameMeasures(calibration, this.#calibration)) {
-      this.#calibration = calibration;
-      avatar.setCalibration(calibration);
-    }
-    if (opacity !== this.#opacity) {
-      this.#opacity = opacity;
-      avatar.setOpacity(opacity);
-    }
-    const { object } = avatar;
-    if (placement) object.position.copy(placement.position);
-    else object.position.set(0, 0, 0);
-    object.rotation.set(0, placement?.heading ?? 0, 0);
-    avatar.setMouth(mouth);
-    avatar.setPose(pose, time);
-    object.visible = true;
+    if (!this.#placed) return;
+    const { place } = this.#placed;
+    if (placement) place.position.copy(placement.position);
+    else place.position.set(0, 0, 0);
+    place.rotation.set(0, placement?.heading ?? 0, 0);
+    this.#placed.draw(person, mouth, time);
+    place.visible = true;
   }
 
   hide(): void {
-    if (this.#avatar) this.#avatar.object.visible = false;
+    if (this.#placed) this.#placed.place.visible = false;
   }
 
   dispose(): void {
     this.#disposed = true;
-    this.#avatar?.object.removeFromParent();
-    this.#avatar?.dispose();
-    this.#avatar = null;
+    this.#placed?.dispose();
+    this.#placed = null;
   }
 
   /** Loads another avatar; the one before is drawn until it is there. */
@@ -139,12 +127,8 @@ class DrawnBody {
       avatar.dispose();
       return;
     }
-    this.#avatar?.object.removeFromParent();
-    this.#avatar?.dispose();
-    this.#avatar = avatar;
-    this.#calibration = null;
-    this.#opacity = 1;
-    avatar.object.visible = false;
-    this.#parent.add(avatar.object);
+    this.#placed?.dispose();
+    this.#placed = new PlacedAvatar(avatar, false);
+    this.#parent.add(this.#placed.place);
   }
 }

@@ -1,3 +1,4 @@
+import type { SimulatedGame } from 'threepoint-games/all';
 import { TrialLog, type TrialOutcome } from '../model/records/trial-log';
 import type { RandomSource } from './random-source';
 
@@ -6,11 +7,11 @@ import type { RandomSource } from './random-source';
  * people, and keep scores inside their scale.
  */
 export interface PerformanceModel {
-  /** The chance to hit each archery target, the nearest first. */
+  /** The chance to hit each target of a game for one, the nearest first. */
   readonly hitChance: readonly number[];
-  /** The chance that a thrown ball is caught. */
+  /** The chance that an attempt of a group scores. */
   readonly catchChance: number;
-  /** The standard deviation of skill between persons (groups in the ball game), added to the chances. */
+  /** The standard deviation of skill between persons (groups where several play), added to the chances. */
   readonly skillDeviation: number;
   /** The effect of a condition or a cohort on the chances, by its id. */
   readonly effects: Readonly<Record<string, number>>;
@@ -42,10 +43,8 @@ export const statedPerformanceModel: PerformanceModel = {
   mishaps: { reload: 0.05, voided: 0.02 },
 };
 
-/** The targets of the archery game: each scores once. */
-const targetPoints = [5, 10, 15, 20];
-const archeryArrows = 5;
-const balls = 20;
+/** A game as its trials are simulated; `ends`: the first is that no attempt is left, the second that no target is. */
+type Simulated<Kind> = Kind & { readonly ends: readonly string[] };
 
 export interface Player {
   /** A value added to every chance. */
@@ -111,8 +110,9 @@ function addFrames(
 const pause = (model: PerformanceModel, random: RandomSource, among = 1) =>
   Math.max(1, model.pace.mean + model.pace.deviation * random.normal()) / among;
 
-/** Draws a round of archery, in which arrows are aimed at the farthest target that is not hit yet. */
-export function drawArchery(
+/** Draws a round for one player, who aims at the last target that is not hit yet. */
+export function drawTargets(
+  { points: targetPoints, attempts, ends }: Simulated<Extract<SimulatedGame, { points: unknown }>>,
   model: PerformanceModel,
   player: Player,
   circumstances: Circumstances,
@@ -122,10 +122,10 @@ export function drawArchery(
   const open = new Set(targetPoints.keys());
   let time = 0;
   let score = 0;
-  let ended: TrialOutcome['ended'] = 'arrows';
-  for (let arrow = 0; arrow < archeryArrows; arrow++) {
+  let [ended = 'time', cleared = 'time'] = ends as readonly TrialOutcome['ended'][];
+  for (let attempt = 0; attempt < attempts; attempt++) {
     if (open.size === 0) {
-      ended = 'targets';
+      ended = cleared;
       break;
     }
     const next = time + pause(model, random);
@@ -148,39 +148,39 @@ export function drawArchery(
   return log.finish({ seconds: time, ended, score, maximum, motionFrames: 0 });
 }
 
-/** Draws a round of the ball game for a group; the last member holds the basket, and the others throw in turn. */
-export function drawBall(
+/** Draws a round for a group, whose first members try in turn. */
+export function drawShared(
+  { attempts, triers, ends }: Simulated<Extract<SimulatedGame, { triers: unknown }>>,
   model: PerformanceModel,
   players: readonly Player[],
   circumstances: Circumstances,
   random: RandomSource,
 ): readonly TrialOutcome[] {
   const logs = players.map((player) => logFor(model, player));
-  const throwers = Math.max(1, players.length - 1);
   const skill = players.reduce((sum, player) => sum + player.skill, 0) / players.length;
   const chance = clampChance(model.catchChance + skill + chanceUnder(model, circumstances));
   let time = 0;
   let score = 0;
-  let ended: TrialOutcome['ended'] = 'balls';
-  for (let ball = 0; ball < balls; ball++) {
-    const next = time + pause(model, random, throwers);
+  let [ended = 'time'] = ends as readonly TrialOutcome['ended'][];
+  for (let attempt = 0; attempt < attempts; attempt++) {
+    const next = time + pause(model, random, triers);
     if (next > circumstances.seconds) {
       ended = 'time';
       time = circumstances.seconds;
       break;
     }
     time = next;
-    const thrower = logs[ball % throwers] as (typeof logs)[number];
+    const thrower = logs[attempt % triers] as (typeof logs)[number];
     thrower.shot();
     const caught = random.uniform() < chance;
     thrower.event({ time, type: caught ? 'hit' : 'miss', points: Number(caught) });
     if (caught) {
       score += 1;
-      if (logs.length > throwers) logs.at(-1)?.event({ time, type: 'catch', points: 0 });
+      for (const other of logs.slice(triers)) other.event({ time, type: 'catch', points: 0 });
     }
   }
   return logs.map((log) => {
     addFrames(log, model, circumstances, time, random);
-    return log.finish({ seconds: time, ended, score, maximum: balls, motionFrames: 0 });
+    return log.finish({ seconds: time, ended, score, maximum: attempts, motionFrames: 0 });
   });
 }

@@ -1,9 +1,9 @@
 import { ValidationError } from 'threepoint/core';
+import { type GameDescription, type GameName, games } from 'threepoint-games/all';
 import type { LocalizedText } from '../model/phrases/localized-text';
 import { cohortsByParticipant } from '../model/plan/allocation';
 import { participantsOf, type StudyPlan } from '../model/plan/plan';
 import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
-import type { GameName } from '../model/plan/studied-games';
 import { applyEvent, type ProgressEvent } from '../model/progress/apply-event';
 import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
 import type { Demographics } from '../model/records/demographics';
@@ -12,9 +12,9 @@ import type { TrialOutcome } from '../model/records/trial-log';
 import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
 import {
   type Circumstances,
-  drawArchery,
-  drawBall,
   drawPlayer,
+  drawShared,
+  drawTargets,
   type PerformanceModel,
   type Player,
   statedPerformanceModel,
@@ -131,13 +131,15 @@ interface SimulatedTrial {
   readonly sharedRandom: RandomSource;
 }
 
-/** Draws the result of a trial of each game. */
-const simulatedGames: Readonly<Record<GameName, (trial: SimulatedTrial) => TrialOutcome>> = {
-  archery: ({ performance, circumstances, players, place, ownRandom }) =>
-    drawArchery(performance, players[place] as Player, circumstances, ownRandom),
-  ball: ({ performance, circumstances, players, place, sharedRandom }) =>
-    drawBall(performance, players, circumstances, sharedRandom)[place] as TrialOutcome,
-};
+/** Draws the result of a trial of a game. */
+function drawTrial(game: GameName, trial: SimulatedTrial): TrialOutcome {
+  const { performance, circumstances, players, place, ownRandom, sharedRandom } = trial;
+  const { simulated, ends }: GameDescription = games[game];
+  if ('points' in simulated) {
+    return drawTargets({ ...simulated, ends }, performance, players[place] as Player, circumstances, ownRandom);
+  }
+  return drawShared({ ...simulated, ends }, performance, players, circumstances, sharedRandom)[place] as TrialOutcome;
+}
 
 /** Draws the players of a study and the results of their trials. */
 class SimulatedRounds {
@@ -181,7 +183,7 @@ class SimulatedRounds {
       seconds: step.seconds,
     };
     const { members } = group;
-    return simulatedGames[task.game]({
+    return drawTrial(task.game, {
       performance: this.models.performance,
       circumstances,
       players: members.map((member) => this.playerOf(member)),

@@ -1,14 +1,13 @@
-import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
+import { Group, type Object3D } from 'three';
 import { type AvatarRef, isAvatarHash } from '../core/body/avatar-ref';
 import { bodyOf, defaultAvatar, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
-import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { RemotePerson } from '../core/body/remote-person';
 import { TransientError } from '../core/errors/transient-error';
 import { type MutableTransform, makeTransform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
-import { createBlobShadow } from './blob-shadow';
+import { PlacedAvatar } from './placed-avatar';
 import { meshesOf } from './scene-meshes';
 
 interface RemoteAvatarsOptions {
@@ -30,18 +29,14 @@ interface RemoteAvatarsOptions {
 }
 
 interface Body {
-  readonly avatar: Avatar;
+  readonly placed: PlacedAvatar;
   readonly of: AvatarRef;
   /** Whether the body is from a file and not one of the project's own. */
   readonly fromFile: boolean;
-  readonly place: Group;
-  readonly shadow: Mesh<PlaneGeometry, MeshBasicMaterial>;
   id: number | null;
   /** The time at which it was drawn last [s]. */
   drawnAt: number;
-  fitted: Calibration | null;
   palette: string;
-  opacity: number;
   readonly placement: MutableTransform<'floor', 'floor'>;
 }
 
@@ -109,14 +104,13 @@ export class RemoteAvatars {
       const body = this.#bodyFor(person, plain ? defaultAvatar : person.avatar, people);
       if (!body) continue;
       body.drawnAt = time;
-      body.avatar.setMouth(this.#options.mouthOf(person.id));
-      draw(body, person, time);
+      draw(body, person, this.#options.mouthOf(person.id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {
       const body = this.#bodies[i]!;
       let there = false;
       for (const { id, opacity } of people) there ||= id === body.id && opacity > 0;
-      body.place.visible = there;
+      body.placed.place.visible = there;
       if (!there) body.id = null;
       if (body.id === null && body.fromFile && time - body.drawnAt > keptSeconds) this.#drop(i);
     }
@@ -126,7 +120,7 @@ export class RemoteAvatars {
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null {
     const body = this.#bodyOf(id);
     if (!body) return null;
-    const joints = Object.entries(body.avatar.jointPositions());
+    const joints = Object.entries(body.placed.avatar.jointPositions());
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
@@ -161,7 +155,6 @@ export class RemoteAvatars {
     if (body === own) return own;
     if (own) own.id = null;
     body.id = id;
-    body.fitted = null;
     return body;
   }
 
@@ -212,44 +205,26 @@ export class RemoteAvatars {
     // The built-in bodies stay as long as the others do; a file's memory is released body by body.
     if (isBuiltInAvatar(of)) {
       const first = this.#bodies.find((body) => isBuiltInAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
-      if (first) shareGeometry(first.avatar.object, avatar.object);
+      if (first) shareGeometry(first.placed.avatar.object, avatar.object);
       avatar.setSkinTone(skinToneOf(of));
     }
-    const place = new Group();
-    const shadow = createBlobShadow();
-    place.visible = false;
-    place.add(avatar.object);
-    if (this.#options.shadows ?? true) place.add(shadow);
-    this.object.add(place);
-    const free = { id: null, fitted: null, palette: '', opacity: 1, placement: makeTransform<'floor', 'floor'>() };
-    this.#bodies.push({ avatar, of, fromFile, place, shadow, drawnAt: this.#now, ...free });
+    const placed = new PlacedAvatar(avatar, this.#options.shadows ?? true);
+    this.object.add(placed.place);
+    const free = { id: null, palette: '', placement: makeTransform<'floor', 'floor'>() };
+    this.#bodies.push({ placed, of, fromFile, drawnAt: this.#now, ...free });
   }
 
   #drop(index: number): void {
-    const [body] = this.#bodies.splice(index, 1);
-    if (!body) return;
-    body.place.removeFromParent();
-    body.avatar.dispose();
-    body.shadow.geometry.dispose();
-    body.shadow.material.dispose();
+    this.#bodies.splice(index, 1)[0]?.placed.dispose();
   }
 }
 
-function draw(body: Body, person: RemotePerson, time: number): void {
-  const { avatar, place, shadow } = body;
-  const { calibration, palette, pose, placement, fingers, opacity } = person;
-  if (!body.fitted || !sameMeasures(body.fitted, calibration)) {
-    avatar.setCalibration(calibration);
-    body.fitted = calibration;
-  }
+function draw(body: Body, person: RemotePerson, mouth: number, time: number): void {
+  const { avatar, place } = body.placed;
+  const { palette, placement, fingers } = person;
   if (!body.fromFile && palette !== null && body.palette !== palette) {
     avatar.setPalette(palette);
     body.palette = palette;
-  }
-  if (body.opacity !== opacity) {
-    avatar.setOpacity(opacity);
-    shadow.visible = opacity > 0.5;
-    body.opacity = opacity;
   }
   copyVec3(placement.position, body.placement.position);
   copyQuat(placement.orientation, body.placement.orientation);
@@ -257,8 +232,5 @@ function draw(body: Body, person: RemotePerson, time: number): void {
   place.quaternion.copy(placement.orientation);
   avatar.setFingers('left', fingers.left);
   avatar.setFingers('right', fingers.right);
-  avatar.setPose(pose, time);
-  const { hips, head } = avatar.jointPositions();
-  const over = hips ?? head;
-  if (over) shadow.position.set(over.x, shadow.position.y, over.z);
+  body.placed.draw(person, mouth, time);
 }

@@ -1,6 +1,7 @@
 import { defaultAvatar } from 'threepoint/core';
+import { ballClientPolicy } from 'threepoint-games/ball';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { assignedSeat } from '../../../src/page/ball/match/ball-connections';
+import { assignedSeat } from '../../../src/page/people/match/room-place';
 import { visitor } from '../../rooms/client/people';
 import { until } from '../../rooms/server/running-relay';
 import { invitedGroup } from '../../study/participant/invited-group';
@@ -12,7 +13,7 @@ async function invited() {
   const { origin, group, seatOf } = await invitedGroup();
   vi.stubGlobal('location', { href: `${origin}/?play=ball` });
   const come = async (participant: string) => {
-    const { connect, avatars } = await assignedSeat(await seatOf(participant), clock);
+    const { connect, avatars } = await assignedSeat(ballClientPolicy, await seatOf(participant), clock);
     expect(avatars).toBeNull();
     const connection = connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());
     onTestFinished(() => connection.leave());

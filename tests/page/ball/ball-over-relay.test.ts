@@ -51,7 +51,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
       play.begin(time);
       const performed = options.spectate ? null : play.act(time);
       const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
+      if (performed) play.sendPose(performed.frame.time, poseOf(estimator, performed.frame), unknownFingers);
       for (const { id, calibration, pose } of seen?.bodies ?? []) {
         if (!pose.body) continue;
         const elbow = forwardKinematics(skeletonFromCalibration(calibration), pose.body).rightLowerArm.position;

@@ -44,7 +44,7 @@ function page(options: {
     const performed = acting ? player.act(time) : null;
     const seen = player.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
     events.push(...(seen?.events ?? []));
-    if (performed) player.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
+    if (performed) player.sendPose(performed.frame.time, poseOf(estimator, performed.frame), unknownFingers);
     return seen;
   };
   return {
@@ -79,13 +79,12 @@ describe('one person with two bots', () => {
   it('sees their bodies where their seats are, and the basket in the holder’s hands', () => {
     const { player, until } = page({ seat: 0 });
     until(() => player.newest?.bodies.length === 2, 10);
-    const { bodies, opening, players } = player.newest ?? {};
+    const { bodies, opening, palms, state } = player.newest ?? {};
     expect(bodies?.map(({ id }) => id)).toEqual([1, 2]);
-    const holder = players?.[2];
-    expect(holder?.role).toBe('holder');
+    expect(state?.players[2]?.role).toBe('holder');
     for (const side of ['left', 'right'] as const) {
       // The fists are 0.23 m from the middle, palms on the rim; a ball would lie in the palms, 6.5 cm further in.
-      const palm = holder?.palms[side];
+      const palm = palms?.[2]?.[side];
       expect(palm && opening && distance(palm, opening.position)).toBeCloseTo(0.165, 2);
     }
     // Own floor frame: the other thrower stands 1.6 m to the right, the holder 5 m away.
@@ -98,7 +97,7 @@ describe('one person with two bots', () => {
     const waiting = page({ acting: false });
     for (let i = 0; i < 5 * usualHz; i++) waiting.frame();
     expect(waiting.player.probe()).toMatchObject({ phase: 'ready', ready: false });
-    waiting.player.ready(true);
+    waiting.player.connection?.setReady(true);
     waiting.until(() => waiting.player.probe()?.phase === 'running', 3);
   });
 
@@ -106,7 +105,7 @@ describe('one person with two bots', () => {
     const { player, until } = page({ seat: 0, ball: { balls: 2, seconds: 20 } });
     until(() => player.probe()?.phase === 'over', 40);
     expect(player.probe()?.role).toBe('thrower');
-    player.rotate(true);
+    player.setOption(true);
     until(() => player.probe()?.phase === 'running', 20);
     expect(player.probe()?.score).toBe(0);
     const first = player.probe()?.role;
@@ -134,7 +133,7 @@ describe('one person with two bots', () => {
   it('stands still in a pause, and the match goes on afterwards unchanged', () => {
     const { player, until, events, frame } = page({ seat: 0 });
     until(() => (player.probe()?.ballsLeft ?? 20) < 18, 30);
-    player.pause(true);
+    player.connection?.setPaused(true);
     until(() => player.probe()?.paused === true, 1);
     frame();
     const { secondsLeft, score } = player.probe() ?? {};
@@ -146,9 +145,9 @@ describe('one person with two bots', () => {
     player.newest?.bodies.forEach(({ pose }, i) => {
       expect(distance(pose.head.position, where?.[i] ?? pose.head.position)).toBeLessThan(0.05);
     });
-    player.rotate(true);
+    player.setOption(true);
     frame();
-    player.pause(false);
+    player.connection?.setPaused(false);
     until(() => player.probe()?.phase === 'over', 110);
     expect(player.probe()).toMatchObject({ end: 'balls', ballsLeft: 0, rotate: true });
     expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);

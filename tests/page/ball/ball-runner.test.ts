@@ -2,8 +2,9 @@ import { allReleased, type Buttons, createEstimator, defaultCalibration, unknown
 import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ball';
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
-import { createBallRunner } from '../../../src/page/ball/ball-runner';
+import { ballTask } from '../../../src/page/ball/ball-task';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createMatchRunner } from '../../../src/page/people/match/match-runner';
 import { trialOf } from '../../study/participant/played-trial';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { activityServices } from '../activity-services';
@@ -76,7 +77,7 @@ async function group({ stopped = false } = {}) {
       });
       const { settings, writer } = activityServices();
       const court = { play };
-      const runner = createBallRunner({
+      const runner = createMatchRunner(ballTask, {
         settings,
         writer,
         opened: () => court,
@@ -104,7 +105,7 @@ async function group({ stopped = false } = {}) {
           play.begin(time);
           const performed = play.act(time);
           play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-          if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
+          if (performed) play.sendPose(performed.frame.time, poseOf(estimator, performed.frame), unknownFingers);
           runner.played();
           timeFrame?.();
           if (!finished) finished = trial?.follow(time, performed?.frame ?? null) ?? null;
@@ -127,7 +128,7 @@ async function group({ stopped = false } = {}) {
     }
   };
   pass(1);
-  pages[1]?.play.pause(stopped);
+  pages[1]?.play.connection?.setPaused(stopped);
   return {
     pages,
     pass,

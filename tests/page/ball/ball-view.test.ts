@@ -15,6 +15,7 @@ test('a catch shows for a moment, and not again at that second of the next match
     state,
     time,
     attendants: [null, null, null],
+    palms: [],
     me: null,
     opening: null,
     aim: null,
@@ -34,7 +35,7 @@ test('a catch shows for a moment, and not again at that second of the next match
     return catches.children.filter(({ visible }) => visible).length;
   };
   words(40, 140);
-  view.playEvents([{ type: 'caught', ball: 0, player: 0, at: 40, score: 1 }], []);
+  view.playEvents([{ type: 'caught', ball: 0, player: 0, at: 40, score: 1 }], { cues: [] });
   expect([words(40.5, 140.5), words(60, 160)]).toEqual([1, 0]);
   expect([words(0, 200), words(40.5, 240.5)]).toEqual([0, 0]);
 });

@@ -36,7 +36,7 @@ function holder() {
         const frame = { time, head, leftHand: told(leftHand), rightHand: told(rightHand) };
         play.follow(time, frame, nothingPressed);
         const pose = { ...shown.pose, head, leftHand: frame.leftHand, rightHand: frame.rightHand };
-        play.send(frame, pose, shown.fingers);
+        play.sendPose(frame.time, pose, shown.fingers);
       }
     },
     apart() {

@@ -23,7 +23,7 @@ function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, s
       play.begin(time);
       const performed = play.act(time);
       const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
+      if (performed) play.sendPose(performed.frame.time, poseOf(estimator, performed.frame), unknownFingers);
       return seen;
     },
   };

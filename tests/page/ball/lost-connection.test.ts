@@ -52,8 +52,8 @@ function court() {
       for (let i = 0; i < 15; i++) frame(fists(vec3(-1.3, 0.8, 0), addScaled(ahead, vec3(0, 3, -4), i / 60)), 1);
       self.hold(addScaled(ahead, vec3(0, 3, -4), 15 / 60), 0, 0.2);
     },
-    sit: (seat: number) => page.sit(seat),
-    rotate: (on: boolean) => page.rotate(on),
+    sit: (seat: number) => page.connection?.changeSeat(seat),
+    rotate: (on: boolean) => page.setOption(on),
     lose: () => wire.lose(),
     connect: () => wire.connect(),
     /** The page is loaded again; the pass that it finds makes it the same person. */

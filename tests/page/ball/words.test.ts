@@ -8,13 +8,15 @@ import {
   displayedSeconds,
 } from 'threepoint-games/ball';
 import { describe, expect, it } from 'vitest';
+import { ballGame } from '../../../src/page/ball/ball-game';
 import { cueCaption, eventCaption } from '../../../src/page/ball/sound/ball-captions';
 import { eventHaptics } from '../../../src/page/ball/sound/ball-haptics';
-import type { DisplayedMatch, DisplayedPlayer } from '../../../src/page/ball/view/displayed-match';
-import { displayName, markedName } from '../../../src/page/ball/view/displayed-match';
-import { lobbyButtons, seatOfButton } from '../../../src/page/ball/view/lobby-sheet';
-import { eventLine, waitingLine, waitingSentence } from '../../../src/page/ball/view/match-texts';
-import { labelScale } from '../../../src/page/ball/view/name-labels';
+import { eventLine, waitingLine } from '../../../src/page/ball/view/match-texts';
+import type { DisplayedMatch, DisplayedPlayer } from '../../../src/page/people/view/displayed-match';
+import { displayName, markedName } from '../../../src/page/people/view/displayed-match';
+import { lobbyButtons, seatOfButton } from '../../../src/page/people/view/lobby-sheet';
+import { labelScale } from '../../../src/page/people/view/name-labels';
+import { waitingSentence } from '../../../src/page/people/view/waiting-sentence';
 import { createSettling, settlingSeconds } from '../../../src/page/scene/boards/sheet';
 
 const person = (name: string, more: Partial<DisplayedPlayer> = {}): DisplayedPlayer => ({
@@ -32,7 +34,7 @@ const standing = (
   players: DisplayedMatch['players'],
   state: BallState = fresh,
   me: number | null = 0,
-): DisplayedMatch => ({
+): DisplayedMatch<BallState> => ({
   state,
   seconds: 90,
   players,
@@ -56,19 +58,23 @@ describe('the board', () => {
 
   it('beside the player: says who is waited for, by name, and what to press', () => {
     const all = [person('ann', { me: true }), person('Max', { bot: true, station: 1 }), person('cal', { station: 2 })];
-    const told = (...ready: boolean[]) => waitingSentence(standing(all, withReady(...ready)));
-    expect(waitingSentence(standing([person('ann', { me: true }), null, null]))).toBe('Waiting for a basket holder.');
+    const told = (...ready: boolean[]) => waitingSentence(ballGame, standing(all, withReady(...ready)));
+    expect(waitingSentence(ballGame, standing([person('ann', { me: true }), null, null]))).toBe(
+      'Waiting for a basket holder.',
+    );
     expect(told(false, true, true)).toBe('Waiting for you: press Ready.');
     expect(told(false, false, false)).toBe('Waiting for you, 2 · Max (bot) and 3 · cal: press Ready.');
     expect(told(true, false, false)).toBe('Waiting for 2 · Max (bot) and 3 · cal.');
     expect(told(true, true, true)).toBe('The match starts in a moment.');
     const over = { ...withReady(false, true, true), phase: 'over' as const, end: 'balls' as const };
-    expect(waitingSentence(standing(all, over))).toBe('Waiting for you: press Play again.');
-    expect(waitingSentence({ ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
-    expect(waitingSentence(standing(all, { ...over, phase: 'running' }))).toBeNull();
+    expect(waitingSentence(ballGame, standing(all, over))).toBe('Waiting for you: press Play again.');
+    expect(waitingSentence(ballGame, { ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
+    expect(waitingSentence(ballGame, standing(all, { ...over, phase: 'running' }))).toBeNull();
     const throwers = [all[0]!, all[1]!, null];
-    expect(waitingSentence(standing(throwers, over))).toBe('Waiting for a basket holder.');
-    expect(waitingSentence(standing(throwers, { ...over, rotate: true }))).toBe('Waiting for you: press Play again.');
+    expect(waitingSentence(ballGame, standing(throwers, over))).toBe('Waiting for a basket holder.');
+    expect(waitingSentence(ballGame, standing(throwers, { ...over, rotate: true }))).toBe(
+      'Waiting for you: press Play again.',
+    );
   });
 
   it('speaks to the player of their own throws', () => {
@@ -114,8 +120,8 @@ describe('the board', () => {
 describe('the sheet before and after a match', () => {
   it('offers the free places and those of bots, and ready to a seated player', () => {
     const people = [person('ann', { me: true }), person('Max', { bot: true }), null];
-    expect(lobbyButtons(standing(people)).map(({ id }) => id)).toEqual(['seat1', 'seat2', 'rotate', 'ready']);
-    const watcher = lobbyButtons(standing([person('ann'), null, person('cal')], fresh, null));
+    expect(lobbyButtons(ballGame, standing(people)).map(({ id }) => id)).toEqual(['seat1', 'seat2', 'option', 'ready']);
+    const watcher = lobbyButtons(ballGame, standing([person('ann'), null, person('cal')], fresh, null));
     expect(watcher.map(({ id }) => id)).toEqual(['seat1']);
     expect(watcher.map(({ id }) => seatOfButton(id))).toEqual([1]);
     expect(seatOfButton('ready')).toBe(null);

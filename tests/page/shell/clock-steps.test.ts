@@ -138,7 +138,7 @@ function goesOn(step: number): void {
           opacity = Math.min(opacity, body.opacity);
         }
       },
-      skin: (pose, frame) => play.send(frame, pose, unknownFingers),
+      skin: (pose, frame) => play.sendPose(frame.time, pose, unknownFingers),
     });
     for (let i = 0; i < 40 && play.probe()?.phase !== 'running'; i++) run(0.25);
     expect(play.probe()?.phase).toBe('running');

@@ -1,6 +1,7 @@
 import { io, type Socket } from 'socket.io-client';
 import { vec3 } from 'threepoint/math';
-import { type BallGame, ballClientPolicy, ballKind, ballRoomKind } from 'threepoint-games/ball';
+import { games } from 'threepoint-games/all';
+import { type BallGame, ballClientPolicy, ballKind } from 'threepoint-games/ball';
 import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
 import type { Visitor } from '../../../src/rooms/client/connection';
 import { createRoomPass, type RoomPass } from '../../../src/rooms/client/room-pass';
@@ -28,7 +29,7 @@ export async function startRelay(environment: Record<string, string> = {}, port 
     behindProxy: configuration.trustProxy,
   });
   const kinds = new Map<string, RoomKind>([
-    [ballKind, ballRoomKind(90)],
+    [ballKind, await games.ball.rooms.createKind(90)],
     [countingKind, countingRoomKind(maxSeats)],
   ]);
   const relay = createRelay(configuration, configuration.secret ?? testSecret, connectionLimiter, kinds);

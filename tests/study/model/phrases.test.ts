@@ -1,7 +1,6 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import { english, type Phrase } from '../../../src/study/model/phrases/english';
-import german from '../../../src/study/model/phrases/german.json' with { type: 'json' };
 import {
   missingKeys,
   PhrasedError,
@@ -10,10 +9,13 @@ import {
   phrasesOf,
   placeholdersIn,
   preferredLanguage,
+  shippedPhrases,
 } from '../../../src/study/model/phrases/phrases';
 import { checkedPlan } from '../../../src/study/model/plan/plan';
 import { remarksOn } from '../../../src/study/model/plan/plan-remarks';
 import { examplePlan, planComplaints } from './studies';
+
+const german = shippedPhrases.de!;
 
 const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));
 

@@ -4,7 +4,7 @@ import type { PlayedStep } from '../../../src/study/model/plan/schedule';
 import { PlayedTrial, type TrialHost, type TrialOptions } from '../../../src/study/participant/trial/study-trial';
 
 interface TrialOfTest extends Partial<Pick<TrialHost, 'listenToFrames'>>, Partial<TrialOptions> {
-  readonly task?: 'archery' | 'ball';
+  readonly task?: string;
   readonly seconds: number;
 }
 

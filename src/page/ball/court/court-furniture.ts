@@ -11,11 +11,11 @@ import {
 } from 'three';
 import { clamp } from 'threepoint/math';
 import { ballRadius } from 'threepoint-games/ball';
+import { seatLooks } from '../../people/view/seat-looks';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
 import { woodColor } from '../../scene/outdoors/wood-color';
 import { merged, painted, paintedBox } from '../../scene/painted-geometry';
 import { createRandomRange } from '../../scene/random-range';
-import { seatLooks } from '../seat-looks';
 import { court, trayOf } from './court-plan';
 
 /** A tray on four legs with a rim in its thrower's colour. */

@@ -1,7 +1,7 @@
 import { Color, type Mesh, type MeshLambertMaterial, type PlaneGeometry, type Texture } from 'three';
 import { stations } from 'threepoint-games/ball';
+import { seatLooks } from '../../people/view/seat-looks';
 import { createPaintedGround } from '../../scene/outdoors/painted-ground';
-import { seatLooks } from '../seat-looks';
 import { court } from './court-plan';
 
 /** A painted hard court in a meadow: lane, lines, a metre scale and the players' marks; y = 0 of the arena frame. */

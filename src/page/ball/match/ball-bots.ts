@@ -1,6 +1,7 @@
 import { type Calibration, createEstimator, type PoseEstimator } from 'threepoint/core';
 import type { BallBot, BallConnection, BallGestures, BallState } from 'threepoint-games/ball';
 import type { Visitor } from 'threepoint-rooms/room';
+import { readyAfter } from '../../people/match/match-play';
 import {
   type BotKnowledge,
   createGestures,
@@ -19,8 +20,6 @@ const botPeople: readonly { readonly name: string; readonly calibration: Calibra
 
 /** The interval between two checks for free seats [s]. */
 const seatsEvery = 0.4;
-/** A simulated player is ready after this time [s]. */
-export const readyAfter = 1;
 
 interface Bot {
   readonly connection: BallConnection;

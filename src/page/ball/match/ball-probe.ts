@@ -1,8 +1,5 @@
-import { defaultAvatar } from 'threepoint/core';
-import { length, type Vec3 } from 'threepoint/math';
-import { type BallConnection, type BallPlace, type BallRoomView, ballsLeft, catchesOf } from 'threepoint-games/ball';
-import type { RoomBodies } from 'threepoint-rooms/three';
-import type { PlayerProbe } from '../../activity/activity';
+import { length } from 'threepoint/math';
+import { type BallConnection, type BallPlace, ballsLeft, catchesOf } from 'threepoint-games/ball';
 import type { BallFrame } from './ball-frame';
 
 /** Returns the state of a match as plain data, for tests and tools. */
@@ -51,21 +48,3 @@ export function probeOf(
 }
 
 export type BallProbe = ReturnType<typeof probeOf>;
-
-const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
-
-/** Returns the other players as they are drawn now. */
-export function playerProbes(
-  { newest, room }: { readonly newest: BallFrame | null; readonly room: BallRoomView | null },
-  others: Pick<RoomBodies, 'jointsOf' | 'drawnAs'>,
-): readonly PlayerProbe[] {
-  return (newest?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
-    const player = newest?.players[id];
-    if (!player) return [];
-    const { name, bot, presence } = player;
-    const drawn = Object.entries(others.jointsOf(id) ?? {});
-    const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
-    const { avatar = defaultAvatar } = room?.seats[id] ?? {};
-    return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: others.drawnAs(id), joints }];
-  });
-}

@@ -1,8 +1,8 @@
 import type { Pose, Vec3 } from 'threepoint/math';
 import type { BallCue, BallEvent, Refusal } from 'threepoint-games/ball';
+import type { DisplayedPlayer } from '../../people/view/displayed-match';
+import { markedName } from '../../people/view/displayed-match';
 import { directionText } from '../../scene/direction-text';
-import type { DisplayedPlayer } from '../view/displayed-match';
-import { markedName } from '../view/displayed-match';
 
 /** The listener, and the positions of the other players. */
 export interface Listener {

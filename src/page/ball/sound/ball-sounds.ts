@@ -21,6 +21,7 @@ import {
   stations,
   type TimedLaunch,
 } from 'threepoint-games/ball';
+import type { DisplayedPlayer } from '../../people/view/displayed-match';
 import {
   createSoundStage,
   type Recipe,
@@ -29,8 +30,7 @@ import {
   type SoundStage,
 } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
-import type { PlayerFrame } from '../match/ball-frame';
-import type { DisplayedPlayer } from '../view/displayed-match';
+import type { Palms } from '../match/ball-frame';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 
@@ -42,7 +42,7 @@ export interface SoundFrame {
   readonly me: number | null;
   readonly people: readonly (DisplayedPlayer | null)[];
   /** The position of a ball in each of the user's hands, arena frame; null: the hand is not tracked. */
-  readonly palms: PlayerFrame['palms'];
+  readonly palms: Palms;
 }
 
 const bounceSteps = 4;

@@ -1,18 +1,18 @@
 import { Group } from 'three';
-import { ballsLeft } from 'threepoint-games/ball';
+import { type BallState, ballsLeft } from 'threepoint-games/ball';
 import { drawText } from 'threepoint-ui/vr';
+import type { DisplayedMatch } from '../../people/view/displayed-match';
 import { ink, paintGround } from '../../scene/boards/board-style';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { createWoodenBoard } from '../../scene/boards/wooden-board';
 import { createCanvasTexture } from '../../scene/canvas-texture';
 import type { Quality } from '../../scene/renderer';
 import { court } from '../court/court-plan';
-import type { DisplayedMatch } from './displayed-match';
 
 const boardSize = { width: 1024, height: 588 } as const;
 
 /** Paints score, clock, balls left and the last sentence. */
-function paintBoard(context: CanvasRenderingContext2D, match: DisplayedMatch, line: string): void {
+function paintBoard(context: CanvasRenderingContext2D, match: DisplayedMatch<BallState>, line: string): void {
   const { state, seconds } = match;
   const { width, height } = boardSize;
   paintGround(context, width, height);
@@ -58,7 +58,7 @@ export function createBoards(quality: Quality) {
   let shown = '';
   return {
     object,
-    show(match: DisplayedMatch, line: string): void {
+    show(match: DisplayedMatch<BallState>, line: string): void {
       const { state, seconds } = match;
       const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
       const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);

@@ -1,4 +1,5 @@
 import { calibrationFaults } from 'threepoint/core';
+import { gamePhrases } from './game-phrases';
 
 /**
  * The phrases of the page for participants, by key. Names in braces are filled in. A phrase with a number has the
@@ -141,10 +142,7 @@ export const english = {
   // Rounds.
   'ready.title': 'Ready?',
   'ready.again': 'The last attempt was interrupted and does not count.',
-  'ready.archery':
-    'Shoot up to five arrows at the four targets. Each target counts once; the farther, the more points.',
-  'ready.ball':
-    'Two of you throw balls, the third catches them with the basket. Every ball in the basket is a point for all three.',
+  ...gamePhrases('en', 'ready'),
   'ready.practice': {
     one: 'Try it for {count} second. This does not count.',
     other: 'Try it for {count} seconds. This does not count.',
@@ -156,8 +154,7 @@ export const english = {
   'ready.raise': 'To pause or to stop, hold both hands above your head.',
   'round.failed': 'This round cannot start',
   'round.body': 'The body of this round could not be loaded.',
-  'round.archery': 'The archery range could not be opened.',
-  'round.ball': 'The ball court could not be opened.',
+  ...gamePhrases('en', 'round'),
   'round.game': 'This page cannot play the game of this task.',
   'waiting.title': 'You are ready',
   'waiting.for': {

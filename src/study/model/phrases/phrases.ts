@@ -1,5 +1,6 @@
 import { type Catalogue, english, type GivenPhrases, type PhraseKey } from './english';
-import german from './german.json' with { type: 'json' };
+import { gamePhrases } from './game-phrases';
+import germanOfPage from './german.json' with { type: 'json' };
 
 type TextsOf<Said> = Said extends string ? Said : Said[keyof Said];
 type NamesIn<Text> = Text extends `${string}{${infer Name}}${infer Rest}` ? Name | NamesIn<Rest> : never;
@@ -12,6 +13,8 @@ export type Values<Key extends PhraseKey> = [Gap<Key>] extends [never]
   : readonly [{ readonly [Name in Gap<Key>]: Name extends 'count' ? number : string | number }];
 
 export const phraseKeys = Object.keys(english) as readonly PhraseKey[];
+
+const german = { ...germanOfPage, ...gamePhrases('de', 'ready'), ...gamePhrases('de', 'round') };
 
 /** The phrases of the page by language. */
 export const shippedPhrases: Readonly<Record<string, Catalogue>> = { en: english, de: german };

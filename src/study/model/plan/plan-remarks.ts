@@ -1,9 +1,9 @@
+import { games } from 'threepoint-games/all';
 import { missingKeys, phraseKeys } from '../phrases/phrases';
 import { isNumeric, questionnaireNamed } from '../questionnaires/questionnaires';
 import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './allocation';
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
 import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
-import { studiedGames } from './studied-games';
 
 /** Returns the number of participants in each cohort, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
@@ -110,7 +110,7 @@ export function remarksOn(plan: StudyPlan): readonly string[] {
   const { conditions, cohorts = [], tasks } = plan;
   const mirrored = [...conditions, ...cohorts].some(({ mirror }) => mirror);
   const unmirroredRemarks = tasks.flatMap((task) => {
-    const { unmirrored } = studiedGames[task.game];
+    const { unmirrored } = games[task.game];
     return mirrored && unmirrored !== null ? [`${taskTitle(plan, task.id)}: ${unmirrored}.`] : [];
   });
   return [

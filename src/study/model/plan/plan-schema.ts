@@ -1,4 +1,5 @@
 import { identifier, integerBetween, numberBetween, text } from 'threepoint/core';
+import { gameNames } from 'threepoint-games/all';
 import * as v from 'valibot';
 import { languageTag, words } from '../phrases/localized-text';
 import { phrasesSchema } from '../phrases/phrase-schema';
@@ -6,7 +7,6 @@ import { questionnaireSchema } from '../questionnaires/questionnaire-schema';
 import { stoppingRuleSchema } from '../questionnaires/stopping-rule';
 import { embodimentFields, estimatorSchema } from './embodiment';
 import { remoteSchema } from './remote-setup';
-import { gameNames } from './studied-games';
 
 export const planFormat = 'threepoint-study';
 export const planVersion = 1;

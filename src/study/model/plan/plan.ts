@@ -1,4 +1,5 @@
 import { checked, complaintsAbout, ValidationError } from 'threepoint/core';
+import { games } from 'threepoint-games/all';
 import type * as v from 'valibot';
 import { inLanguage, type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import { refusePhrases } from '../phrases/phrase-schema';
@@ -12,7 +13,6 @@ import {
 import { checkStoppingRules } from '../questionnaires/stopping-rule';
 import { embodimentFieldsOf } from './embodiment';
 import { planSchema } from './plan-schema';
-import { studiedGames } from './studied-games';
 
 /** A study as its file has it. */
 export type StudyPlan = v.InferOutput<typeof planSchema>;
@@ -203,7 +203,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   refusePhrases(plan.phrases ?? {}, languagesOf(plan));
   refuseUnknownMeasures(plan);
   plan.tasks.forEach(({ game, groupSize }, index) => {
-    const { players, because } = studiedGames[game];
+    const { players, because } = games[game];
     if (groupSize !== players) {
       throw new ValidationError(`tasks[${index}].groupSize`, `${because}: expected ${players}`);
     }

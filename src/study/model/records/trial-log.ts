@@ -1,4 +1,5 @@
 import { type Calibration, checked, handTiltsSchema, integerBetween, numberBetween, text } from 'threepoint/core';
+import { type GameEnd, gameNames, games } from 'threepoint-games/all';
 import * as v from 'valibot';
 import { type TrialClock, trialClockSchema } from './trial-clock';
 
@@ -31,20 +32,24 @@ export const calibrationEntries = {
   handTilts: v.optional(handTiltsSchema),
 };
 
+/** Why a trial ends: for a reason of its game, at its time, or early. */
+export const trialEnds: readonly (GameEnd | 'time' | 'stopped')[] = [
+  ...gameNames.flatMap((name): readonly GameEnd[] => games[name].ends),
+  'time',
+  'stopped',
+];
+
 export const outcomeSchema = v.object({
   version: v.literal(trialVersion, `expected ${trialVersion}, the version that this program reads`),
   /** The time from the start to the end. */
   seconds: duration,
   /** Why it ended; stopped: early. */
-  ended: v.picklist(
-    ['arrows', 'targets', 'balls', 'time', 'stopped'],
-    'expected arrows, targets, balls, time or stopped',
-  ),
+  ended: v.picklist(trialEnds, `expected ${trialEnds.slice(0, -1).join(', ')} or stopped`),
   /** Points; for a group, those of the group. */
   score: numberBetween(0, 100_000),
   /** The highest possible score. */
   maximum: numberBetween(1, 100_000),
-  /** Arrows or balls of this participant, and how many of them scored. */
+  /** Shots, throws or other attempts of this participant, and how many of them scored. */
   shots: count,
   hits: count,
   /** Hits and misses with their points. */

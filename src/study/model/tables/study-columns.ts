@@ -1,6 +1,7 @@
 import { threePointNames } from 'threepoint/core';
 import { type Demographics, demographicFields } from '../records/demographics';
 import { eventTypes } from '../records/study-record';
+import { trialEnds } from '../records/trial-log';
 import { boolean, number, text } from './tidy-csv';
 
 /** The values of whole numbers from 1. */
@@ -179,7 +180,7 @@ const tiltColumns = (side: 'left' | 'right') => [
 export const trialColumns = [
   ...trialNames,
   number('group', '', ordinals, 'trial: body.group', 'Number of the group; tasks played alone: of the participant.'),
-  text('ended', 'arrows, targets, balls, time, stopped', outcome('ended'), 'Why it ended; stopped: early.'),
+  text('ended', trialEnds.join(', '), outcome('ended'), 'Why it ended; stopped: early.'),
   number('score', 'points', positive, outcome('score'), 'Points; for a group, those of the group.'),
   number('maximum', 'points', '1 and more', outcome('maximum'), 'Highest possible score.'),
   number('percent', '%', positive, 'computed: 100 score / maximum', 'Share of the highest possible score.'),
@@ -267,7 +268,7 @@ export const hitColumns = [
     outcome('events[].onset'),
     'Second of the trial at the frame that showed it; with recording_start and the pauses before it, its place among recorded frames. Empty: not known.',
   ),
-  text('type', 'hit, miss, catch', outcome('events[].type'), "Event; catch: another participant's ball was caught."),
+  text('type', 'hit, miss, catch', outcome('events[].type'), 'Event; catch: another participant of the group scored.'),
   number('points', 'points', positive, outcome('events[].points'), 'What it scored.'),
   excluded,
 ];

@@ -1,6 +1,6 @@
+import { games } from 'threepoint-games/all';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { languagesOf } from '../../model/plan/plan';
-import { studiedGames } from '../../model/plan/studied-games';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
 import { questionKind } from '../../model/questionnaires/question-kinds';
 import { scaleRange } from '../../model/questionnaires/questionnaire-scores';
@@ -95,7 +95,7 @@ export const scoreCharts = ({ results, percent }: ShownComparison): readonly Cha
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);
-    const figure = task && studiedGames[task.game].paperFigure;
+    const figure = task && games[task.game].paperFigure;
     return {
       comparisons: [comparison],
       title: `${name}: scores`,

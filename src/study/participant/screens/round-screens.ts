@@ -1,5 +1,4 @@
 import type { PlayedStep } from '../../model/plan/schedule';
-import { studiedGames } from '../../model/plan/studied-games';
 import type { StudyScreen } from '../questions/study-screen';
 import { enterButton, pauseButton, type ScreenParts } from './screen-parts';
 import type { StudySituation } from './study-situation';
@@ -62,7 +61,7 @@ function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }
     title: practice ? text('practice') : text('ready.title'),
     text: [
       ...(progress.attempt > 1 ? [text('ready.again')] : []),
-      ...(task ? [text(studiedGames[task.game].ready)] : []),
+      ...(task ? [text(`ready.${task.game}`)] : []),
       practice ? text('ready.practice', { count }) : text('ready.seconds', { count }),
       text('ready.raise'),
     ],

@@ -77,9 +77,9 @@ const eventColumns = {
     Levels: {
       trial: 'from the start signal to the end, pauses within',
       pause: 'the trial was paused; frames of this time are not recorded',
-      hit: 'an arrow or ball of this participant scored',
+      hit: 'an attempt of this participant scored',
       miss: 'one did not',
-      catch: "another's ball scored for the group",
+      catch: 'another participant scored for the group',
     },
   }),
   points: described('What it scored.'),

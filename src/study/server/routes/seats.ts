@@ -1,8 +1,8 @@
 import { createHmac, randomBytes } from 'node:crypto';
 import { ValidationError } from 'threepoint/core';
+import { games } from 'threepoint-games/all';
 import type { StudyPlan } from '../../model/plan/plan';
 import { isPlayed, scheduleFor } from '../../model/plan/schedule';
-import { studiedGames } from '../../model/plan/studied-games';
 import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 
 /** The claims of a participant's place in a room, which the server's rooms read from a signed token. */
@@ -44,7 +44,7 @@ export function createStudySeats(secret: string, signSeat: SignSeat) {
       const step = schedule.steps.find((candidate) => candidate.id === id);
       const played = step && isPlayed(step) ? step : null;
       const task = plan.tasks.find((candidate) => candidate.id === played?.task);
-      if (!played || !task || studiedGames[task.game].players === 1) {
+      if (!played || !task || games[task.game].players === 1) {
         throw new ValidationError('step', `expected a step that ${participant} plays with others, not "${id}"`);
       }
       const group = schedule.groups[played.task];

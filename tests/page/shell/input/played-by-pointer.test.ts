@@ -190,7 +190,7 @@ describe('the ball game without hands', () => {
     });
     const estimator = createEstimator('ik', defaultCalibration);
     const events: string[] = [];
-    const send = (frame: TrackingFrame) => play.send(frame, poseOf(estimator, frame), unknownFingers);
+    const send = (frame: TrackingFrame) => play.sendPose(frame.time, poseOf(estimator, frame), unknownFingers);
     const pass = (seconds: number, until: () => boolean) => {
       for (let i = 0; i < 72 * seconds && !until(); i++) {
         const { time } = page.read().frame;
@@ -205,7 +205,7 @@ describe('the ball game without hands', () => {
       expect(until()).toBe(true);
     };
     pass(5, () => play.newest?.state.phase === 'ready');
-    play.ready(true);
+    play.connection?.setReady(true);
     pass(10, () => play.newest?.state.phase === 'running');
     pass(20, () => events.filter((type) => type === 'thrown').length >= 2);
     expect(events).not.toContain('refused');

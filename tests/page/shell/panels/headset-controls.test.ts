@@ -7,8 +7,12 @@ import { createVrPointers } from 'threepoint-ui/vr';
 import { describe, expect, test, vi } from 'vitest';
 import type { OpenActivity } from '../../../../src/page/activity/activity';
 import { menuHeight } from '../../../../src/page/activity/activity-menu';
-import { type BallMenuActions, type BallMenuState, ballEntries } from '../../../../src/page/ball/menu/ball-menu';
-import type { OtherPlayer } from '../../../../src/page/ball/panel/other-players';
+import {
+  type PeopleMenuActions,
+  type PeopleMenuState,
+  peopleEntries,
+} from '../../../../src/page/people/menu/people-menu';
+import type { OtherPlayer } from '../../../../src/page/people/panel/other-players';
 import { activities as registered } from '../../../../src/page/shell/activity-registry';
 import type { CalibrationControl } from '../../../../src/page/shell/input/calibration-control';
 import type { InputParts } from '../../../../src/page/shell/input/input-parts';
@@ -381,7 +385,7 @@ describe('without a controller', () => {
 
 describe('the buttons of the menu', () => {
   const mirror: VrMenuState = { ...studioMenu, places: registered };
-  const match: BallMenuState = {
+  const match: PeopleMenuState = {
     ready: null,
     plainOthers: false,
     others: [],
@@ -414,7 +418,7 @@ describe('the buttons of the menu', () => {
     chooseSkinTone: (tone) => void done.push(`in ${tone}`),
     exit: () => undefined,
   };
-  const ballActions: BallMenuActions = {
+  const ballActions: PeopleMenuActions = {
     setPlainOthers: (on) => void done.push(`plain others ${on}`),
     ready: (on) => void done.push(`ready ${on}`),
     askVoices: (on) => void done.push(`ask ${on}`),
@@ -424,9 +428,9 @@ describe('the buttons of the menu', () => {
     invite: () => void done.push('invite'),
   };
   /** The menu at the court. */
-  const atCourt = (change: Partial<BallMenuState> = {}): VrMenuState => ({
+  const atCourt = (change: Partial<PeopleMenuState> = {}): VrMenuState => ({
     ...mirror,
-    activity: { entries: ballEntries({ ...match, ...change }, ballActions) },
+    activity: { entries: peopleEntries({ ...match, ...change }, ballActions) },
   });
   const labels = (state: VrMenuState) => menuButtons(state, actions).map(({ label }) => label);
 
@@ -434,7 +438,7 @@ describe('the buttons of the menu', () => {
     ['', false],
     [', where the device was asked for its body', true],
   ])('lie apart and inside the menu at the mirror and at the court%s', (_, deviceBody) => {
-    const voices = (phase: BallMenuState['voices']['phase']) =>
+    const voices = (phase: PeopleMenuState['voices']['phase']) =>
       atCourt({
         ready: true,
         others: [ben],
@@ -465,7 +469,7 @@ describe('the buttons of the menu', () => {
     expect(labels(atCourt())).not.toContain('Invite');
     expect(labels(atCourt({ others: [ben] }))).toContain('Players');
     expect(labels(atCourt())).not.toContain('Players');
-    const talking = (phase: BallMenuState['voices']['phase'], muted = true, microphoneMissing = false) =>
+    const talking = (phase: PeopleMenuState['voices']['phase'], muted = true, microphoneMissing = false) =>
       labels(atCourt({ voices: { phase, muted, microphoneMissing } }));
     expect(talking('none').join()).not.toMatch(/Talk|ute me/);
     expect(talking('off')).toContain('Talk');

@@ -2,7 +2,7 @@ import { qrCode } from 'threepoint-ui';
 import { encode } from 'uqr';
 import { describe, expect, test } from 'vitest';
 import { menuHeight, menuMargin, menuWidth } from '../../../../src/page/activity/activity-menu';
-import { invitationSheet, type ShownInvitation } from '../../../../src/page/ball/menu/invitation-sheet';
+import { invitationSheet, type ShownInvitation } from '../../../../src/page/people/menu/invitation-sheet';
 import {
   menuButtons,
   type VrMenuActions,

@@ -4,8 +4,8 @@ import { up, zero } from 'threepoint/math';
 import { stations } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
 import { menuHeight, menuMargin, menuWidth } from '../../../../src/page/activity/activity-menu';
-import { type PlayersSheetActions, playersSheet } from '../../../../src/page/ball/menu/players-sheet';
-import type { OtherPlayer } from '../../../../src/page/ball/panel/other-players';
+import { type PlayersSheetActions, playersSheet } from '../../../../src/page/people/menu/players-sheet';
+import type { OtherPlayer } from '../../../../src/page/people/panel/other-players';
 import {
   menuButtons,
   type VrMenuActions,

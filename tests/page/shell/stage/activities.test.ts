@@ -1,6 +1,6 @@
 import { allReleased, nothingPressed, type TrackingFrame, unknownFingers } from 'threepoint/core';
 import { type Side, vec3 } from 'threepoint/math';
-import { gameNames } from 'threepoint-study';
+import { gameNames } from 'threepoint-games/all';
 import { describe, expect, test, vi } from 'vitest';
 import type { Activity } from '../../../../src/page/activity/activity';
 import { type ArcheryActivity, rangeScene } from '../../../../src/page/archery/archery-activity';

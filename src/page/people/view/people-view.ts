@@ -1,0 +1,79 @@
+import type { Object3D } from 'three';
+import type { HostedGame } from 'threepoint-rooms/room';
+import { disposeTree } from '../../scene/dispose-tree';
+import type { Quality } from '../../scene/renderer';
+import type { SeatFrame } from '../match/match-frame';
+import type { SeatedGame } from '../match/seated-game';
+import type { SeatVoices } from '../voices/seat-voices';
+import type { DisplayedMatch, DisplayedPlayer } from './displayed-match';
+import { LobbySheet } from './lobby-sheet';
+import { createNameLabels, type NameLabels } from './name-labels';
+
+/** One frame of a match as people are shown in it. */
+export interface PeopleScene<Game extends HostedGame> {
+  readonly state: Game['state'];
+  readonly secondsLeft: number;
+  readonly me: number | null;
+  /** By player; null: the seat is free. */
+  readonly attendants: readonly (SeatFrame | null)[];
+  /** The page's time [s], and whether it is still in the room. */
+  readonly pageTime: number;
+  readonly inRoom: boolean;
+  /** A simulated player has the user's seat. */
+  readonly acting: boolean;
+  readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
+  /** The seats of the players that the user has hidden. */
+  readonly hidden: ReadonlySet<number>;
+}
+
+/** Picks what labels show of a player; a label is redrawn when any of it changes. */
+const writtenOf = (attendant: SeatFrame | null): DisplayedPlayer | null =>
+  attendant && {
+    name: attendant.name,
+    bot: attendant.bot,
+    presence: attendant.presence,
+    me: attendant.me,
+    station: attendant.station,
+  };
+
+/** The lobby in front of the user, and the names over the heads of the others. */
+export class PeopleView<Game extends HostedGame> {
+  readonly lobby: LobbySheet<Game>;
+  readonly #names: NameLabels;
+
+  constructor(game: SeatedGame<Game>, quality: Quality) {
+    this.lobby = new LobbySheet(game, quality);
+    this.#names = createNameLabels(game.roles, quality);
+  }
+
+  /** The names, in the arena frame. */
+  get names(): Object3D {
+    return this.#names.object;
+  }
+
+  /** Shows a frame to eyes at this height [m]. Returns the match as boards show it. */
+  show(scene: PeopleScene<Game>, eyeHeight: number): DisplayedMatch<Game['state']> {
+    const { state, attendants, me, acting } = scene;
+    const players = attendants.map(writtenOf);
+    const match = { state, seconds: Math.ceil(scene.secondsLeft), players, me, acting };
+    this.lobby.show(match, eyeHeight, scene.pageTime, scene.inRoom);
+    this.#showNames(scene, players);
+    return match;
+  }
+
+  dispose(): void {
+    disposeTree(this.lobby.object);
+    disposeTree(this.#names.object);
+  }
+
+  #showNames({ attendants, voices, hidden }: PeopleScene<Game>, people: readonly (DisplayedPlayer | null)[]): void {
+    this.#names.show(
+      attendants.map((attendant, player) => {
+        const person = people[player];
+        if (!attendant?.head || !person || person.me || hidden.has(player)) return null;
+        const { head, opacity } = attendant;
+        return { person, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };
+      }),
+    );
+  }
+}

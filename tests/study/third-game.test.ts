@@ -1,0 +1,34 @@
+import { expect, test } from 'vitest';
+import { english } from '../../src/study/model/phrases/english';
+import { shippedPhrases } from '../../src/study/model/phrases/phrases';
+import { checkedPlan } from '../../src/study/model/plan/plan';
+import { checkedRecord, type TrialRecord } from '../../src/study/model/records/study-record';
+import { studyTables } from '../../src/study/model/tables/study-tables';
+import { modelsWith, simulateStudy } from '../../src/study/simulation/simulate-study';
+import { paperPlan } from './model/studies';
+
+/** The paper's study with one task: this game, for groups of two. */
+function touchPlan() {
+  const { planned: _, tasks, ...paper } = paperPlan();
+  const [task] = tasks;
+  const touch = { ...task, id: 'touch', game: 'touch', groupSize: 2, questionnaire: 'nasa-tlx-raw' };
+  return checkedPlan({ ...paper, participants: 8, tasks: [touch] });
+}
+
+test('an entry makes a game a task in two languages', () => {
+  const key = 'ready.touch' as 'ready.ball';
+  expect([english[key], shippedPhrases.de?.[key]]).toEqual([
+    'Touch the lit targets with your hands.',
+    'Berühren Sie die leuchtenden Ziele.',
+  ]);
+});
+
+test('a plan has the third game, and its recorded trial is a row of the table', () => {
+  const plan = touchPlan();
+  const simulated = simulateStudy(plan, modelsWith(plan, { answers: {}, scores: {} }), 5, 1e9);
+  const example = simulated[0]?.records.find(({ kind }) => kind === 'trial') as TrialRecord;
+  const outcome = { ...example.body.outcome, score: 8, maximum: 8, ended: 'all-touched' };
+  const record = checkedRecord({ ...example, body: { ...example.body, outcome } }, plan);
+  const table = studyTables([record], plan).find(({ name }) => name === 'trials');
+  expect(table?.rows[0]).toMatchObject({ task: 'touch', score: 8, maximum: 8, percent: 100, ended: 'all-touched' });
+});
