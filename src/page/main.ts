@@ -78,9 +78,7 @@ async function joinStudyOfAddress(page: Page): Promise<void> {
   if (study) await joinStudy(page, study);
 }
 
-/**
- * Stores an offline copy of the page after everything has loaded. A study needs its server, so it stores none.
- */
+/** Stores an offline copy of the page after everything has loaded. A study needs its server, so it stores none. */
 function storeOfflineCopy({ kept, switches }: Page): void {
   // Only a production build has a service worker.
   if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);

@@ -52,9 +52,7 @@ export function createArcheryView({ quality, distances, onCaption }: ArcheryView
     bow: bow.object,
     result,
     sound: sounds.stage,
-    /**
-     * Draws a state at a match time [s], with the tracked bow and head, floor frame. `bowView`: null hides the bow.
-     */
+    /** Draws a state at a match time [s], with the tracked bow and head, floor frame. `bowView`: null hides the bow. */
     show(state: ArcheryState, bowView: BowView | null, matchTime: number, head: Pose<'floor'>): void {
       shown = state;
       sounds.setListener(head);

@@ -57,9 +57,7 @@ export class Emulator {
     };
   }
 
-  /**
-   * Moves headset and controllers to the head and wrists of a frame, to within 0.1 mm, and presses these buttons.
-   */
+  /** Moves headset and controllers to the head and wrists of a frame, to within 0.1 mm, and presses these buttons. */
   drive(frame: TrackingFrame, buttons?: Buttons): void {
     // In the manual mode the panel would reset every pose in each frame.
     this.device.controlMode = 'programmatic';

@@ -1,9 +1,7 @@
 import { InstancedMesh, Mesh, type Object3D, Sprite } from 'three';
 import { texturesOf } from './material-textures';
 
-/**
- * Removes an object, and disposes the geometries, materials and textures of it and its descendants.
- */
+/** Removes an object, and disposes the geometries, materials and textures of it and its descendants. */
 export function disposeTree(root: Object3D): void {
   root.removeFromParent();
   root.traverse((object) => {

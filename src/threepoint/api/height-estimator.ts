@@ -17,9 +17,7 @@ interface HeightEstimatorOptions {
    * taller.
    */
   onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
-  /**
-   * Called when a calibrated user stands `difference` [m] taller than their calibration; once for each calibration.
-   */
+  /** Called when a calibrated user stands `difference` [m] taller than their calibration; once for each calibration. */
   onMismatch(difference: number): void;
 }
 

@@ -17,9 +17,7 @@ import { createZone } from './zone';
  */
 const towardsSun = new Vector3(8.5, 11, 7.5);
 
-/**
- * Builds the place where archery is played, instead of the studio; arena frame. Signs stand at these distances [m].
- */
+/** Builds the place where archery is played, instead of the studio; arena frame. Signs stand at these distances [m]. */
 export function createRange(quality: Quality, distances: readonly number[]) {
   const object = new Group();
   object.name = 'archery range';

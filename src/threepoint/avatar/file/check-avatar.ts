@@ -23,9 +23,7 @@ export interface CheckedAvatar {
   readonly hash: string | null;
 }
 
-/**
- * Checks a file without decoding it; the given bytes may be transferred. Rejects with an Error that names the file.
- */
+/** Checks a file without decoding it; the given bytes may be transferred. Rejects with an Error that names the file. */
 export type AvatarCheck = (bytes: ArrayBuffer, question: AvatarCheckOptions) => Promise<CheckedAvatar>;
 
 /**

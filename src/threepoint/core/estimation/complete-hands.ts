@@ -106,7 +106,7 @@ interface HandState {
 }
 
 /** The state of `completeHands` for one user, and the frame it returns. */
-interface CompleteHandsState {
+export interface CompleteHandsState {
   readonly bodyHeading: BodyHeading;
   /** Origin on the floor under the head joint, yaw of the body. */
   readonly floorFromBody: MutableTransform<'floor', 'body'>;

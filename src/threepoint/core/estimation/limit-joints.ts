@@ -7,7 +7,7 @@ import smoothing from './smoothing.json' with { type: 'json' };
 
 const { catchUpSpeed, doubtfulSpeed } = smoothing;
 
-interface LimitJointsState {
+export interface LimitJointsState {
   /** False before the first frame, which passes unchanged. */
   known: boolean;
   /** The joints from the headset [m], floor axes. */

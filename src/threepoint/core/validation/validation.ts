@@ -1,9 +1,6 @@
 import * as v from 'valibot';
 
-/**
- * The error of an invalid input; the message names the field: "paper.json: tasks[1].seconds: expected a
- * number".
- */
+/** The error of an invalid input; the message names the field: "paper.json: tasks[1].seconds: expected a number". */
 export class ValidationError extends Error {
   /** The path of the field; empty: the whole input. */
   readonly field: string;

@@ -80,7 +80,7 @@ interface ArmState extends SwivelState {
   forearmTwist: number;
 }
 
-interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
+export interface FitArmsState extends Readonly<Record<Side, ArmState>> {}
 
 const makeArmState = (): ArmState => ({
   known: false,

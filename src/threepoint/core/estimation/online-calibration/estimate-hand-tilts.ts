@@ -28,7 +28,7 @@ interface HandTiltState {
   readonly observed: MutableVec3;
 }
 
-interface HandTiltsState {
+export interface HandTiltsState {
   readonly left: HandTiltState;
   readonly right: HandTiltState;
   /** The rotation of each hand in its own frame after which its −Z continues the forearm. */

@@ -8,7 +8,7 @@ import headsetRise from './headset-rise.json' with { type: 'json' };
 const { furthest, hanging, share: fraction, speed, unremarkable, usualReach } = headsetRise;
 
 /** The estimate of the headset's rise above its nominal position on the head. */
-interface HeadsetRiseState {
+export interface HeadsetRiseState {
   /** Tracked quantile of the shoulder–wrist distance while the arm hangs [arm lengths]. */
   readonly reach: Record<Side, number>;
   /** [m] */

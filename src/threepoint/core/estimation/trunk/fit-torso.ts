@@ -73,7 +73,7 @@ export interface TorsoPose {
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
 
-interface FitTorsoState {
+export interface FitTorsoState {
   /** False before the first frame. */
   known: boolean;
   readonly pose: TorsoPose;
