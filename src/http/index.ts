@@ -1,7 +1,7 @@
 // "threepoint-http": the parts of an HTTP server that rooms and studies share.
 export { AdminGuard } from './admin-guard';
 export type { AuthAttempt, FailedAttempt } from './auth-throttle';
-export { createAuthThrottle, TooManyAttempts } from './auth-throttle';
+export { createAuthThrottle } from './auth-throttle';
 export type { ClientAddress } from './client-address';
 export { clientAddressOf, findClientAddress, requiredAddress } from './client-address';
 export { ConfigurationError } from './configuration-error';
