@@ -1,9 +1,8 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import type { Logger } from 'pino';
-import { type AuthThrottle, createAuthThrottle, TooManyAttempts } from './auth-throttle';
+import { type AuthThrottle, createAuthThrottle } from './auth-throttle';
 import { clientAddressOf } from './client-address';
-import { tooManyRequests } from './rate-limit';
 
 const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
 
@@ -30,11 +29,6 @@ export class AdminGuard {
     const secret = /^Bearer (\S{1,256})$/.exec(request.headers.authorization ?? '')?.[1];
     if (adminToken === null || secret === undefined) return false;
     const guess = { what: 'token', address: clientAddressOf(request, trustProxy), of: null, secret } as const;
-    try {
-      return await this.#throttle.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
-    } catch (error) {
-      if (!(error instanceof TooManyAttempts)) throw error;
-      throw tooManyRequests(error.message, error.retryAfterSeconds);
-    }
+    return this.#throttle.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
   }
 }

@@ -1,6 +1,8 @@
 import { createHash } from 'node:crypto';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { ClientAddress } from './client-address';
+import type { HttpError } from './http-error';
+import { tooManyRequests } from './rate-limit';
 
 /** The kind of a secret: a server's token, a code that withdraws a participant's data, or an invitation to a study. */
 type SecretKind = 'token' | 'withdrawal code' | 'invitation';
@@ -22,22 +24,16 @@ export interface AuthAttempt {
   readonly secret: string;
 }
 
-/** The error of an attempt that is not checked, because too many attempts before it failed. */
-export class TooManyAttempts extends Error {
-  readonly retryAfterSeconds: number;
-
-  constructor(what: SecretKind, retryAfterSeconds: number) {
-    super(`too many wrong guesses of the ${what}; try again in ${retryAfterSeconds} s`);
-    this.retryAfterSeconds = retryAfterSeconds;
-  }
-}
+/** Returns the refusal of an attempt that is not checked, because too many attempts before it failed. */
+const tooManyAttempts = (what: SecretKind, seconds: number): HttpError =>
+  tooManyRequests(`too many wrong guesses of the ${what}; try again in ${seconds} s`, seconds);
 
 /** Limits how often secrets may be tried: the delay grows with the number of failed attempts. */
 export interface AuthThrottle {
   /**
-   * Calls `isRight` if this address and this study may attempt again; throws TooManyAttempts otherwise. `isRight` is
-   * synchronous; if it throws, no attempt is counted. A repeated wrong secret counts once. A secret that was right
-   * before is never delayed.
+   * Calls `isRight` if this address and this study may attempt again; rejects with an HttpError 429 otherwise. If
+   * `isRight` fails, no attempt is counted. A repeated wrong secret counts once. A secret that was right before is
+   * never delayed.
    */
   attempt(guess: AuthAttempt, isRight: () => boolean | Promise<boolean>): Promise<boolean>;
 }
@@ -99,11 +95,11 @@ export function createAuthThrottle(onWrong: (guess: FailedAttempt) => void): Aut
       if ((await wrong.get(digest)) !== null) return false;
       const study = JSON.stringify([what, of]);
       const wait = await byAddress.take(network);
-      if (wait !== null) throw new TooManyAttempts(what, wait);
+      if (wait !== null) throw tooManyAttempts(what, wait);
       const studyWait = await byStudy.take(study);
       if (studyWait !== null) {
         await byAddress.giveBack(network);
-        throw new TooManyAttempts(what, studyWait);
+        throw tooManyAttempts(what, studyWait);
       }
       let opens: boolean;
       try {

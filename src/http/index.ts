@@ -1,6 +1,6 @@
 // "threepoint-http": the parts of an HTTP server that rooms and studies share.
 export { AdminGuard } from './admin-guard';
-export { type AuthAttempt, createAuthThrottle, type FailedAttempt, TooManyAttempts } from './auth-throttle';
+export { type AuthAttempt, createAuthThrottle, type FailedAttempt } from './auth-throttle';
 export { type ClientAddress, clientAddressOf, findClientAddress, requiredAddress } from './client-address';
 export { ConfigurationError } from './configuration-error';
 export { ConnectionLimiter, createSlotCounter } from './connection-limiter';

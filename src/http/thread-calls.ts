@@ -88,11 +88,13 @@ export class ThreadCalls<Api extends ThreadApi> {
     if (this.#unfinished >= maxCalls || this.#bytes + bytes > maxBytes) {
       return Promise.reject(new ThreadUnavailable('full'));
     }
-    this.#unfinished += 1;
-    this.#bytes += bytes;
     const { port1: answers, port2: port } = new MessageChannel();
     return new Promise((resolve, reject) => {
       const until = patient ? null : clockMs() + deadlineMs;
+      const message: CallMessage = { name, args, until, port };
+      this.#worker.postMessage(message, [port, ...buffersIn(args)]);
+      this.#unfinished += 1;
+      this.#bytes += bytes;
       // Timers count from the start of the event loop's turn: an early one would reject a call that is still run.
       const expire = (): void => {
         if (until !== null && clockMs() <= until) timer = setTimeout(expire, 1);
@@ -109,8 +111,6 @@ export class ThreadCalls<Api extends ThreadApi> {
       };
       const end = () => finish({ error: new ThreadUnavailable('ended') });
       answers.once('message', finish).once('close', end);
-      const message: CallMessage = { name, args, until, port };
-      this.#worker.postMessage(message, [port, ...buffersIn(args)]);
     });
   }
 }

@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { createAuthThrottle, type FailedAttempt, TooManyAttempts } from '../../src/http/auth-throttle';
+import { createAuthThrottle, type FailedAttempt } from '../../src/http/auth-throttle';
 import { type ClientAddress, parseClientAddress } from '../../src/http/client-address';
+import { HttpError } from '../../src/http/http-error';
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -31,8 +32,9 @@ function throttled(secret = 'the right one') {
         return said === secret;
       });
     } catch (error) {
-      if (!(error instanceof TooManyAttempts)) throw error;
-      return error.retryAfterSeconds;
+      if (!(error instanceof HttpError)) throw error;
+      expect(error.status).toBe(429);
+      return Number(error.headers['retry-after']);
     }
   };
   return { guess, wrong, lookedAt: () => lookedAt };

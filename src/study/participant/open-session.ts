@@ -83,12 +83,16 @@ function lockParticipant({ study, participant }: StudyPlace): Promise<boolean> {
 
 /**
  * Resolves with the progress that was reported to the server, or with null if there is none or the server does not
- * answer.
+ * answer; "replaced": the session is of a simulated study that another one has replaced.
  */
-async function reportedProgress(client: ParticipantClient, session: KeptSession): Promise<Progress | null> {
+async function reportedProgress(
+  client: ParticipantClient,
+  session: KeptSession,
+): Promise<Progress | null | 'replaced'> {
   try {
     return await client.progress(session);
   } catch (error) {
+    if (session.simulated && error instanceof Refusal && error.reason === 'unauthorised') return 'replaced';
     if (error instanceof ServerUnreachable || error instanceof Refusal) return null;
     throw error;
   }
@@ -104,8 +108,9 @@ export async function openSession(place: StudyPlace, opening: OpeningOptions): P
   if (!(await lockParticipant(place))) throw new PhrasedError('entrance.otherTab', { participant });
   const { vault, kept } = await readDevice(place, opening.storageLimitMs);
   const options = { ...opening, vault };
-  if (kept) {
-    const known = await reportedProgress(client, kept.session);
+  const known = kept && (await reportedProgress(client, kept.session));
+  if (known === 'replaced') await vault?.forget(place);
+  else if (kept) {
     const later = known && isLater(scheduleFor(kept.session.plan, participant), known, kept.session.progress);
     const newest = later ? { ...kept.session, progress: known } : kept.session;
     const session = new ParticipantSession(newest, kept, options);

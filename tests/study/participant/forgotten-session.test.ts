@@ -1,6 +1,8 @@
 import { expect, test } from 'vitest';
+import { replaceSimulated } from '../../../src/study/pages/experimenter/store-simulation';
 import { openStudyVault } from '../../../src/study/participant/session/study-vault';
-import { beforeTheQuestions, choose } from './participant-steps';
+import { agree, beforeTheQuestions, choose } from './participant-steps';
+import { browser } from './study-browser';
 import { place, studyServer } from './study-server';
 
 test('a press after a withdrawal in another tab stores no participant in this browser', async () => {
@@ -18,4 +20,19 @@ test('a press after a withdrawal in another tab stores no participant in this br
   expect(await vault.records(place)).toEqual([]);
   // Nothing is lost that should be kept: the page may be closed without a question.
   expect(tab.visit.losesAnswers).toBe(false);
+});
+
+test('the next try of a plan begins with consent in the same browser', async () => {
+  const server = await studyServer();
+  const { open } = browser(server);
+  const tryIt = async () => {
+    const { id } = await replaceSimulated(server.experimenter, server.plan);
+    const [first] = await server.experimenter.participants(id);
+    return open({ study: id, invitation: first?.invitation ?? null });
+  };
+  const tab = await tryIt();
+  await agree(tab);
+  await tab.exchange();
+  tab.close();
+  expect((await tryIt()).display.shown).toBe('consent');
 });

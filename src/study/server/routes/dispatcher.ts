@@ -87,7 +87,7 @@ export class StudyDispatcher {
 
   /** Resolves with the answer to a request that is not permitted, before its body is read; undefined: it is. */
   async admit(request: StudyRequest): Promise<HttpResponse | undefined> {
-    const { access, effect } = request.route;
+    const { access, effect } = this.#routeOf(request);
     try {
       await untilUnlocked(performance.now() + lockedMs, () => this.#guard.admit(access, senderOf(request)));
       return undefined;
@@ -98,20 +98,20 @@ export class StudyDispatcher {
 
   /** Handles a request. If its route takes a body, it was admitted before. */
   async handle(request: StudyRequest, body: Uint8Array<ArrayBuffer>): Promise<HttpResponse> {
-    const { access, bodyLimit, effect } = request.route;
-    const changes = effect !== 'reads';
+    const route = this.#routeOf(request);
+    const changes = route.effect !== 'reads';
     try {
       const sender = senderOf(request);
       const call = { ...sender, at: request.at, query: new URLSearchParams(request.query), body };
       const until = performance.now() + lockedMs;
-      if (bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(access, sender));
-      const run = () => untilUnlocked(until, () => this.#routeOf(request).handle(call));
+      if (route.bodyLimit === 0) await untilUnlocked(until, () => this.#guard.admit(route.access, sender));
+      const run = () => untilUnlocked(until, () => route.handle(call));
       const answer = await (changes ? this.#afterEarlierChanges(run) : run());
       if (changes) await this.#store.flushed();
       const text = answer.body;
       return typeof text === 'string' ? { ...answer, body: new TextEncoder().encode(text) } : answer;
     } catch (error) {
-      return this.#answerTo(error, effect);
+      return this.#answerTo(error, route.effect);
     }
   }
 

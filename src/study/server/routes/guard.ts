@@ -7,7 +7,6 @@ import {
   createAuthThrottle,
   type FailedAttempt,
   requiredAddress,
-  TooManyAttempts,
   tooManyRequests,
 } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
@@ -74,14 +73,8 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
 
   type Attempted = Omit<AuthAttempt, 'address'> & Pick<Sender, 'address'>;
 
-  async function attempt({ address, ...guess }: Attempted, isRight: () => Awaitable<boolean>): Promise<boolean> {
-    try {
-      return await throttle.attempt({ ...guess, address: requiredAddress(address) }, isRight);
-    } catch (error) {
-      if (!(error instanceof TooManyAttempts)) throw error;
-      throw tooManyRequests(error.message, error.retryAfterSeconds);
-    }
-  }
+  const attempt = async ({ address, ...guess }: Attempted, isRight: () => Awaitable<boolean>): Promise<boolean> =>
+    throttle.attempt({ ...guess, address: requiredAddress(address) }, isRight);
 
   async function isExperimenter({ token, address }: Pick<Sender, 'token' | 'address'>): Promise<boolean> {
     if (token === null) return false;
