@@ -217,9 +217,9 @@ export abstract class MatchActivity<
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
-    const { lobby } = this.#parts.view.people;
-    const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
-    lobby.setHovered(hit?.id ?? null);
+    const { sheet } = this.#parts.view.people.lobby;
+    const hit = this.#ended ? null : sheet.buttonAt(origin, direction);
+    sheet.setHovered(hit?.id ?? null);
     if (!hit) return null;
     if (press) this.#press(hit.id);
     return { ...hit, owner: 'lobby' };
