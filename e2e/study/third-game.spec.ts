@@ -127,12 +127,13 @@ test('two participants play the third game in a study, and their trials are reco
   for (const page of pages) await press(page, 'start');
   const all = <T>(act: (page: Page) => Promise<T>) => Promise.all(pages.map(act));
   await expect.poll(() => all(async (page) => (await match(page))?.phase), patience).toEqual(['running', 'running']);
+  // A page leaves the game soon after the round is over.
   await expect
     .poll(async () => {
       await all(touchLitTarget);
-      return all(async (page) => (await match(page))?.phase);
+      return all(async (page) => (await study(page)).running);
     }, patience)
-    .toEqual(['over', 'over']);
+    .toEqual([false, false]);
   for (const page of pages) await expect.poll(async () => (await study(page)).unsent, patience).toBe(0);
   await expect.poll(async () => (await recordsOf(origin, 'lamps')).filter(isTrial).length, patience).toBe(2);
   const trials = (await recordsOf(origin, 'lamps')).filter(isTrial);

@@ -45,6 +45,7 @@ export const ballGame: SeatedGame<BallGame> = {
   terms: ({ seconds, balls }): BallTerms => ({ ...(seconds && { seconds }), ...(balls && { balls }) }),
   matchPolicy: (terms, seed) => new BallPolicy({ ...terms, seed }),
   roles: ['Thrower 1', 'Thrower 2', 'Basket holder'],
+  bots: true,
   stationOf: ({ players }, seat) => players[seat]?.station ?? seat,
   figures: ({ score, options, startedAt, end }) => ({
     ...{ score, of: options.balls },

@@ -42,9 +42,6 @@ const origin: Transform<'floor', 'arena'> = {
 };
 const unseenPalms: Palms = { left: null, right: null };
 
-const stationOf = ({ players }: BallState, me: number | null): number | null =>
-  me === null ? null : (players[me]?.station ?? null);
-
 /** The view of the ball game without the players' bodies. */
 export class BallView {
   readonly people: PeopleView<BallGame>;
@@ -99,8 +96,8 @@ export class BallView {
     this.#pops.show(pageTime, eyes);
     const standing = this.people.show(scene, head.position.y);
     this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
-    const station = stationOf(state, me);
-    this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
+    const station = me === null ? undefined : stations[ballGame.stationOf(state, me)];
+    this.#ring.show(station?.position ?? null, eyes);
   }
 
   /** Plays and captions the events since the last frame, and writes them on the board. Call it after `show`. */

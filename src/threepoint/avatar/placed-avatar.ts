@@ -1,16 +1,8 @@
 import { Group, type Mesh, type MeshBasicMaterial, type PlaneGeometry } from 'three';
-import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
+import type { RemotePerson } from '../core/body/remote-person';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
-
-/** A person in one frame, in the frame of the person's own floor. */
-interface DrawnPerson {
-  readonly calibration: Calibration;
-  readonly pose: AvatarPose;
-  /** 1: live. Less: a ghost. */
-  readonly opacity: number;
-}
 
 /** An avatar on the floor of another person. Measures and opacity are set only when they change. */
 export class PlacedAvatar {
@@ -31,7 +23,11 @@ export class PlacedAvatar {
   }
 
   /** Poses the avatar at a time [s]. `mouth`: 0 shut to 1. */
-  draw({ calibration, pose, opacity }: DrawnPerson, mouth: number, time: number): void {
+  draw(
+    { calibration, pose, opacity }: Pick<RemotePerson, 'calibration' | 'pose' | 'opacity'>,
+    mouth: number,
+    time: number,
+  ): void {
     const { avatar } = this;
     if (!this.#fitted || !sameMeasures(this.#fitted, calibration)) {
       this.#fitted = calibration;

@@ -75,9 +75,7 @@ export interface MatchOpening<Game extends HostedGame> {
   readonly mannequin: ArrayBuffer;
 }
 
-const noBodies: MatchFrame['bodies'] = [];
-const noEvents: readonly never[] = [];
-const noSeats: readonly never[] = [];
+const none: readonly never[] = [];
 /** How long the notice of a voided match is shown [s]. */
 const noticeSeconds = 8;
 const voidedNotice = 'The server was restarted, so this round does not count. You can start a new one.';
@@ -174,7 +172,7 @@ export abstract class MatchActivity<
   begin(time: number): void {
     this.#now = time;
     this.play.begin(time);
-    this.blocked.update(this.play.room?.seats ?? noSeats);
+    this.blocked.update(this.play.room?.seats ?? none);
     this.voices.begin();
     this.#bodies.share();
     this.#place();
@@ -196,7 +194,7 @@ export abstract class MatchActivity<
   show(time: number, frame: TrackingFrame | null): void {
     if (!frame) this.play.follow(time, null, nothingPressed);
     const newest = this.play.newest;
-    const bodies = newest?.bodies ?? noBodies;
+    const bodies = newest?.bodies ?? none;
     this.voices.seats.locate(bodies);
     this.#bodies.show(this.blocked.visible(bodies), time);
     if (!newest) return;
@@ -213,13 +211,13 @@ export abstract class MatchActivity<
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
-    view.playEvents?.(newest.resumed ? noEvents : newest.events, newest);
+    view.playEvents?.(newest.resumed ? none : newest.events, newest);
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
-    const { lobby } = this.#parts.view.people;
-    const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
-    lobby.setHovered(hit?.id ?? null);
+    const { sheet } = this.#parts.view.people.lobby;
+    const hit = this.#ended ? null : sheet.buttonAt(origin, direction);
+    sheet.setHovered(hit?.id ?? null);
     if (!hit) return null;
     if (press) this.#press(hit.id);
     return { ...hit, owner: 'lobby' };

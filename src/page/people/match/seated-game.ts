@@ -44,6 +44,8 @@ export interface SeatedGame<Game extends HostedGame> {
   matchPolicy(terms: object, seed: number): MatchPolicy<Game>;
   /** The roles of players by station, in the words of labels and lists. */
   readonly roles: readonly string[];
+  /** Whether bots of the page can take free seats. */
+  readonly bots: boolean;
   /** Returns the station of the player on a seat. */
   stationOf(state: Game['state'], seat: number): number;
   figures(state: Game['state']): MatchFigures;

@@ -26,7 +26,7 @@ export interface MatchBarState {
 }
 
 /** What the bar has from its game. */
-export type GameOnBar = Pick<SeatedGame<HostedGame>, 'name' | 'roles' | 'rules' | 'option'>;
+export type GameOnBar = Pick<SeatedGame<HostedGame>, 'name' | 'roles' | 'bots' | 'rules' | 'option'>;
 
 export interface MatchBarActions {
   ready(on: boolean): void;
@@ -89,6 +89,7 @@ function createPlayers(game: GameOnBar, actions: MatchBarActions, setSound: (on:
   const bots = toggle('Bots take free places', actions.setBots);
   const option = toggle(game.option?.label ?? '', actions.setOption);
   option.node.hidden = game.option === undefined;
+  bots.node.hidden = !game.bots;
   const sound = toggle('Sound', setSound);
   const name = element('input', { type: 'text', maxlength: 24, autocomplete: 'nickname', 'aria-label': 'Your name' });
   name.addEventListener('change', () => actions.setName(name.value));
@@ -220,7 +221,7 @@ const serverTexts: Readonly<Record<ServerState, string | null>> = {
   unknown: null,
   asked: null,
   here: null,
-  none: 'This page’s host has no threepoint server, so there are no shared rooms. You can play alone with bots.',
+  none: 'This page’s host has no threepoint server, so there are no shared rooms.',
   silent: 'The server with the shared rooms does not answer. Try again later.',
 };
 
@@ -243,7 +244,8 @@ function createCompany(game: GameOnBar, actions: MatchBarActions) {
     ),
     show({ room, server, round }: MatchBarState): void {
       // In a room the banner describes the problem with its server.
-      const text = room === null ? serverTexts[server] : null;
+      const alone = game.bots && server === 'none' ? ' You can play alone with bots.' : '';
+      const text = room === null && serverTexts[server] !== null ? serverTexts[server] + alone : null;
       if (status.textContent !== (text ?? '')) status.textContent = text;
       status.hidden = text === null;
       openRoom.hidden = room !== null || text !== null;

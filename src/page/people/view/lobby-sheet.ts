@@ -41,22 +41,14 @@ export function lobbyButtons<Game extends HostedGame>(
 export class LobbySheet<Game extends HostedGame> {
   readonly object = new Group();
   readonly #game: SeatedGame<Game>;
-  readonly #sheet: ReturnType<typeof createSheet<LobbyButton>>;
+  readonly sheet: ReturnType<typeof createSheet<LobbyButton>>;
 
   constructor(game: SeatedGame<Game>, quality: Quality) {
     this.#game = game;
-    this.#sheet = createSheet<LobbyButton>({ ...lobbySize, metres: 1.3 }, quality);
+    this.sheet = createSheet<LobbyButton>({ ...lobbySize, metres: 1.3 }, quality);
     this.object.name = 'lobby';
     this.object.position.z = -1.9;
-    this.object.add(this.#sheet.mesh);
-  }
-
-  get buttonAt() {
-    return this.#sheet.buttonAt;
-  }
-
-  get setHovered() {
-    return this.#sheet.setHovered;
+    this.object.add(this.sheet.mesh);
   }
 
   /**
@@ -66,12 +58,12 @@ export class LobbySheet<Game extends HostedGame> {
     const { state, players, me, acting } = match;
     this.object.position.y = Math.max(0.75, eyeHeight - 0.16);
     if (state.phase === 'running' || !inRoom) {
-      this.#sheet.show(null, time);
+      this.sheet.show(null, time);
       return;
     }
     const game = this.#game;
     const seats = state.players.map(({ ready }, seat) => [ready, game.stationOf(state, seat)]);
-    this.#sheet.show(
+    this.sheet.show(
       {
         key: JSON.stringify([
           state.phase,

@@ -2,7 +2,7 @@ import type { Object3D } from 'three';
 import type { HostedGame } from 'threepoint-rooms/room';
 import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
-import type { SeatFrame } from '../match/match-frame';
+import type { MatchFrame, SeatFrame } from '../match/match-frame';
 import type { SeatedGame } from '../match/seated-game';
 import type { SeatVoices } from '../voices/seat-voices';
 import type { DisplayedMatch, DisplayedPlayer } from './displayed-match';
@@ -10,10 +10,7 @@ import { LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
 
 /** One frame of a match as people are shown in it. */
-export interface PeopleScene<Game extends HostedGame> {
-  readonly state: Game['state'];
-  readonly secondsLeft: number;
-  readonly me: number | null;
+export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Game>, 'state' | 'secondsLeft' | 'me'> {
   /** By player; null: the seat is free. */
   readonly attendants: readonly (SeatFrame | null)[];
   /** The page's time [s], and whether it is still in the room. */

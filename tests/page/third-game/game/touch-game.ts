@@ -12,6 +12,7 @@ export const touchGame: SeatedGame<TouchGame> = {
   terms: ({ seconds }) => ({ ...(seconds && { seconds }) }),
   matchPolicy: touchPolicy,
   roles: ['Left player', 'Right player'],
+  bots: false,
   stationOf: (_state, seat) => seat,
   figures: (state) => ({ ...state, score: score(state), of: state.goal, end: state.end as 'time' | null }),
   secondsLeft: ({ phase, seconds, tick, startedAt }, last) =>
