@@ -6,6 +6,7 @@ export type { ClientAddress } from './client-address';
 export { clientAddressOf, findClientAddress, requiredAddress } from './client-address';
 export { ConfigurationError } from './configuration-error';
 export { ConnectionLimiter, createSlotCounter } from './connection-limiter';
+export { invalidVariable, numberFrom, splitList } from './environment';
 export { GroupCommit } from './group-commit';
 export { guarded } from './guarded';
 export { HttpError } from './http-error';

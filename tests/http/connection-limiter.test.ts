@@ -8,8 +8,8 @@ import { ConnectionLimiter } from '../../src/http/connection-limiter';
 import { noPage } from '../../src/http/router';
 import { serve } from '../../src/http/web-server';
 import { isNightly } from '../nightly';
+import { relayOfTest } from '../relay/until-finished';
 import { reportFigures } from '../reliability/report-figures';
-import { relayOfTest } from '../rooms/server/until-finished';
 import { forkServer, probeHealth } from '../server/server-child';
 import { directoryWith } from '../temporary-directory';
 

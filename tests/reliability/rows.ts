@@ -270,7 +270,7 @@ export const attackRows = {
     sees: 'An invalid packet ends its own connection only',
     target: '0 processes ended; others are answered',
     shows: ['processes ended'],
-    tests: ['tests/rooms/server/any-packet.test.ts', 'tests/rooms/protocol/messages.test.ts'],
+    tests: ['tests/relay/any-packet.test.ts', 'tests/rooms/protocol/messages.test.ts'],
   },
   'hostile-player': {
     inject: 'A player forges positions and times, and changes body, voice and seat endlessly',
@@ -314,13 +314,13 @@ export const attackRows = {
     sees: 'Ticks are on time; nothing remains afterwards',
     target: 'event loop p99 20 ms on an idle machine; memory within 5 %',
     shows: ['poses delivered [%]', 'event loop p99 [ms]'],
-    tests: ['tests/rooms/server/crowded-rooms.test.ts'],
+    tests: ['tests/relay/crowded-rooms.test.ts'],
   },
   'voice-signals': {
     inject: 'A seated player signals video, data channels, a second voice or foreign addresses',
     sees: 'Room and page refuse',
     target: '0 passed on',
-    tests: ['tests/rooms/protocol/messages.test.ts', 'tests/rooms/server/voices.test.ts'],
+    tests: ['tests/rooms/protocol/messages.test.ts', 'tests/relay/voices.test.ts'],
   },
   'unwanted-bodies': {
     inject: 'A body of 200 MB for a route that takes little',
@@ -347,7 +347,7 @@ export const attackRows = {
     sees: 'A sentence; others keep their share; a seat’s files leave with it',
     target: 'a quarter for an address; nothing refused is stored',
     shows: ['stored of four files of 8 MB from one address, of 96 MB'],
-    tests: ['tests/rooms/server/avatars.test.ts', 'e2e/rooms/seen-avatars.spec.ts'],
+    tests: ['tests/relay/avatars.test.ts', 'e2e/rooms/seen-avatars.spec.ts'],
   },
   'full-disk': {
     inject: 'The studies’ disk is full',
@@ -425,7 +425,7 @@ export const attackRows = {
     inject: 'The server’s clock jumps by an hour, either way',
     sees: 'Rooms continue; passes are renewed; records keep their order',
     target: '0 players gone, 0 records refused',
-    tests: ['tests/rooms/server/server-clock.test.ts'],
+    tests: ['tests/relay/server-clock.test.ts'],
   },
   'hidden-tab': {
     inject: 'A player’s tab is hidden for 12 s, 1½ min and 5½ min',

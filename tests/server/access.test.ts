@@ -4,28 +4,20 @@ import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
 import { type BallState, ballKind, ballRoomKind } from 'threepoint-games/ball';
-import { relayConfigurationFrom } from 'threepoint-rooms/settings';
+import { relayConfigurationFrom } from 'threepoint-relay';
 import type * as v from 'valibot';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer as startFromSource } from '../../server/start-server';
+import { RoomTokens } from '../../src/relay/access/room-tokens';
 import { poseEvent } from '../../src/rooms/protocol/socket-parsers';
-import { RoomTokens } from '../../src/rooms/server/access/room-tokens';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { begin } from '../../src/study/model/progress/progress';
 import { checkedRecord } from '../../src/study/model/records/study-record';
 import { openStudyStore } from '../../src/study/server/storage/study-store';
+import { poseBytes, type RunningRelay, rawGuest, rawSocket, startRelay, tokenFor, until } from '../relay/running-relay';
+import { guestOfTest } from '../relay/until-finished';
 import { reportFigures } from '../reliability/report-figures';
-import {
-  poseBytes,
-  type RunningRelay,
-  rawGuest,
-  rawSocket,
-  startRelay,
-  tokenFor,
-  until,
-} from '../rooms/server/running-relay';
-import { guestOfTest } from '../rooms/server/until-finished';
 import { paperPlan, session } from '../study/model/studies';
 import { studySeats } from '../study/server/running-studies';
 import { directoryWith } from '../temporary-directory';

@@ -1,12 +1,12 @@
 import { io } from 'socket.io-client';
-import { RoomTokens } from 'threepoint-rooms/settings';
+import { RoomTokens } from 'threepoint-relay';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { createRoomPass } from '../../../src/rooms/client/room-pass';
 import { pageParser } from '../../../src/rooms/protocol/socket-parsers';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
+import { rawGuest, rawSocket, tokenFor, until } from '../../relay/running-relay';
 import { reportFigures } from '../../reliability/report-figures';
-import { rawGuest, rawSocket, tokenFor, until } from '../../rooms/server/running-relay';
 import { type StartedServer, startServer, testSecret } from '../../server/started-server';
 import { paperPlan } from '../model/studies';
 
