@@ -1,6 +1,6 @@
-// The entry of threepoint-rooms for servers in TypeScript: compiled against the packed packages by `npm run test:full`.
+// The entry of threepoint-relay in TypeScript: compiled against the packed packages by `npm run test:full`.
 import { createServer } from 'node:http';
-import { type AttachedRooms, type AttachRoomsOptions, attachRooms } from 'threepoint-rooms/server';
+import { type AttachedRooms, type AttachRoomsOptions, attachRooms } from 'threepoint-relay';
 
 export async function serve(options: AttachRoomsOptions): Promise<number> {
   const rooms: AttachedRooms = attachRooms(createServer(), { path: '/bodies', seats: 4, ...options });
