@@ -1,8 +1,15 @@
 import { createServer, type IncomingMessage } from 'node:http';
 import type { Socket as NetSocket } from 'node:net';
-import type { Duplex } from 'node:stream';
 import { Server, type Socket } from 'socket.io';
-import { guarded, HttpError, handshakeTimeoutMs, lastResponse, parseRequestTarget, sendError } from 'threepoint-http';
+import {
+  guarded,
+  HttpError,
+  handshakeTimeoutMs,
+  lastResponse,
+  parseRequestTarget,
+  sendError,
+  type UpgradeListener,
+} from 'threepoint-http';
 import { maxMessageBytes, relayParser, TokenBucket } from 'threepoint-rooms/host';
 import { WebSocket, WebSocketServer } from 'ws';
 import type { RelayContext } from '../relay-context';
@@ -12,11 +19,14 @@ import { createUpgradeAdmission } from './upgrade-admission';
 /** The path of the relay's WebSockets. */
 export const relayPath = '/relay';
 
+/** A connection of Engine.IO. */
+type Connection = Socket['conn'];
+
 /** Why the transport ends a connection: it sends too many frames, or reads too slowly. */
 export type WireFault = 'flood' | 'slow';
 
 /** Receives what a connection sends besides socket.io's packets. */
-export interface WireListener {
+interface WireListener {
   onPose(bytes: Uint8Array): void;
   /** Called once before the transport ends the connection; further messages are dropped. */
   onFault(fault: WireFault): void;
@@ -72,13 +82,9 @@ function limitFrames(websocket: WebSocket, now: () => number, onFlood: () => voi
   websocket.on('message', count).on('ping', count).on('pong', count);
 }
 
-export type RelayTransport = ReturnType<typeof createRelayTransport>;
-
-/** The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. */
-export function createRelayTransport(context: RelayContext) {
-  const { log, metrics, now } = context;
-  const admit = createUpgradeAdmission(context);
-  const io = new Server(createServer(), {
+/** Returns socket.io's server of the relay, which passes each new WebSocket to `onOpen` first. */
+const createSocketServer = (onOpen: (websocket: WebSocket, request: IncomingMessage) => void): Server =>
+  new Server(createServer(), {
     path: relayPath,
     serveClient: false,
     connectTimeout: handshakeTimeoutMs,
@@ -87,15 +93,45 @@ export function createRelayTransport(context: RelayContext) {
     allowUpgrades: false,
     perMessageDeflate: false,
     maxHttpBufferSize: maxMessageBytes,
-    wsEngine: webSocketServer((websocket, request) => void websockets.set(request, websocket)),
+    wsEngine: webSocketServer(onOpen),
     // A page that hangs, or reads nothing, is detected within seven seconds.
     pingInterval: 3000,
     pingTimeout: 4000,
   });
-  const { engine } = io;
+
+/**
+ * Returns the listener for requests of upgrades: it opens a WebSocket, or answers why it is refused. It returns false
+ * where the path is not the relay's.
+ */
+function createUpgradeListener(context: RelayContext, { engine }: Server): UpgradeListener {
+  const admit = createUpgradeAdmission(context);
+  return (request, socket, head) => {
+    const target = parseRequestTarget(request.url);
+    if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
+    try {
+      socket.once('close', admit(request, target.query));
+    } catch (error) {
+      if (!(error instanceof HttpError)) throw error;
+      sendError(request, lastResponse(request, socket), error);
+      return true;
+    }
+    engine.handleUpgrade(request as never, socket, head);
+    return true;
+  };
+}
+
+export type RelayTransport = ReturnType<typeof createRelayTransport>;
+
+/** The WebSockets of a relay: opens them, passes on what they receive, and ends those that harm others. */
+export function createRelayTransport(context: RelayContext) {
+  const { log, metrics, now } = context;
   const websockets = new WeakMap<IncomingMessage, WebSocket>();
-  const listeners = new WeakMap<Socket['conn'], WireListener>();
-  function end(conn: Socket['conn'], fault: WireFault): void {
+  const listeners = new WeakMap<Connection, WireListener>();
+  const io = createSocketServer((websocket, request) => void websockets.set(request, websocket));
+  const { engine } = io;
+  const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
+
+  function end(conn: Connection, fault: WireFault): void {
     const listener = listeners.get(conn);
     if (listener) listener.onFault(fault);
     else {
@@ -106,12 +142,9 @@ export function createRelayTransport(context: RelayContext) {
     conn.close();
     destroySoon(conn.request.socket);
   }
-  const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
-  engine.on('connection', (conn: Socket['conn']) => {
-    const raw = conn.request.socket;
-    slowReaders.watch(conn);
-    const websocket = websockets.get(conn.request);
-    if (websocket) limitFrames(websocket, now, () => end(conn, 'flood'));
+
+  /** Passes binary messages to the listener of a connection; one without a listener is closed. */
+  function receivePoses(conn: Connection, websocket: WebSocket): void {
     const onMessage = (message: Buffer, isBinary: boolean): void => {
       if (!isBinary) return;
       const listener = listeners.get(conn);
@@ -122,7 +155,17 @@ export function createRelayTransport(context: RelayContext) {
       log.error({ error: String(error) }, 'a frame failed');
       conn.close();
     };
-    websocket?.on('message', guarded(onMessage, onFault));
+    websocket.on('message', guarded(onMessage, onFault));
+  }
+
+  engine.on('connection', (conn: Connection) => {
+    const raw = conn.request.socket;
+    slowReaders.watch(conn);
+    const websocket = websockets.get(conn.request);
+    if (websocket) {
+      limitFrames(websocket, now, () => end(conn, 'flood'));
+      receivePoses(conn, websocket);
+    }
     conn.once('close', () => destroySoon(raw));
   });
 
@@ -132,10 +175,7 @@ export function createRelayTransport(context: RelayContext) {
     get sockets(): number {
       return engine.clientsCount;
     },
-    /**
-     * Registers the listener for a connection's poses. Binary messages are poses, which socket.io's decoder ignores. A
-     * binary message on a connection without a listener closes it.
-     */
+    /** Registers the listener for a connection's poses: binary messages, which socket.io's decoder ignores. */
     listen: (socket: Socket, listener: WireListener): void => void listeners.set(socket.conn, listener),
     /**
      * Sends a frame of poses past the queues of socket.io and Engine.IO, which cost as much as the system call. Returns
@@ -147,20 +187,7 @@ export function createRelayTransport(context: RelayContext) {
       websocket.send(frame);
       return true;
     },
-    /** Opens a WebSocket, or answers why it is refused. Returns false where the path is not the relay's. */
-    upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean {
-      const target = parseRequestTarget(request.url);
-      if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
-      try {
-        socket.once('close', admit(request, target.query));
-      } catch (error) {
-        if (!(error instanceof HttpError)) throw error;
-        sendError(request, lastResponse(request, socket), error);
-        return true;
-      }
-      engine.handleUpgrade(request as never, socket, head);
-      return true;
-    },
+    upgrade: createUpgradeListener(context, io),
     close(): void {
       slowReaders.stop();
       io.disconnectSockets(true);
