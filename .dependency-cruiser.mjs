@@ -41,14 +41,14 @@ const entryRules = [...manifests].map(([folder, manifest]) => ({
 }));
 
 /** Returns the rules of a package's rooms: each room and the rooms of the package that it may import. */
-const roomRules = (folder, rooms, to = `^${folder}/`) =>
+const roomRules = (folder, rooms) =>
   Object.entries(rooms).map(([room, known]) => ({
     name: `${folder.replaceAll('/', '-')}-${room}`,
     comment: `${folder}/${room} may import ${known.join(', ') || 'no other room'}: anything else would let a change travel upwards.`,
     severity: 'error',
     from: { path: `^${folder}/${room}/` },
     // A module beside the rooms is for all of them.
-    to: { path: to, pathNot: `^${folder}/((${[room, ...known].join('|')})/|[^/]+$)` },
+    to: { path: `^${folder}/`, pathNot: `^${folder}/((${[room, ...known].join('|')})/|[^/]+$)` },
   }));
 
 const coreRooms = {
@@ -78,9 +78,8 @@ const roomsRooms = {
   drawing: ['protocol', 'room', 'client', 'peers'],
   react: ['drawing'],
   voices: ['protocol', 'client'],
-  server: ['protocol', 'room'],
 };
-const roomServerRooms = {
+const relayRooms = {
   settings: [],
   access: ['settings'],
   sockets: ['settings'],
@@ -129,8 +128,8 @@ const floors = 'activity|bones|check|emulator|offline|passthrough|people|scene|s
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
 
 const pure =
-  '^src/((threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/|(rooms/room|study/index)\\.ts$)';
-const runsInNode = '^src/(http|rooms/server|study/(server|cli))/';
+  '^src/((threepoint/core|games|rooms/(protocol|room)|study/(model|statistics|simulation))/|(rooms/(room|host)|study/index)\\.ts$)';
+const runsInNode = '^src/(http|relay|study/(server|cli))/';
 
 export default {
   forbidden: [
@@ -139,18 +138,18 @@ export default {
     ...roomRules('src/threepoint/core', coreRooms),
     ...roomRules('src/threepoint', libraryRooms),
     ...roomRules('src/rooms', roomsRooms),
-    ...roomRules('src/rooms/server', roomServerRooms, '^src/rooms/server/[^/]+/'),
+    ...roomRules('src/relay', relayRooms),
     ...roomRules('src/study', studyRooms),
     ...roomRules('src/study/model', modelRooms),
     ...roomRules('src/study/server', studyServerRooms),
-    ...roomRules('src/page/shell', shellRooms, '^src/page/shell/'),
+    ...roomRules('src/page/shell', shellRooms),
     {
       name: 'rooms-are-known',
       comment: 'A new room of a package needs a line in this file that names the rooms it may import.',
       severity: 'error',
       from: {
-        path: '^src/(threepoint/|rooms/|study/|page/shell/).*/',
-        pathNot: `^src/(page/shell/(${Object.keys(shellRooms).join('|')})|threepoint/(${Object.keys(libraryRooms).join('|')})|rooms/(${Object.keys(roomsRooms).join('|')})|study/(${knownStudyRooms.join('|')}|cli))/`,
+        path: '^src/(threepoint/|rooms/|relay/|study/|page/shell/).*/',
+        pathNot: `^src/(page/shell/(${Object.keys(shellRooms).join('|')})|threepoint/(${Object.keys(libraryRooms).join('|')})|rooms/(${Object.keys(roomsRooms).join('|')})|relay/(${Object.keys(relayRooms).join('|')})|study/(${knownStudyRooms.join('|')}|cli))/`,
       },
       to: {},
     },

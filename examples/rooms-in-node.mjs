@@ -2,8 +2,8 @@
 import { once } from 'node:events';
 import { createServer } from 'node:http';
 import { BodySolver } from 'threepoint';
+import { attachRooms } from 'threepoint-relay';
 import { PoseSender, RemotePoses } from 'threepoint-rooms';
-import { attachRooms } from 'threepoint-rooms/server';
 
 const server = createServer((_request, response) => response.end('my own page'));
 const rooms = attachRooms(server, { logLevel: 'silent' });

@@ -37,7 +37,7 @@ export const exampleNames = allNames.filter((name) => !hasRooms(name));
  * Creates a folder outside the repository with the packages' tarballs, each in a folder of the package's name. There no
  * import resolves to the repository's packages.
  */
-export async function pack(names) {
+export async function pack(names = Object.keys(packages)) {
   const folder = mkdtempSync(join(tmpdir(), 'threepoint-examples-'));
   await buildPackagesWhenStale(names);
   for (const name of names) {
@@ -79,7 +79,7 @@ function isStatic(name) {
 
 /** Builds the examples for a host of files into a folder, with a page that lists them. */
 async function buildStatic(out) {
-  const folder = await pack(Object.keys(packages));
+  const folder = await pack();
   const names = allNames.filter(isStatic);
   for (const name of names)
     cpSync(join(await buildExample(name, folder), 'dist'), join(out, name), { recursive: true });
@@ -95,7 +95,7 @@ async function buildStatic(out) {
 await mainOf(import.meta.url, async () => {
   const { out } = parseArgs({ options: { out: { type: 'string' } } }).values;
   if (out !== undefined) return buildStatic(resolve(root, out));
-  const folder = await pack(Object.keys(packages));
+  const folder = await pack();
   for (const name of allNames) console.log(await buildExample(name, folder));
   return 0;
 });

@@ -13,12 +13,15 @@ import { buildPackage } from './source-hash.mjs';
 const out = join(root, 'dist-library');
 /** The manifest of the workspace, whose exports are sources; those of the build are in `publishConfig`. */
 const own = JSON.parse(readFileSync(join(root, 'src/threepoint/package.json'), 'utf8'));
-/** The source file of each entry, by the name of its built file. */
-const entries = Object.fromEntries(
-  Object.entries(own.publishConfig.exports).flatMap(([name, { default: built }]) =>
-    built ? [[built.slice(2, -3), join(root, 'src/threepoint', own.exports[name])]] : [],
-  ),
-);
+
+/** Returns the source file of each published entry of a package, by the name of its built file. */
+export const entriesOf = (folder, { exports, publishConfig }) =>
+  Object.fromEntries(
+    Object.entries(publishConfig.exports).flatMap(([name, { default: built }]) =>
+      built ? [[built.slice(2, -3), join(root, folder, exports[name])]] : [],
+    ),
+  );
+const entries = entriesOf('src/threepoint', own);
 const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
 
 /** Files of the package other than code: path in the package to path in the repository. */
@@ -177,7 +180,8 @@ async function writeTypes() {
 
 /** Writes the declarations of a project into `types`, with the full file names that Node's resolution requires. */
 export async function writeDeclarations(config, types) {
-  const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config]);
+  rmSync(types, { recursive: true, force: true });
+  const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config, '--outDir', types]);
   if (code !== 0) throw new SetupError(`The types of ${config} could not be written: exit code ${code}.`);
   for (const file of readdirSync(types, { recursive: true })) {
     const path = join(types, file);

@@ -1,14 +1,66 @@
-// Builds the packages “threepoint” and “threepoint-rooms” unless each was built from exactly these sources.
-import { buildLibrary } from './build-library.mjs';
-import { buildRooms } from './build-rooms.mjs';
-import { mainOf } from './run-command.mjs';
-import { isPackageCurrent } from './source-hash.mjs';
+// Builds the published packages unless each was built from exactly these sources: “threepoint” by build-library.mjs,
+// the others into dist-NAME/ as ESM with source maps and types. Bundled are their parts of packages of this repository,
+// and no others. `npm pack ./dist-NAME` makes a tarball.
+import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { isAbsolute, join } from 'node:path';
+import { rolldown } from 'rolldown';
+import { buildLibrary, documentInPackage, entriesOf, writeDeclarations } from './build-library.mjs';
+import { mainOf, root } from './run-command.mjs';
+import { buildPackage, isPackageCurrent } from './source-hash.mjs';
 
-/** The packages, and how each is built. */
+/** Returns a package that `bundle` builds from src/NAME. `platform`: that of all its entries. */
+const bundled = (name, platform) => ({ build: () => bundle(name, platform), folder: `dist-${name}` });
+
+/** The published packages, and how each is built. */
 export const packages = {
   threepoint: { build: buildLibrary, folder: 'dist-library' },
-  'threepoint-rooms': { build: buildRooms, folder: 'dist-rooms' },
+  'threepoint-rooms': bundled('rooms', 'browser'),
+  'threepoint-relay': bundled('relay', 'node'),
 };
+
+/** Whether a module is from this repository, and no peer: a scene needs the one copy of what the library draws. */
+const isOwn = (id) => isAbsolute(id) || (/^(\.|threepoint)/.test(id) && id !== 'threepoint/three');
+
+async function writeCode(out, input, platform) {
+  const build = await rolldown({
+    input,
+    cwd: root,
+    platform,
+    external: (id) => !isOwn(id),
+    tsconfig: join(root, 'tsconfig.json'),
+  });
+  await build.write({ dir: out, format: 'esm', chunkFileNames: 'shared-[hash].js', sourcemap: true });
+  await build.close();
+}
+
+/** Returns the manifest to publish: without sources and internal modules. */
+function published({ private: _, devDependencies: __, publishConfig, dependencies, ...rest }) {
+  const imported = Object.entries(dependencies).filter(([name]) => !isOwn(name));
+  return { ...rest, ...publishConfig, dependencies: Object.fromEntries(imported) };
+}
+
+/** The declarations of all packages, which the compiler writes at once: those of one import those of another. */
+const declarations = join(root, 'artifacts/declarations');
+let declared;
+
+function bundle(name, platform) {
+  const out = join(root, `dist-${name}`);
+  const source = `src/${name}`;
+  return buildPackage(`dist-${name}`, async () => {
+    const own = JSON.parse(readFileSync(join(root, source, 'package.json'), 'utf8'));
+    rmSync(out, { recursive: true, force: true });
+    mkdirSync(out);
+    await writeCode(out, entriesOf(source, own), platform);
+    declared ??= writeDeclarations('tsconfig.packages.json', declarations);
+    await declared;
+    cpSync(join(declarations, name), join(out, 'types'), { recursive: true });
+    copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
+    const readme = readFileSync(join(root, source, 'README.md'), 'utf8');
+    const documents = { 'README.md': `${source}/README.md`, LICENSE: 'LICENSE' };
+    writeFileSync(join(out, 'README.md'), documentInPackage(readme, 'README.md', documents));
+    writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(own), null, 2)}\n`);
+  });
+}
 
 export async function buildPackagesWhenStale(names = Object.keys(packages)) {
   for (const { build, folder } of names.map((name) => packages[name])) if (!isPackageCurrent(folder)) await build();

@@ -30,7 +30,7 @@ function entries() {
 }
 
 /** The packages whose code is part of the server. */
-const packages = ['server', ...['games', 'http', 'rooms', 'study', 'threepoint'].map((name) => `src/${name}`)];
+const packages = ['server', ...['games', 'http', 'relay', 'rooms', 'study', 'threepoint'].map((name) => `src/${name}`)];
 const manifestIn = (folder) => JSON.parse(readFileSync(join(root, folder, 'package.json'), 'utf8'));
 
 /**

@@ -1,13 +1,14 @@
-// Checks what the built packages promise besides their types: the links of their documents and the fields of their
-// manifests. Checks dist-library's source maps and declaration maps, the paths that its licence names, and the size of
-// a bundle that imports one name of it.
+// Checks what the built packages promise: the links of their documents, the fields of their manifests, and by publint
+// and attw how Node, bundlers and the compiler resolve them. Checks dist-library's source maps and declaration maps, the
+// paths that its licence names, and the size of a bundle that imports one name of it.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { build } from 'esbuild';
-import { main, root, SetupError } from './run-command.mjs';
+import { packages } from './build-packages.mjs';
+import { main, root, run, SetupError } from './run-command.mjs';
 
 const folder = join(root, 'dist-library');
-const packages = [folder, join(root, 'dist-rooms')];
+const folders = Object.values(packages).map(({ folder }) => join(root, folder));
 
 /** The largest minified bundle [kB] of a page that imports one name, without peers and what loads on demand. */
 const largestBundles = [
@@ -91,7 +92,8 @@ function licencePaths() {
 
 /** Returns a message for each package of a bundled module, by the sources of the maps, that licences.txt lacks. */
 function missingLicences(folder) {
-  const named = readFileSync(join(folder, 'licences.txt'), 'utf8');
+  const licences = join(folder, 'licences.txt');
+  const named = existsSync(licences) ? readFileSync(licences, 'utf8') : '';
   const maps = filesOf(folder).filter((file) => file.endsWith('.js.map'));
   const sources = maps.flatMap((file) => JSON.parse(readFileSync(file, 'utf8')).sources);
   const bundled = new Set(sources.flatMap((source) => /.*node_modules\/((?:@[^/]+\/)?[^/]+)/.exec(source)?.[1] ?? []));
@@ -140,6 +142,20 @@ async function largeBundles() {
   return faults;
 }
 
+/** Returns a message for each package that Node, bundlers or the compiler resolve wrongly. */
+async function wronglyResolved() {
+  const faults = [];
+  for (const folder of folders) {
+    const checks = [
+      ['publint', folder, '--strict'],
+      ['attw', '--pack', folder, '--profile', 'esm-only', '--quiet'],
+    ];
+    for (const check of checks)
+      if ((await run('npx', check)).code !== 0) faults.push(`${check[0]} has faults in ${relative(root, folder)}`);
+  }
+  return faults;
+}
+
 /** Checks that a bundler keeps the module that answers a page's messages, though it exports nothing. */
 async function lostWorker() {
   return (await weigh("import './onnx-worker.js';")) > 500 ? [] : ['a bundle of onnx-worker.js is empty'];
@@ -147,12 +163,13 @@ async function lostWorker() {
 
 await main(async () => {
   const faults = [
-    ...packages.flatMap((folder) => [...deadLinks(folder), ...missingFields(folder), ...missingLicences(folder)]),
+    ...folders.flatMap((folder) => [...deadLinks(folder), ...missingFields(folder), ...missingLicences(folder)]),
     ...faultyMaps(),
     ...missingMaps(),
     ...licencePaths(),
     ...(await largeBundles()),
     ...(await lostWorker()),
+    ...(await wronglyResolved()),
   ];
   if (faults.length > 0) throw new SetupError(`A package is not as it promises:\n${faults.join('\n')}`);
 });

@@ -14,7 +14,7 @@ const resolutions = [
 ];
 
 /** The consumers, and the types of its surroundings that each may use. */
-const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'rooms-server-consumer.ts': ['node'] };
+const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'relay-consumer.ts': ['node'] };
 
 /** Installs a package as `npm install` does; what it depends on resolves to the repository's own packages. */
 async function unpack(name) {

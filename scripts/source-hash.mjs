@@ -30,8 +30,8 @@ export const isStamped = (stamp, hash) => existsSync(stamp) && readFileSync(stam
 /** The paths that the built packages depend on. */
 const packageSources = [
   ...['LICENSE', 'package.json', 'package-lock.json', 'docs/accuracy.md', 'public/models', 'public/avatars', 'src'],
-  ...['tsconfig.json', 'tsconfig.library.json', 'tsconfig.rooms.json'],
-  ...['scripts/build-library.mjs', 'scripts/build-rooms.mjs', 'scripts/library', 'scripts/licences.mjs'],
+  ...['tsconfig.json', 'tsconfig.library.json', 'tsconfig.packages.json'],
+  ...['scripts/build-library.mjs', 'scripts/build-packages.mjs', 'scripts/library', 'scripts/licences.mjs'],
 ];
 
 const packageStamp = (folder) => join(root, 'artifacts', `${folder}.source-hash`);

@@ -33,10 +33,7 @@ function portFrom(text: string, source: string): number {
  * Reads the arguments after the script's name, and the environment. Returns 'help' for --help. Throws a
  * ConfigurationError.
  */
-export function configurationFrom(
-  args: readonly string[],
-  environment: Readonly<Record<string, string | undefined>>,
-): Configuration | 'help' {
+export function configurationFrom(args: readonly string[], environment: NodeJS.ProcessEnv): Configuration | 'help' {
   const options = {
     port: { type: 'string' },
     lan: { type: 'boolean' },

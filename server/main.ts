@@ -1,13 +1,14 @@
 import { resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { ConfigurationError } from 'threepoint-http';
-import { loadOrCreateSecret, relayConfigurationFrom, relayEnvironment } from 'threepoint-rooms/settings';
+import { relayConfigurationFrom, relayEnvironment } from 'threepoint-relay';
 import { certificateFor } from './certificate';
 import { configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
 import { shippedRoomKinds } from './room-kinds';
 import { startServer } from './start-server';
 import { startupMessage } from './startup-message';
+import { loadOrCreateSecret } from './stored-secret';
 
 const pathInRepository = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 

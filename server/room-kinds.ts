@@ -1,12 +1,12 @@
 import { type GameDescription, games } from 'threepoint-games/all';
+import { numberFrom } from 'threepoint-http';
 import type { RoomKind, RoomKinds } from 'threepoint-rooms/room';
-import { type Environment, numberFrom } from 'threepoint-rooms/settings';
 
 /**
  * Returns the games of this project that have rooms; THREEPOINT_NAME_SECONDS is the length of a round. Rejects with a
  * ConfigurationError.
  */
-export async function shippedRoomKinds(environment: Environment): Promise<RoomKinds> {
+export async function shippedRoomKinds(environment: NodeJS.ProcessEnv): Promise<RoomKinds> {
   const kinds = new Map<string, RoomKind>();
   for (const [name, { rooms }] of Object.entries<GameDescription>(games)) {
     if (!rooms) continue;

@@ -6,9 +6,8 @@ import {
   prepareServer,
   readSoftwareVersion,
 } from 'threepoint-http';
+import { attachRooms, type RelayConfiguration } from 'threepoint-relay';
 import type { RoomKinds } from 'threepoint-rooms/room';
-import { attachRooms } from 'threepoint-rooms/server';
-import type { RelayConfiguration } from 'threepoint-rooms/settings';
 import { openStudyService } from 'threepoint-study/server';
 import { createPageHandler } from './page-handler';
 

@@ -1,5 +1,5 @@
 import { parentPort } from 'node:worker_threads';
-import { RoomTokens } from 'threepoint-rooms/settings';
+import { RoomTokens } from 'threepoint-relay';
 import { serveStudies } from 'threepoint-study/server';
 
 // The thread of the studies: its seats are signed by the tokens that the rooms of this server accept.

@@ -16,7 +16,7 @@ function entriesOf(folder: string): (readonly [string, string])[] {
 
 /** Lists the exported names of every public entry, types included. */
 function publicNames(): string {
-  const entries = ['src/threepoint', 'src/rooms'].flatMap(entriesOf);
+  const entries = ['src/threepoint', 'src/rooms', 'src/relay'].flatMap(entriesOf);
   // Names need no types: what the entries import is not read, which would take seconds.
   const program = ts.createProgram(
     entries.map(([, file]) => file),

@@ -3,7 +3,7 @@
 
 import { actorFrame, defaultAvatar, defaultCalibration, skeletonFromCalibration } from 'threepoint/core';
 import { ballKind } from 'threepoint-games/ball';
-import { RoomTokens } from 'threepoint-rooms/settings';
+import { RoomTokens } from 'threepoint-relay';
 import { WebSocket } from 'ws';
 import { protocolVersion } from '../../src/rooms/protocol/messages';
 import { packetMs } from '../../src/rooms/protocol/packet-time';

@@ -1,10 +1,10 @@
 // The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
 import { ConnectionLimiter, createRouter, noPage } from 'threepoint-http';
+import { relayConfigurationFrom } from 'threepoint-relay';
 import type { RoomKind } from 'threepoint-rooms/room';
-import { relayConfigurationFrom } from 'threepoint-rooms/settings';
 import { shippedRoomKinds } from '../../server/room-kinds';
+import { createRelay } from '../../src/relay/relay';
 import { maxSeats } from '../../src/rooms/protocol/messages';
-import { createRelay } from '../../src/rooms/server/relay';
 import { serve } from '../../tests/http/serve';
 import { countingKind, countingRoomKind } from '../../tests/rooms/room/counting-game';
 import { answerAsRelay } from './conversation';

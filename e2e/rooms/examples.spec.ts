@@ -216,7 +216,7 @@ test.describe('examples of other people @realtime', () => {
   test.beforeAll(async ({ browser, playwright, launchOptions }) => {
     test.setTimeout(180_000);
     secondBrowser = await playwright[browser.browserType().name() as 'chromium'].launch(launchOptions);
-    folder = await pack(['threepoint', 'threepoint-rooms']);
+    folder = await pack();
   });
   test.afterAll(async () => {
     await secondBrowser.close();

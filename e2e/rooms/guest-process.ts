@@ -1,7 +1,7 @@
 // A room client without a page, as a separate process: Playwright's loader does not load what it imports.
 import { createHash } from 'node:crypto';
 import { createAvatarExchange } from '../../src/rooms/client/avatar-exchange';
-import { arrive, until } from '../../tests/rooms/server/running-relay';
+import { arrive, until } from '../../tests/relay/running-relay';
 
 export interface GuestOrder {
   readonly id: number;

@@ -1,7 +1,7 @@
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname } from 'node:path';
-import { attachRooms } from 'threepoint-rooms/server';
+import { attachRooms } from 'threepoint-relay';
 
 const types = { '.html': 'text/html', '.js': 'text/javascript' };
 const server = createServer(async ({ url }, response) => {

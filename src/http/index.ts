@@ -4,6 +4,7 @@ export { type AuthAttempt, createAuthThrottle, type FailedAttempt } from './auth
 export { type ClientAddress, clientAddressOf, findClientAddress, requiredAddress } from './client-address';
 export { ConfigurationError } from './configuration-error';
 export { ConnectionLimiter, createSlotCounter } from './connection-limiter';
+export { invalidVariable, numberFrom, splitList } from './environment';
 export { GroupCommit } from './group-commit';
 export { guarded } from './guarded';
 export { HttpError, internalError } from './http-error';

@@ -9,10 +9,8 @@ export type {
   Visitor,
   VoiceChannel,
 } from './client/connection';
-export type { LoopbackOptions } from './client/loopback-host';
-export { LoopbackHost } from './client/loopback-host';
-export type { RoomMessage } from './protocol/messages';
-export { finiteWithin, integerWithin, roomMessageReader, seconds } from './protocol/messages';
+export { LoopbackHost, type LoopbackOptions } from './client/loopback-host';
+export { finiteWithin, integerWithin, type RoomMessage, roomMessageReader, seconds } from './protocol/messages';
 export type { SignalBody } from './protocol/voice-messages';
-export type { HostedGame, HostedMatch, MatchPolicy, MatchState } from './room/match-policy';
+export type { HostedGame, HostedMatch, MatchAction, MatchPolicy, MatchState } from './room/match-policy';
 export type { RoomKind, RoomKinds } from './room/room-kind';

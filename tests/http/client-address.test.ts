@@ -4,8 +4,8 @@ import fc from 'fast-check';
 import { afterAll, describe, expect, onTestFinished, test } from 'vitest';
 import { parseClientAddress } from '../../src/http/client-address';
 import { ConnectionLimiter } from '../../src/http/connection-limiter';
+import { relayOfTest } from '../relay/until-finished';
 import { reportFigures } from '../reliability/report-figures';
-import { relayOfTest } from '../rooms/server/until-finished';
 import { servedPaperStudy, servedStudies } from '../study/server/running-studies';
 
 const host = (text: string) => `Host: ${text}\r\n`;

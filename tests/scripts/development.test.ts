@@ -2,7 +2,7 @@ import { join } from 'node:path';
 import { createServer } from 'vite';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { root } from '../../scripts/run-command.mjs';
-import { arrive, rawSocket, tokenFor, until } from '../rooms/server/running-relay';
+import { arrive, rawSocket, tokenFor, until } from '../relay/running-relay';
 import { forkServer } from '../server/server-child';
 
 /** Starts the server of `npm run dev` on a free port, in front of a relay of its own. Resolves to its origin. */

@@ -5,22 +5,14 @@ import { join } from 'node:path';
 import { defaultCalibration, writeRecording } from 'threepoint/core';
 import { games } from 'threepoint-games/all';
 import { type BallState, ballKind } from 'threepoint-games/ball';
-import { RoomTokens, relayConfigurationFrom } from 'threepoint-rooms/settings';
+import { RoomTokens, relayConfigurationFrom } from 'threepoint-relay';
 import type * as v from 'valibot';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { startServer as startFromSource } from '../../server/start-server';
+import { poseBytes, type RunningRelay, rawGuest, rawSocket, startRelay, tokenFor, until } from '../relay/running-relay';
+import { guestOfTest } from '../relay/until-finished';
 import { reportFigures } from '../reliability/report-figures';
-import {
-  poseBytes,
-  type RunningRelay,
-  rawGuest,
-  rawSocket,
-  startRelay,
-  tokenFor,
-  until,
-} from '../rooms/server/running-relay';
-import { guestOfTest } from '../rooms/server/until-finished';
 import { begun, paperPlan } from '../study/model/studies';
 import { studySeats } from '../study/server/running-studies';
 import { startedStudy } from '../study/server/stored-studies';

@@ -1,7 +1,7 @@
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { relayConfigurationFrom } from 'threepoint-rooms/settings';
+import { relayConfigurationFrom } from 'threepoint-relay';
 import { describe, expect, test } from 'vitest';
 import { parse } from 'yaml';
 import { configurationFrom } from '../../server/configuration';

@@ -3,7 +3,7 @@ import * as v from 'valibot';
 import { fetchWithPass, type RoomPass } from './room-pass';
 
 /** The limits of a server's avatar store, and this person's file in it. */
-export interface AvatarTerms {
+interface AvatarTerms {
   /** The largest file that it accepts [bytes]; 0: none. */
   readonly maxBytes: number;
   /** A folder on another server with avatars by hash; null: none. */
@@ -13,7 +13,7 @@ export interface AvatarTerms {
 }
 
 /** The address of a file, with the headers of the request. */
-export interface AvatarAddress {
+interface AvatarAddress {
   readonly url: string;
   readonly headers: Readonly<Record<string, string>>;
 }

@@ -35,7 +35,7 @@ import type { FloorPlacement, PosePacket } from '../protocol/pose-packet';
 import type { PathFit, PathSample } from './path-fit';
 
 /** The pose of a player in one frame. */
-export type BufferedPose = Omit<PosePacket, 'timeMs' | 'jump'>;
+type BufferedPose = Omit<PosePacket, 'timeMs' | 'jump'>;
 
 /** A buffer for the drawn pose of a player; methods may use the buffer itself as a source. */
 export class PoseBuffer implements BufferedPose {

@@ -20,7 +20,7 @@ export type OwnAvatar =
       readonly hash: AvatarHash | null;
     };
 
-export interface SharedAvatarOptions {
+interface SharedAvatarOptions {
   /** null: there is no server, or the room belongs to a study, where all avatars are alike. */
   readonly exchange: AvatarExchange | null;
   /**

@@ -10,7 +10,7 @@ import type { RemotePose } from '../peers/remote-poses';
 export type AvatarLoader = (reference: string | null, peer: string) => Promise<Avatar>;
 
 /** What is drawn of a person. */
-export type DrawnPose = Omit<RemotePose, 'name' | 'joints'>;
+type DrawnPose = Omit<RemotePose, 'name' | 'joints'>;
 
 /** A person changes the avatar at most this often [s]; further changes wait. */
 const changeSeconds = 2;

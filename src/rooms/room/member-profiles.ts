@@ -7,7 +7,7 @@ import { allowedMoves, type Member, type Seats } from './seats';
 
 export type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
-export interface MemberProfilesOptions {
+interface MemberProfilesOptions {
   /** All members look alike: an avatar of their own would identify them. */
   readonly assigned: boolean;
   /** The room's host allows voices; a room with more than `maxVoiceSeats` seats has none even then. */

@@ -31,7 +31,7 @@ class NoMatch implements HostedMatch<People> {
 }
 
 /** The policy of a room without a game, with so many seats (16 at most). */
-export const peoplePolicy = (seats: number = maxSeats): MatchPolicy<People> => ({
+const peoplePolicy = (seats: number = maxSeats): MatchPolicy<People> => ({
   kind: peopleKind,
   seats,
   tickSeconds: 1,

@@ -8,7 +8,7 @@ import { TokenBucket } from './token-bucket';
 /** A seat is held this long after its connection is lost [s]; no match waits longer for a player who is away. */
 export const seatHoldSeconds = 30;
 /** A player who is silent or disconnected for this long [s] is away; a disconnected one also leaves the match. */
-export const awayAfterSeconds = 2.5;
+const awayAfterSeconds = 2.5;
 
 /**
  * The most changes of seat by a client, per second on average and at once: each removes a player from the match and
@@ -34,7 +34,7 @@ export interface Member {
 }
 
 /** A taken seat and its player. */
-export interface Seat {
+interface Seat {
   member: Member;
   /** The client; null: the connection is lost. */
   client: ClientId | null;
@@ -52,7 +52,7 @@ export interface Seat {
 }
 
 /** Receives the changes of seats. */
-export interface SeatListener {
+interface SeatListener {
   /** Called when the state of a seat has changed for the others. */
   changed(seat: number): void;
   /** Called with an action for the rules. */

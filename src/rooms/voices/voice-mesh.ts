@@ -1,7 +1,7 @@
 import type { SignalBody } from '../protocol/voice-messages';
 import { VoicePeer } from './voice-peer';
 
-export interface VoiceMeshOptions {
+interface VoiceMeshOptions {
   readonly configuration: RTCConfiguration;
   signal(to: string, body: SignalBody): void;
   /** Called with the voice of the page with this session; null: it has ended. */

@@ -1,6 +1,6 @@
 import { isPassableCandidate, maxCandidates, maxDescriptionLength, type SignalBody } from '../protocol/voice-messages';
 
-export interface VoicePeerOptions {
+interface VoicePeerOptions {
   /** Whether this side yields when both make an offer; the other side makes the first offer. */
   readonly polite: boolean;
   readonly configuration: RTCConfiguration;

@@ -2,8 +2,8 @@ import { defaultAvatar } from 'threepoint/core';
 import { ballClientPolicy } from 'threepoint-games/ball';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { assignedSeat } from '../../../src/page/people/match/room-place';
+import { until } from '../../relay/running-relay';
 import { visitor } from '../../rooms/client/people';
-import { until } from '../../rooms/server/running-relay';
 import { invitedGroup } from '../../study/participant/invited-group';
 
 const clock = { now: () => performance.now() / 1000, skippedSeconds: 0 };

@@ -3,9 +3,9 @@ import type { Connection } from '../../../src/rooms/client/connection';
 import { LoopbackHost } from '../../../src/rooms/client/loopback-host';
 import { createRoomPass } from '../../../src/rooms/client/room-pass';
 import { SocketConnection } from '../../../src/rooms/client/socket-connection';
+import { until } from '../../relay/running-relay';
+import { relayOfTest } from '../../relay/until-finished';
 import { type CountingGame, countingClientPolicy, countingKind, countingPolicy } from '../room/counting-game';
-import { until } from '../server/running-relay';
-import { relayOfTest } from '../server/until-finished';
 import { visitor } from './people';
 
 interface Counter {

@@ -2,9 +2,9 @@ import { createElement, createRef } from 'react';
 import { beforeEach, expect, onTestFinished, test } from 'vitest';
 import { type JoinedRoom, joinRoom } from '../../../src/rooms/drawing/join-room';
 import { RoomAvatars, type RoomAvatarsProps } from '../../../src/rooms/react/index';
+import { servedRooms } from '../../relay/served-rooms';
 import { openCanvas } from '../../threepoint/api/canvas';
 import { stubFileFetch } from '../peers/file-fetch';
-import { servedRooms } from '../peers/served-rooms';
 import { solvedActor } from '../peers/solved-actor';
 
 beforeEach(stubFileFetch);

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { createRouter, type FailedAttempt, GroupCommit, noPage } from 'threepoint-http';
-import { RoomTokens } from 'threepoint-rooms/settings';
+import { RoomTokens } from 'threepoint-relay';
 import { expect, onTestFinished } from 'vitest';
 import type { StudyPlan } from '../../../src/study/model/plan/plan';
 import { createExporter } from '../../../src/study/server/export/exporter';

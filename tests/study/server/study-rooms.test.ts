@@ -1,10 +1,10 @@
-import { RoomTokens } from 'threepoint-rooms/settings';
+import { RoomTokens } from 'threepoint-relay';
 import { createRoomPass } from 'threepoint-rooms/socket';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { createStudySeats } from '../../../src/study/server/routes/seats';
+import { rawGuest, rawLobby, rawSocket, tokenFor, until } from '../../relay/running-relay';
 import { reportFigures } from '../../reliability/report-figures';
-import { rawGuest, rawLobby, rawSocket, tokenFor, until } from '../../rooms/server/running-relay';
 import { type StartedServer, startServer, testSecret } from '../../server/started-server';
 import { paperPlan } from '../model/studies';
 

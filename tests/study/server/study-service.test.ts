@@ -4,7 +4,7 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { openStudyStore } from '../../../src/study/server/sqlite/study-store';
 import { hasFileModes } from '../../platform';
-import { until } from '../../rooms/server/running-relay';
+import { until } from '../../relay/running-relay';
 import { directoryWith } from '../../temporary-directory';
 import { paperPlan } from '../model/studies';
 import { experimenter, servedFolder, testSoftware } from './running-studies';
