@@ -14,4 +14,6 @@ export interface RelayContext {
   readonly metrics: RelayMetrics;
   /** Seconds, monotonic: the clock of all rooms. */
   readonly now: () => number;
+  /** Starts regular work; an exception in it is a line of the log. `what`: its name there. */
+  repeat(what: string, everyMs: number, work: () => void): NodeJS.Timeout;
 }

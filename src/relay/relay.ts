@@ -1,7 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { type Logger, pino } from 'pino';
 import type { Server } from 'socket.io';
-import type { Service, UpgradeListener } from 'threepoint-http';
+import { guarded, type Service, type UpgradeListener } from 'threepoint-http';
 import type { RoomKinds } from 'threepoint-rooms/room';
 import { RoomTokens } from './access/room-tokens';
 import { avatarRoutes } from './avatars/avatar-routes';
@@ -65,17 +65,22 @@ export function createRelay(
     avatarBytes: avatars.bytes,
   });
   const metrics = createRelayMetrics(census);
-  const context: RelayContext = { configuration, kinds, tokens, log, metrics, now };
+  const repeat: RelayContext['repeat'] = (what, everyMs, work) =>
+    setInterval(
+      guarded(work, (error) => log.error({ error: String(error) }, `${what} failed`)),
+      everyMs,
+    );
+  const context: RelayContext = { configuration, kinds, tokens, log, metrics, now, repeat };
   const transport = createRelayTransport(context);
   const { io } = transport;
   const rooms = new RoomRegistry(context, io);
   const closeSockets = hostSockets(transport, rooms, context);
   const avatarOf = (room: string, identity: string) => rooms.get(room)?.room.avatarOf(identity) ?? null;
   const avatars = new AvatarStore({ maxBytes: configuration.avatarMegabytes * 2 ** 20, avatarOf, now });
-  const sweeping = setInterval(() => avatars.sweep(), sweepMs).unref();
+  const sweeping = repeat('the sweep of avatars', sweepMs, () => avatars.sweep());
   const fleet = connectFleet(configuration, log);
   const lobby = createLobby(fleet?.own ?? null, node, log);
-  const lobbyPublisher = new LobbyPublisher({ io, lobby, node, channel: fleet, rooms });
+  const lobbyPublisher = new LobbyPublisher({ io, lobby, node, channel: fleet, rooms, repeat });
   const service = createRelayService(context, {
     lobby,
     census,

@@ -54,7 +54,7 @@ export function hostSockets(
   rooms: RoomRegistry,
   context: RelayContext,
 ): () => Promise<void> {
-  const { configuration, log, now } = context;
+  const { configuration, log, now, repeat } = context;
   const clients = new Set<Client>();
   const messages = new MessageHandler(rooms, context);
 
@@ -101,10 +101,7 @@ export function hostSockets(
     }
     rooms.sweep(at);
   };
-  const sweeping = setInterval(
-    guarded(sweep, (error) => log.error({ error: String(error) }, 'the rooms could not be swept')),
-    sweepMs,
-  );
+  const sweeping = repeat('the sweep of rooms', sweepMs, sweep);
 
   return async () => {
     clearInterval(sweeping);

@@ -2,6 +2,7 @@ import { createAdapter } from '@socket.io/redis-adapter';
 import type { Redis } from 'ioredis';
 import type { Namespace, Server, Socket } from 'socket.io';
 import type { RoomRegistry } from '../hosting/room-registry';
+import type { RelayContext } from '../relay-context';
 import type { Lobby } from './lobby';
 
 /** The socket.io namespace in which pages receive the rooms of all processes. */
@@ -22,6 +23,7 @@ interface LobbyPublisherOptions {
   readonly channel: FleetChannel | null;
   /** The rooms of this process. */
   readonly rooms: Pick<RoomRegistry, 'listings' | 'end'>;
+  readonly repeat: RelayContext['repeat'];
 }
 
 const lobbyEveryMs = 1000;
@@ -53,7 +55,7 @@ export class LobbyPublisher {
       socket.onAny(() => socket.disconnect(true));
     });
     this.#namespace.on(endEvent, (room: string) => rooms.end(room));
-    this.#timer = setInterval(() => this.#publish(), lobbyEveryMs);
+    this.#timer = options.repeat('the list of rooms', lobbyEveryMs, () => this.#publish());
   }
 
   /** Ends a room in all processes that are reachable. */

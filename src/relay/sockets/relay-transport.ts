@@ -129,7 +129,7 @@ export function createRelayTransport(context: RelayContext) {
   const listeners = new WeakMap<Connection, WireListener>();
   const io = createSocketServer((websocket, request) => void websockets.set(request, websocket));
   const { engine } = io;
-  const slowReaders = new SlowReaders(now, (conn) => end(conn, 'slow'));
+  const slowReaders = new SlowReaders(context, (conn) => end(conn, 'slow'));
 
   function end(conn: Connection, fault: WireFault): void {
     const listener = listeners.get(conn);

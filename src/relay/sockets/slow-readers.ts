@@ -1,4 +1,5 @@
 import type { Socket } from 'socket.io';
+import type { RelayContext } from '../relay-context';
 
 /** A connection is too slow if it accepts no frame for this long [s], or if more packets than this wait. */
 const slowSeconds = 5;
@@ -20,12 +21,12 @@ export class SlowReaders {
   readonly #now: () => number;
   readonly #end: (conn: Socket['conn']) => void;
   readonly #readers = new Map<Socket['conn'], Reader>();
-  readonly #timer = setInterval(() => this.#check(), slowCheckMs);
+  readonly #timer: NodeJS.Timeout;
 
-  /** `now`: seconds, monotonic. */
-  constructor(now: () => number, end: (conn: Socket['conn']) => void) {
+  constructor({ now, repeat }: RelayContext, end: (conn: Socket['conn']) => void) {
     this.#now = now;
     this.#end = end;
+    this.#timer = repeat('the check of slow readers', slowCheckMs, () => this.#check());
   }
 
   watch(conn: Socket['conn']): void {
