@@ -1,8 +1,7 @@
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import { driveTime, holdAt } from '../driven-time';
-import type { EmulatedHeadset } from '../emulated-headset';
 import { emulatedHeadset } from '../emulated-headset';
-import { enterVr, expect, keepPicture, load, open, probe, test } from '../page-fixture';
+import { enterVr, expect, keepPicture, load, open, test } from '../page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 800, height: 500 } });
@@ -15,37 +14,24 @@ async function round(page: Page): Promise<ArcheryProbe> {
   return (await shown.jsonValue()) as ArcheryProbe;
 }
 
-/** The range, with the emulated headset worn. */
-async function enterTheRange(page: Page, query = ''): Promise<EmulatedHeadset> {
-  await open(page, `emulate&play=archery&seed=7&panel=off&quality=low${query}`);
-  const headset = await emulatedHeadset(page);
-  await enterVr(page);
-  return headset;
-}
-
 const patience = { timeout: 60_000 };
 
-for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
-  // The hands are the same with each body: one in full, the others by night.
-  const suite = estimator === 'learned' ? '@full' : '@nightly';
-  test(`${estimator}: the archer in the emulated headset wins 50 of 50 ${suite}`, async ({ page }) => {
-    test.setTimeout(240_000);
-    await enterTheRange(page, `&estimator=${estimator}`);
-    expect((await probe(page)).estimator).toBe(estimator);
-    if (estimator === 'learned') {
-      await holdAt<ArcheryProbe>(page, { stage: 'drawing' });
-      await keepPicture(page, 'archery-drawing');
-      await holdAt<ArcheryProbe>(page, { arrowsLeft: 4 });
-      await keepPicture(page, 'archery-flight');
-      await holdAt<ArcheryProbe>(page, { score: 5 });
-      await keepPicture(page, 'archery-hit');
-    }
-    await holdAt<ArcheryProbe>(page, { phase: 'over' });
-    const { score, end } = await round(page);
-    expect({ score, end }).toEqual({ score: 50, end: 'targets' });
-    if (estimator === 'learned') await keepPicture(page, 'archery-result');
-  });
-}
+test('the archer in the emulated headset wins 50 of 50 @full', async ({ page }) => {
+  test.setTimeout(240_000);
+  await open(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
+  await emulatedHeadset(page);
+  await enterVr(page);
+  await holdAt<ArcheryProbe>(page, { stage: 'drawing' });
+  await keepPicture(page, 'archery-drawing');
+  await holdAt<ArcheryProbe>(page, { arrowsLeft: 4 });
+  await keepPicture(page, 'archery-flight');
+  await holdAt<ArcheryProbe>(page, { score: 5 });
+  await keepPicture(page, 'archery-hit');
+  await holdAt<ArcheryProbe>(page, { phase: 'over' });
+  const { score, end } = await round(page);
+  expect({ score, end }).toEqual({ score: 50, end: 'targets' });
+  await keepPicture(page, 'archery-result');
+});
 
 test('hands are changed in the menu of the page, and remembered @full', async ({ page }) => {
   await open(page, 'emulate&play=archery&seed=7&panel=off&quality=low');

@@ -8,10 +8,8 @@ import {
 } from 'threepoint/core';
 import { add, addScaled, distance, type Vec3, vec3 } from 'threepoint/math';
 import { createMatch } from 'threepoint-games';
-import { type ArcheryState, archeryRules, arrowLength, delayed } from 'threepoint-games/archery';
 import { type BallInput, type BallState, ballRules, rackPosition } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import { releaseDirection } from '../../src/games/archery/flight';
 import { reportFigures } from '../reliability/report-figures';
 import { poseOf } from '../threepoint/core/estimation/drawn';
 import { hold, inFront, leftThrower, stand, velocityTo } from './ball/playing';
@@ -23,34 +21,6 @@ const never = (): boolean => false;
 const ways = rates.flatMap((rate) => [never, dropped].map((drop) => ({ rate, drop })));
 const framesOf = (rate: number, drop: (frame: number) => boolean, seconds: number): number[] =>
   Array.from({ length: Math.round(seconds * rate) }, (_, i) => i).flatMap((i) => (drop(i) ? [] : [i / rate]));
-
-test('arrows fly and land the same at every rate', () => {
-  const play = (rate: number, drop: (frame: number) => boolean): ArcheryState => {
-    const match = createMatch(archeryRules, archeryRules.start(['archer'], 11), { delayed });
-    const due = [0.4, 1.4, 2.5, 3.7].map((time, target) => ({ time, target }));
-    for (const time of framesOf(rate, drop, 6)) {
-      const shots = due.splice(0, due.filter((shot) => shot.time <= time).length).map(({ target }) => {
-        const nock = add(match.state.head, vec3(0.1, -0.1, -0.1));
-        const direction = releaseDirection(match.state.targets[target]!.centre, nock, 0.5)!;
-        const position = addScaled(nock, direction, arrowLength);
-        return { type: 'release', position, direction, draw: 0.5, delay: 0 } as const;
-      });
-      match.advance(100 + time, [{ type: 'stand', head: vec3(0, 1.6, 0) }, ...shots]);
-    }
-    return match.state;
-  };
-  const reference = play(90, never);
-  expect(reference.score).toBe(50);
-  let worst = 0;
-  for (const { rate, drop } of ways) {
-    const { arrows } = play(rate, drop);
-    arrows.forEach(({ landing }, i) => {
-      worst = Math.max(worst, distance(landing!.position, reference.arrows[i]!.landing!.position));
-    });
-  }
-  expect(worst).toBeLessThan(1e-3);
-  reportFigures('rates', { arrows: `${(1000 * worst).toFixed(4)} mm apart` });
-});
 
 test('balls fly the same at every rate', () => {
   const velocity = velocityTo(vec3(-0.5, 1.5, 1.7), inFront, 0.9);

@@ -12,28 +12,7 @@ import {
 } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
 import { shotWithOneHand } from '../games/archery/one-handed-round';
-import { playRound, steady } from '../games/archery/playing';
 import { reportFigures } from './report-figures';
-
-/** The body measures [m] of people of 1.10 to 2.20 m, standing and seated. */
-const people = [1.03, 1.4, 1.6, 1.8, 2.06].flatMap((eyeHeight) => [
-  { eyeHeight, armLength: 0.355 * eyeHeight },
-  { eyeHeight: 0.72 * eyeHeight, armLength: 0.355 * eyeHeight },
-]);
-
-test('archery: each person finishes a round with 50 of 50, with either hand, standing or seated', () => {
-  let finished = 0;
-  let played = 0;
-  for (const body of people) {
-    for (const bowSide of ['left', 'right'] as const) {
-      played += 1;
-      const { state } = playRound({ archer: { ...body, bowSide }, seed: played, times: steady(72) });
-      if (state.score === 50 && state.phase === 'over') finished += 1;
-    }
-  }
-  expect(finished).toBe(played);
-  reportFigures('flows', { archery: `${finished} of ${played} rounds won` });
-});
 
 test('archery with one hand: a round can be won from any height', () => {
   let won = 0;

@@ -5,7 +5,6 @@ import {
   type Calibration,
   calibrationFromHeadHeight,
   createEstimator,
-  defaultCalibration,
   eyeHeightFromStature,
   forwardKinematics,
   initialGuidedCalibration,
@@ -117,9 +116,4 @@ test('a floor half a metre too low measures no one wrongly; a typed height fits'
       seen,
     ),
   });
-});
-
-test('before anybody has calibrated, an adult’s body is drawn', () => {
-  for (const height of [0.4, 0.9, 1.2, 3, Number.NaN])
-    expect(calibrationFromHeadHeight(height)).toEqual(defaultCalibration);
 });

@@ -3,15 +3,10 @@ import { describe, expect, test } from 'vitest';
 import { BoneChoices } from '../../../src/page/bones/bone-choices';
 import { createPreferenceStore } from '../../../src/page/shell/session/preferences';
 import { BoneMapStore } from '../../../src/page/shell/stage/bone-map-store';
+import { memoryStorage } from '../shell/session/memory-storage';
 
 const bones = Object.fromEntries(neededBones.map((bone) => [bone, `${bone} of the file`]));
 const hashOf = (i: number) => String(i).padStart(43, 'h');
-
-/** A browser's storage. */
-function memory(): Pick<Storage, 'getItem' | 'setItem'> {
-  const items = new Map<string, string>();
-  return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
-}
 
 describe('a map of bones that the user makes', () => {
   const joint = (name: string) => ({ name, parent: -1, position: { x: 0, y: 0, z: 0 } });
@@ -46,7 +41,7 @@ describe('a map of bones that the user makes', () => {
   });
 
   test('is remembered by the file’s hash over a reload, of the newest twenty files', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     const first = new BoneMapStore(createPreferenceStore(storage));
     for (let i = 0; i < 21; i++) first.store(hashOf(i), { ...bones, head: `daeh${i}` });
     const store = createPreferenceStore(storage);
@@ -58,7 +53,7 @@ describe('a map of bones that the user makes', () => {
   });
 
   test('costs nothing else that is remembered where a bone has too long a name to be', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     const store = createPreferenceStore(storage);
     store.remember({ mirror: false });
     new BoneMapStore(store).store(hashOf(1), { ...bones, head: 'head '.repeat(50) });

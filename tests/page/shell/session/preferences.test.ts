@@ -3,15 +3,11 @@ import { armSpanRange, eyeHeightFromStature, statureRange } from 'threepoint/cor
 import { describe, expect, test } from 'vitest';
 import { createPreferenceStore, parsePreferences } from '../../../../src/page/shell/session/preferences';
 import { evenly } from '../../../threepoint/core/arbitraries';
-
-function memory(): Pick<Storage, 'getItem' | 'setItem'> {
-  const items = new Map<string, string>();
-  return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
-}
+import { memoryStorage } from './memory-storage';
 
 describe('the memory of the page', () => {
   test('a calibration survives a reload', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     createPreferenceStore(storage).remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });
     const next = createPreferenceStore(storage);
     expect(next.complaint).toBeNull();
@@ -19,7 +15,7 @@ describe('the memory of the page', () => {
   });
 
   test('remembering undefined forgets, and leaves the rest', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     const store = createPreferenceStore(storage);
     store.remember({ calibration: { eyeHeight: 1.6, armSpan: 1.3 }, mirror: false });
     store.remember({ calibration: undefined });
@@ -27,7 +23,7 @@ describe('the memory of the page', () => {
   });
 
   test('the changes of another window of the page stay', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     const [one, other] = [createPreferenceStore(storage), createPreferenceStore(storage)];
     one.remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });
     other.remember({ mirror: false });
@@ -43,7 +39,7 @@ describe('the memory of the page', () => {
   });
 
   test('a preference that a full storage did not take lasts as long as the page', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     createPreferenceStore(storage).remember({ mirror: false });
     const full = {
       ...storage,
@@ -58,7 +54,7 @@ describe('the memory of the page', () => {
   });
 
   test('a damaged entry is replaced by what this visit knows', () => {
-    const storage = memory();
+    const storage = memoryStorage();
     const store = createPreferenceStore(storage);
     store.remember({ mirror: false });
     for (const damaged of ['no JSON', '{"calibration":3}']) {

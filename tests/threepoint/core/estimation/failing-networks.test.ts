@@ -11,6 +11,7 @@ import {
 import type { PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
 import type { Pipeline } from '../../../../src/threepoint/core/estimation/pipeline';
 import { distance } from '../../../../src/threepoint/core/math/vec3';
+import { reportFigures } from '../../../reliability/report-figures';
 import { poseOf, show, showAll } from './drawn';
 import { movingPerson } from './moving-person';
 import { openShippedModel } from './shipped-models';
@@ -66,6 +67,19 @@ describe.each(['paper', 'learned'] as const)('%s with a failing network', (name)
     expect(estimator.fault()).toMatch(sentence);
     expect(estimator.fault()).toContain(name);
     expect(answerOf(estimator)).toBeNull();
+  });
+
+  test.each(ways)('has finite bones and a known fault in the frame in which it %s', async (_, way) => {
+    const estimator = createWithNetwork(name, calibration, breaking(await openShippedModel(name), 20, way));
+    let known = Number.POSITIVE_INFINITY;
+    for (const [index, frame] of frames.entries()) {
+      const { localRotations, hipsPosition } = (await show(estimator, frame)).body!;
+      const numbers = [hipsPosition, ...Object.values(localRotations)].flatMap((value) => Object.values(value));
+      expect(numbers.every(Number.isFinite)).toBe(true);
+      if (estimator.fault() !== null) known = Math.min(known, index - 19);
+    }
+    expect(known).toBe(1);
+    reportFigures('bad-model', { 'bones NaN': 0, 'fault known after': `${known} frame` });
   });
 
   test.each(ways)('goes over to IK when the network works for a while and then %s', async (_, way) => {
