@@ -3,7 +3,6 @@ import {
   armBonesOf,
   armSpanFromFingertipSpan,
   type Calibration,
-  calibrationFromHeadHeight,
   createEstimator,
   eyeHeightFromStature,
   forwardKinematics,
