@@ -19,8 +19,8 @@ export const checkInWorker: AvatarCheck = /* @__PURE__ */ createWorkerCheck(star
 });
 
 /**
- * Reads the bones of a checked file and matches them: by a VRM's humanoid, else by the matcher, which is loaded with the
- * first file. Rejects with an Error that names the file.
+ * Reads the bones of a checked file and matches them: by a VRM's humanoid, else by the matcher, which is loaded with
+ * the first file. Rejects with an Error that names the file.
  */
 export const readFileBones: typeof readNow = async (...file) =>
   (await import('../avatar/humanoid/read-file-bones')).readFileBones(...file);

@@ -25,7 +25,6 @@ export {
   armSpanFromFingertipSpan,
   armSpanRange,
   assertCalibration,
-  calibrationFromHeadHeight,
   calibrationProblem,
   defaultCalibration,
   eyeHeightFromStature,
