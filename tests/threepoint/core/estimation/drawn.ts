@@ -4,7 +4,7 @@ import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-
 import { headJointOf } from '../../../../src/threepoint/core/body/head-joint';
 import type { JointName } from '../../../../src/threepoint/core/body/joints';
 import { writeLocalRotations } from '../../../../src/threepoint/core/body/local-rotations';
-import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
+import { averageSkeleton } from '../../../../src/threepoint/core/body/skeleton';
 import { armBones, fitArms, makeFitArmsState } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
 import type { CompletedFrame, CompletedHand } from '../../../../src/threepoint/core/estimation/complete-hands';
 import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
@@ -55,7 +55,7 @@ export const completedFrame = (
   calibration: Calibration,
 ): CompletedFrame => ({
   head,
-  headJoint: headJointOf(head, skeletonFromCalibration(calibration).eyesInHead, vec3(0, 0, 0)),
+  headJoint: headJointOf(head, averageSkeleton(calibration).eyesInHead, vec3(0, 0, 0)),
   heading: readHeading(head.orientation),
   bodyTurn: identity,
   leftHand: seenHand(leftHand),
@@ -69,7 +69,7 @@ const poles = { left: normalise(vec3(-0.2, -1, 0.5)), right: normalise(vec3(0.2,
 export function fitted(
   calibration: Calibration,
 ): (frame: CompletedFrame, joints: JointPositions, deltaSeconds: number) => Joints {
-  const skeleton = skeletonFromCalibration(calibration);
+  const skeleton = averageSkeleton(calibration);
   const bones = { torso: torsoBones(skeleton), arm: armBones(skeleton) };
   const state = { torso: makeFitTorsoState(), arms: makeFitArmsState() };
   const body = makeUpperBodyPose();
