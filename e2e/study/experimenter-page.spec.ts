@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { parsePlan } from '../../src/study/model/plan/plan';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
-import { expect } from '../page-fixture';
+import { expect, keepPicture } from '../page-fixture';
 import { openStudy, signIn, test } from './study-participant';
 import { experimenter } from './study-server';
 
@@ -147,4 +147,25 @@ test('a block that ends while the reason is written is not taken for the next on
   await page.getByRole('button', { name: 'Void it' }).click();
   await expect(page.getByRole('alert')).toHaveText('Not voided for P01: block 1 of archery is over there.');
   expect(await experimenting.commands('moving-on', 'P01')).toEqual([]);
+});
+
+test('a picture of a study with two cohorts under way, for docs/study.md @nightly', async ({ page, origin }) => {
+  const study = {
+    ...plan('latency-avatars'),
+    participants: 24,
+    cohorts: [
+      { id: 'small', label: 'A small body', avatar: 'child' as const },
+      { id: 'own-size', label: 'A body of their size', avatar: 'woman' as const },
+    ],
+  };
+  const experimenting = experimenter(origin);
+  await experimenting.begin(study, false);
+  const steps = { P01: 'end', P02: 'archery/3/trial-1', P03: 'archery/1/questionnaire', P04: 'archery/2/trial-1' };
+  for (const [participant, step] of Object.entries(steps)) {
+    await experimenting.consented(study, participant);
+    await experimenting.report(study, participant, step, step.endsWith('trial-1'));
+  }
+  await openStudy(page, `${origin}/experimenter`, study.id);
+  await expect(page.getByRole('row', { name: /^P04 / })).toContainText('running');
+  await keepPicture(page, 'docs-study-experimenter');
 });
