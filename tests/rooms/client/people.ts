@@ -1,20 +1,9 @@
 import { defaultCalibration, unknownFingers } from 'threepoint/core';
-import {
-  add,
-  identity,
-  invertTransform,
-  type Pose,
-  type Side,
-  scale,
-  subtract,
-  transformPose,
-  type Vec3,
-  vec3,
-  zero,
-} from 'threepoint/math';
-import { positionAt, wristAround } from 'threepoint-games';
+import { add, identity, invertTransform, type Pose, type Side, transformPose, type Vec3, vec3 } from 'threepoint/math';
+import { wristAround } from 'threepoint-games';
 import { type BallConnection, type BallEvent, type BallGame, rackPosition, stations } from 'threepoint-games/ball';
 import type { ConnectionUpdate, OutgoingPose, Visitor } from '../../../src/rooms/client/connection';
+import { inFront as opening, velocityTo } from '../../games/ball/playing';
 
 export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
   name,
@@ -22,14 +11,10 @@ export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => (
   ...more,
 });
 
-/** The throwers' target: the opening of the basket in front of the holder, arena frame. */
-export const opening: Vec3 = add(stations[2]!.position, vec3(0, 1.1, 0.45));
+/** The target of the throwers: the opening of the basket in front of the holder, arena frame. */
+export { opening, velocityTo };
 
 const eyes = vec3(0, 1.6, 0);
-
-/** The velocity that brings a ball from one place to another in this time [s]. */
-export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
-  scale(subtract(to, positionAt({ position: from, velocity: zero }, seconds)), 1 / seconds);
 
 /** A player who stands where their seat is, with their wrists at these places of the arena. */
 export function shownAt(
