@@ -47,6 +47,7 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   page.once('dialog', (dialog) => void dialog.accept());
   await page.getByRole('button', { name: 'Delete this simulated study' }).click();
   await expect(page.getByText('“latency-simulated” is deleted.')).toBeVisible();
+  expect(new URL(page.url()).searchParams.has('study')).toBe(false);
   const { studies } = (await (await experimenter(origin).ask('')).json()) as { studies: { id: string }[] };
   // Other specs have studies on this server too.
   const names = studies.map(({ id }) => id);
@@ -74,7 +75,7 @@ test('the records of a plan that is tried are deleted by the next try @full', as
     ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: object[] }).records.length;
   const tryIt = async () => {
     await page.getByRole('button', { name: 'Try it' }).click();
-    await expect(page.getByRole('status')).toContainText('Open the page of a participant to try “tried-simulated”');
+    await expect(page.getByRole('status')).toContainText('Open the page of a participant to try “tried-try”');
   };
   await tryIt();
   const opening = page.context().waitForEvent('page');
@@ -83,14 +84,14 @@ test('the records of a plan that is tried are deleted by the next try @full', as
   await participant.getByLabel(/I have read this/).check();
   await keepPicture(participant, 'study-tried');
   await participant.getByRole('button', { name: 'I agree' }).click();
-  await expect.poll(() => recorded('tried-simulated')).toBe(1);
+  await expect.poll(() => recorded('tried-try')).toBe(1);
   await keepPicture(page, 'study-copy-to-try');
   await participant.close();
 
   await page.goto(`${origin}/experimenter?study=tried`);
   await tryIt();
   await expect(page.getByRole('row', { name: /^P01 / })).toContainText('free');
-  expect(await recorded('tried-simulated')).toBe(0);
+  expect(await recorded('tried-try')).toBe(0);
   expect(await recorded('tried')).toBe(0);
 });
 

@@ -1,4 +1,4 @@
-// "threepoint-games": what both games share.
+// "threepoint-games": what games share.
 export { fallTime, type Launch, positionAt, velocityAt } from './ballistics';
 export { pulseBothHands } from './both-hands-pulse';
 export { ballInPalm, wristAround } from './fist';

@@ -20,15 +20,20 @@ import { type RelayConfiguration, relayConfigurationFrom } from './settings/rela
 import type { ConnectionCounts } from './settings/relay-metrics';
 
 export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'secret' | 'host'>> {
-  /** Signs the passes; at least 32 characters, the same in all processes. Default: a new one in every process. */
-  readonly secret?: string;
+  /**
+   * Signs the passes; at least 32 characters, the same in all processes. Default, as for null: a new one in every
+   * process.
+   */
+  readonly secret?: string | null;
   /** The path below which the rooms are, for example '/bodies'; pages join at that address. Default: none. */
   readonly path?: string;
   /** The most people of a room without a game, 1 to 16. Default: 16. */
   readonly seats?: number;
   /** Games, by name. Default: none, rooms are just people. */
   readonly games?: RoomKinds;
-  /** Further names of the server; requests with another Host are refused. Default: the Host is not checked. */
+  /**
+   * Further names of the server; requests with another Host are refused. Default, as for none: the Host is not checked.
+   */
   readonly hosts?: readonly string[];
   /** Whether the rooms also answer `/healthz` and `/metrics`. Default: false. */
   readonly monitoring?: boolean;
@@ -85,7 +90,8 @@ function interceptEvent(
  * server.listen(8080);
  */
 export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}): AttachedRooms {
-  const { secret = randomBytes(32).toString('base64url'), path = '', seats, games, monitoring, ...settings } = options;
+  const { path = '', seats, games, monitoring, ...settings } = options;
+  const secret = options.secret ?? randomBytes(32).toString('base64url');
   const { connections = { open: 0, refused: 0 } } = settings;
   if (secret.length < 32) throw new RangeError(`A secret needs at least 32 characters; this one has ${secret.length}.`);
   if (!/^(\/[\w-]+)*$/.test(path))
@@ -93,7 +99,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), ...settings };
   const kinds = new Map<string, RoomKind>([[peopleKind, peopleRoomKind(seats)], ...(games ?? [])]);
   const relay = createRelay(configuration, secret, connections, kinds);
-  const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
+  const site = settings.hosts?.length ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
   const { onFault } = relay.service;
   const answer = answering((request, response) => {

@@ -8,6 +8,7 @@ import { loadAvatar } from 'threepoint/three';
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from 'threepoint-rooms/three';
 import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
 import { attachRooms } from '../../src/relay/attach-rooms';
+import { relayConfigurationFrom } from '../../src/relay/settings/relay-configuration';
 import { stubFileFetch } from '../rooms/peers/file-fetch';
 import { solvedActor } from '../rooms/peers/solved-actor';
 import { countingClientPolicy, countingKind, countingRoomKind } from '../rooms/room/counting-game';
@@ -252,6 +253,12 @@ test('below a path, and for pages of other origins that are named', async () => 
   const room = await joinRoom(`${url}/bodies`, { name: 'Ann', body: solvedActor(), storage: null });
   expect(room.seat).toBe(0);
   room.leave();
+});
+
+test('the configuration of an environment without variables serves rooms under any name', async () => {
+  const { url } = await servedRooms(relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }));
+  const { status } = await ask(url, '/api/rooms', { headers: { host: 'bodies.example.com' } });
+  expect(status).toBe(200);
 });
 
 test('requests with two names of the server reach no room, as requests and as WebSockets', async () => {

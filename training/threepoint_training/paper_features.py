@@ -1,4 +1,4 @@
-"""The input of the paper's network; the twin of src/threepoint/core/estimation/networks/paper-features.ts."""
+"""The input of the paper's network; the twin of src/threepoint/core/estimation/methods/paper.ts."""
 
 import numpy as np
 

@@ -62,10 +62,16 @@ async function signIn(token: string): Promise<string | null> {
  */
 export async function requestStudy(from: ExperimenterClient, id: string, version?: number): Promise<RecordedStudy> {
   const recorded = await from.records(id, version);
-  const address = new URL(location.href);
-  address.searchParams.set('study', id);
-  history.replaceState(null, '', address);
+  putIntoAddress(id);
   return recorded;
+}
+
+/** Puts the open study into the address, so that a reload opens it again; null: none is open. */
+export function putIntoAddress(study: string | null): void {
+  const address = new URL(location.href);
+  if (study === null) address.searchParams.delete('study');
+  else address.searchParams.set('study', study);
+  history.replaceState(null, '', address);
 }
 
 /** The form for the token, or a message on a host without a server. */

@@ -71,10 +71,13 @@ const markedInEachLanguage = (title: LocalizedText): LocalizedText =>
     ? marked(title)
     : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));
 
+/** The purpose of a simulated copy of a study: a program takes part, or somebody tries it. */
+export type CopyPurpose = 'simulated' | 'try';
+
 /** Returns the plan under an id and a title that mark it as simulated. */
-export const simulatedPlan = (plan: StudyPlan): StudyPlan => ({
+export const simulatedPlan = (plan: StudyPlan, purpose: CopyPurpose = 'simulated'): StudyPlan => ({
   ...plan,
-  id: `${plan.id.slice(0, 37)}-simulated`,
+  id: `${plan.id.slice(0, 37)}-${purpose}`,
   title: markedInEachLanguage(plan.title),
 });
 

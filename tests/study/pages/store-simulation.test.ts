@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { createExperimenterClient } from '../../../src/study/client/study-client';
 import { measuresIn, overallComparisons } from '../../../src/study/model/results/exported-results';
 import { answersIn, trialsIn } from '../../../src/study/model/tables/study-tables';
-import { storeSimulation } from '../../../src/study/pages/experimenter/store-simulation';
+import { addCopy, storeSimulation } from '../../../src/study/pages/experimenter/store-simulation';
 import { examplePlan, latencyPlan } from '../model/studies';
 import { experimenter, now, servedStudies } from '../server/running-studies';
 
@@ -59,6 +59,18 @@ test('another simulation takes the place of the first, and is the same for the s
   expect(await answersOf()).toEqual(first);
   await storeSimulation(client, plan, { seed: 4, effects, at: now });
   expect(await answersOf()).not.toEqual(first);
+});
+
+test('a copy to try and a simulation of a study do not replace each other', async () => {
+  const { client, plan } = await server();
+  await storeSimulation(client, plan, { seed: 3, effects, at: now });
+  expect((await addCopy(client, plan, 'try')).id).toBe('latency-try');
+  expect((await client.records('latency-simulated')).records.length).toBeGreaterThan(0);
+  expect((await client.studies()).map(({ id }) => id).toSorted()).toEqual([
+    'latency',
+    'latency-simulated',
+    'latency-try',
+  ]);
 });
 
 test('a simulated study goes at once and whole; one of people does not', async () => {

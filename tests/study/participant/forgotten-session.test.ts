@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { replaceSimulated } from '../../../src/study/pages/experimenter/store-simulation';
+import { addCopy } from '../../../src/study/pages/experimenter/store-simulation';
 import { openStudyVault } from '../../../src/study/participant/session/study-vault';
 import { agree, beforeTheQuestions, choose } from './participant-steps';
 import { browser } from './study-browser';
@@ -26,7 +26,7 @@ test('the next try of a plan begins with consent in the same browser', async () 
   const server = await studyServer();
   const { open } = browser(server);
   const tryIt = async () => {
-    const { id } = await replaceSimulated(server.experimenter, server.plan);
+    const { id } = await addCopy(server.experimenter, server.plan, 'try');
     const [first] = await server.experimenter.participants(id);
     return open({ study: id, invitation: first?.invitation ?? null });
   };

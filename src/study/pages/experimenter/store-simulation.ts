@@ -1,6 +1,12 @@
 import type { ExperimenterClient } from '../../client/study-client';
 import { checkedPlan, participantsOf, type StudyPlan } from '../../model/plan/plan';
-import { modelsWith, type StatedEffects, simulatedParticipants, simulatedPlan } from '../../simulation/simulate-study';
+import {
+  type CopyPurpose,
+  modelsWith,
+  type StatedEffects,
+  simulatedParticipants,
+  simulatedPlan,
+} from '../../simulation/simulate-study';
 
 /** The parameters of a simulation: the same seed and effects give the same answers. */
 export interface Simulation {
@@ -19,12 +25,13 @@ const secondsPerParticipant = 7200;
 
 type SimulatingClient = Pick<ExperimenterClient, 'studies' | 'addStudy' | 'addSimulated' | 'deleteSimulated'>;
 
-/** Adds a simulated study with this plan in place of an earlier one; resolves with its plan. */
-export async function replaceSimulated(
+/** Adds a simulated copy of a study in place of an earlier one of this purpose; resolves with its plan. */
+export async function addCopy(
   client: Omit<SimulatingClient, 'addSimulated'>,
   plan: StudyPlan,
+  purpose: CopyPurpose,
 ): Promise<StudyPlan> {
-  const simulated = checkedPlan(simulatedPlan(plan));
+  const simulated = checkedPlan(simulatedPlan(plan, purpose));
   if ((await client.studies()).some(({ id }) => id === simulated.id)) await client.deleteSimulated(simulated.id);
   await client.addStudy(simulated, true);
   return simulated;
@@ -40,7 +47,7 @@ export async function storeSimulation(
   { seed, effects, at, onProgress = () => undefined }: StoredSimulationOptions,
 ): Promise<string> {
   const models = modelsWith(plan, effects);
-  const simulated = await replaceSimulated(client, plan);
+  const simulated = await addCopy(client, plan, 'simulated');
   const all = participantsOf(simulated).length;
   let done = 0;
   for (const one of simulatedParticipants(simulated, models, seed, at - all * secondsPerParticipant)) {

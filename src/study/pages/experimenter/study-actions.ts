@@ -4,10 +4,10 @@ import { readPlan, type StudyPlan } from '../../model/plan/plan';
 import { Refusal } from '../../model/progress/refusal';
 import type { StudyInfo } from '../../model/progress/study-api';
 import { effectsInWords } from '../../simulation/simulate-study';
-import { listStudies } from '../experimenter-access';
+import { listStudies, putIntoAddress } from '../experimenter-access';
 import { attempt, notice, openStudy, study } from './experimenter-state';
 import { askForSimulation } from './simulation-dialog';
-import { replaceSimulated, storeSimulation } from './store-simulation';
+import { addCopy, storeSimulation } from './store-simulation';
 
 /** A new study: `name` is for messages, `json` reads its file. */
 interface NewStudy {
@@ -47,7 +47,7 @@ async function addOrChange(server: ExperimenterClient, plan: StudyPlan): Promise
 
 /** Opens a simulated copy of a study; an earlier one is deleted with its records. */
 async function openCopy(server: ExperimenterClient, plan: StudyPlan): Promise<string> {
-  const { id } = await replaceSimulated(server, plan);
+  const { id } = await addCopy(server, plan, 'try');
   await listStudies(server);
   await openStudy(id);
   return `Open the page of a participant to try “${id}”. Its records are deleted with it.`;
@@ -77,6 +77,7 @@ export async function deleteSimulated(id: string): Promise<void> {
   await attempt(async (server) => {
     await server.deleteSimulated(id);
     study.value = null;
+    putIntoAddress(null);
     await listStudies(server);
     return `“${id}” is deleted.`;
   });
