@@ -31,9 +31,7 @@ export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'se
   readonly seats?: number;
   /** Games, by name. Default: none, rooms are just people. */
   readonly games?: RoomKinds;
-  /**
-   * Further names of the server; requests with another Host are refused. Default, as for none: the Host is not checked.
-   */
+  /** Further names of the server; requests with another Host are refused. Default: the Host is not checked. */
   readonly hosts?: readonly string[];
   /** Whether the rooms also answer `/healthz` and `/metrics`. Default: false. */
   readonly monitoring?: boolean;
@@ -99,7 +97,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), ...settings };
   const kinds = new Map<string, RoomKind>([[peopleKind, peopleRoomKind(seats)], ...(games ?? [])]);
   const relay = createRelay(configuration, secret, connections, kinds);
-  const site = settings.hosts?.length ? createSitePolicy(configuration) : originsOnly(configuration);
+  const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
   const router = createRouter([relay.service], noPage, site);
   const { onFault } = relay.service;
   const answer = answering((request, response) => {

@@ -255,10 +255,11 @@ test('below a path, and for pages of other origins that are named', async () => 
   room.leave();
 });
 
-test('the configuration of an environment without variables serves rooms under any name', async () => {
-  const { url } = await servedRooms(relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }));
-  const { status } = await ask(url, '/api/rooms', { headers: { host: 'bodies.example.com' } });
-  expect(status).toBe(200);
+test('the configuration of an environment serves rooms under the names that it states, and no others', async () => {
+  const environment = { THREEPOINT_LOG_LEVEL: 'silent', THREEPOINT_HOSTS: 'bodies.example.com' };
+  const { url } = await servedRooms(relayConfigurationFrom(environment));
+  const statusFor = async (host: string) => (await ask(url, '/api/rooms', { headers: { host } })).status;
+  expect([await statusFor('bodies.example.com'), await statusFor('elsewhere.example.com')]).toEqual([200, 421]);
 });
 
 test('requests with two names of the server reach no room, as requests and as WebSockets', async () => {
