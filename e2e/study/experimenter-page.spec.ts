@@ -90,11 +90,11 @@ test('a study stays marked as simulated when its first file was wrong @full', as
       .getByLabel('Study file', { exact: true })
       .setInputFiles({ name: 'mine.json', mimeType: 'application/json', buffer: Buffer.from(text) });
   await page.getByLabel('simulated: to try it, or for a program').check();
-  await choose(JSON.stringify({ ...plan('second-try'), participants: 0 }));
+  await choose(JSON.stringify({ ...plan('second-file'), participants: 0 }));
   await expect(page.getByRole('alert')).toContainText('participants');
-  await choose(JSON.stringify(plan('second-try')));
+  await choose(JSON.stringify(plan('second-file')));
   await expect(page.getByText('SIMULATED: a copy to try')).toBeVisible();
-  await expect(page.getByText('second-try-simulated · ')).toBeVisible();
+  await expect(page.getByText('second-file-try · ')).toBeVisible();
 });
 
 test('a block of people who play together is voided for all unless the experimenter objects @full', async ({
