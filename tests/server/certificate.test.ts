@@ -26,7 +26,7 @@ describe('the certificate', () => {
     expect(await certificateFor(['192.168.7.20'], directory, now)).toEqual(first);
   });
 
-  test('is made anew for a new address and before it expires', async () => {
+  test('is renewed for a new address and before it expires', async () => {
     const directory = directoryWith();
     const first = await certificateFor(['192.168.7.20'], directory, now);
     const moved = await certificateFor(['192.168.8.4'], directory, now);

@@ -71,7 +71,7 @@ const markedInEachLanguage = (title: LocalizedText): LocalizedText =>
     ? marked(title)
     : Object.fromEntries(Object.entries(title).map(([language, text]) => [language, marked(text)]));
 
-/** The purpose of a simulated copy of a study: a program takes part, or somebody tries it. */
+/** The purpose of a simulated copy of a study: simulated participants, or an experimenter's own test of the plan. */
 export type CopyPurpose = 'simulated' | 'try';
 
 /** Returns the plan under an id and a title that mark it as simulated. */

@@ -93,7 +93,7 @@ describe.each(adapters)('a storage in $adapter', ({ open }) => {
       expect((await store.places.progress('paper', 'P02'))?.step).toBe('consent');
     });
 
-    test('counts the time of a step by its own clock, whatever the device’s says', async () => {
+    test('counts the time of a step by its own clock, independent of the device’s clock', async () => {
       const store = await withPaperStudy();
       await store.places.claim('paper', 'P01', now);
       const one = session(scheduleFor(paperPlan(), 'P01'));

@@ -19,7 +19,7 @@ export interface MatchCameraOptions {
   readonly context: Pick<ActivityContext, 'settings' | 'writer' | 'stage' | 'headset' | 'placeCamera'>;
   readonly play: Pick<MatchPlay<HostedGame>, 'newest'>;
   readonly scenes: MatchScenes;
-  /** The hips of the player on a seat as drawn, floor frame of the user; undefined: nobody is drawn there. */
+  /** The drawn hips of the player on a seat, in the user's floor frame; undefined if that seat has no drawn player. */
   hipsOf(seat: number): Vec3 | undefined;
 }
 
