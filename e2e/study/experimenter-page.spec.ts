@@ -68,19 +68,17 @@ test('the link of a participant under way is in sight on a narrow screen too @fu
   expect(shown && shown.x + shown.width).toBeLessThan(960);
 });
 
-test('a study that the address asks for is opened as soon as the token is given @full', async ({ page, origin }) => {
-  await experimenter(origin).begin(plan('asked-for'), false);
-  for (const [address, said] of [
-    ['experimenter', 'asked-for · 18 participants'],
-    ['results', 'asked-for, from this server.'],
-  ]) {
+for (const [address, said] of [
+  ['experimenter', 'asked-for · 18 participants'],
+  ['results', 'asked-for, from this server.'],
+] as const) {
+  test(`the ${address} page opens the study of its address once the token is given @full`, async ({ page, origin }) => {
+    await experimenter(origin).begin(plan('asked-for'), false);
     await page.goto(`${origin}/${address}?study=asked-for`);
-    await page.evaluate(() => sessionStorage.clear());
-    await page.reload();
     await signIn(page);
-    await expect(page.getByText(said as string)).toBeVisible();
-  }
-});
+    await expect(page.getByText(said)).toBeVisible();
+  });
+}
 
 test('a study stays marked as simulated when its first file was wrong @full', async ({ page, origin }) => {
   await page.goto(`${origin}/experimenter`);

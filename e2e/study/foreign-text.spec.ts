@@ -71,9 +71,6 @@ test('markup in a study is text to participants and experimenters @full', async 
   await openResults(page, plan.id);
   await showsText(page, 'results');
   await page.goto(`${origin}/experimenter?study=foreign`);
-  await page.evaluate(() => sessionStorage.clear());
-  await page.reload();
-  await signIn(page);
   await showsText(page, 'experimenter');
 });
 
