@@ -10,11 +10,12 @@ function readJUnit(text) {
   const cases = [...text.matchAll(/<testcase\s([^>]*?)(?:\/>|>(.*?)<\/testcase>)/gs)];
   const withTag = (tag) => cases.filter(([, , body]) => new RegExp(`<(${tag})[\\s>/]`).test(body ?? ''));
   const attribute = (attributes, name) => new RegExp(`\\b${name}="([^"]*)"`).exec(attributes)?.[1];
-  const failures = withTag('failure|error').map(
-    ([, attributes]) => `${attribute(attributes, 'classname')}: ${attribute(attributes, 'name')}`,
-  );
+  const titles = (tag) =>
+    withTag(tag).map(([, attributes]) => `${attribute(attributes, 'classname')}: ${attribute(attributes, 'name')}`);
+  const failures = titles('failure|error');
   const skipped = withTag('skipped').length;
-  return { passed: cases.length - failures.length - skipped, failed: failures.length, skipped, failures };
+  const passed = cases.length - failures.length - skipped;
+  return { passed, failed: failures.length, skipped, failures, repeated: titles('flakyFailure|flakyError') };
 }
 
 /**

@@ -25,14 +25,18 @@ async function runGroup(scripts) {
 function summarise({ name, code }) {
   const results = readResults(name);
   const isRed = code !== 0 || results?.failed > 0;
-  const { passed = 0, failed = 0, skipped = 0, failures = [] } = results ?? {};
+  const { passed = 0, failed = 0, skipped = 0, failures = [], repeated = [] } = results ?? {};
   const words = [results ? countLine(results) : '', isRed ? `exit code ${code}` : ''].filter(Boolean).join('; ');
   // The failures are repeated here, because often only the end of a CI log is kept.
   const more = failures.length - maxNamed;
   const named = [...failures.slice(0, maxNamed), ...(more > 0 ? [`and ${more} more`] : [])];
   // A script that failed without a failed test (types, lint, a crash) counts as one, so that the last line includes it.
   return {
-    lines: [`${isRed ? '✗' : '✓'} ${name.padEnd(14)}  ${words}`.trimEnd(), ...named.map((failure) => `✗   ${failure}`)],
+    lines: [
+      `${isRed ? '✗' : '✓'} ${name.padEnd(14)}  ${words}`.trimEnd(),
+      ...named.map((failure) => `✗   ${failure}`),
+      ...repeated.map((title) => `↻   passed only when repeated: ${title}`),
+    ],
     counts: { passed, failed: isRed ? Math.max(1, failed) : 0, skipped },
   };
 }
