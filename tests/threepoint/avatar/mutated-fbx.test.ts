@@ -112,7 +112,7 @@ test('the memory held for a file of packed arrays is a few times its size', {
   expect(read.byteLength).toBeGreaterThan(1e6);
 });
 
-const files = mutatedFiles(250);
+const files = mutatedFiles(80);
 
 /** Returns how many numbers of a GLB file are not finite. JSON has no such numbers: they are written as null. */
 function unfiniteNumbers({ accessors = [], bufferViews, nodes }: GltfJson, binary: Uint8Array): number {

@@ -136,7 +136,9 @@ async function observed(
 }
 
 describe('a database that hangs', () => {
-  test('by another program’s lock lets rooms go on, refuses writes for a time, answers reads', async () => {
+  test('by another program’s lock lets rooms go on, refuses writes for a time, answers reads', {
+    tags: ['full'],
+  }, async () => {
     const study = begunStudy();
     const server = await forkServer({}, { directory: study.directory });
     const script = fileURLToPath(new URL('./database-locker.ts', import.meta.url));

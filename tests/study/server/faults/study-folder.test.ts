@@ -81,7 +81,7 @@ describe('the folder of the studies', () => {
     expect(lines).toEqual([expect.stringContaining('studies.db-wal was deleted')]);
   });
 
-  test('is refused when another server uses it', async () => {
+  test('is refused when another server uses it', { tags: ['full'] }, async () => {
     const directory = directoryWith();
     const first = await started(directory);
     await expect(started(directory)).rejects.toThrow(
@@ -137,7 +137,7 @@ describe('a database that cannot be opened is refused with its file and what to 
     await expect(started(directory)).rejects.toThrow(/studies\.db is the database of another program/);
   });
 
-  test('when another program holds its lock, after 5 s', async () => {
+  test('when another program holds its lock, after 5 s', { tags: ['full'] }, async () => {
     const { directory, file } = studied();
     sql(file, withoutInvitations);
     const other = new DatabaseSync(file);
