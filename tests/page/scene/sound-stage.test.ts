@@ -29,6 +29,10 @@ class Context extends EventTarget {
     this.become('running');
   }
 
+  async close(): Promise<void> {
+    this.become('closed');
+  }
+
   become(state: string): void {
     if (state === this.state) return;
     this.state = state;
@@ -73,4 +77,13 @@ describe('audio that the system suspends', () => {
     expect(stage.player).not.toBeNull();
     expect(context.rendered).toBe(1);
   });
+});
+
+test('a stage that is disposed while its audio starts leaves that audio closed and silent', async () => {
+  const { context, stage } = stageWithContext();
+  const unlocked = stage.unlock();
+  stage.dispose();
+  await unlocked;
+  expect(context.state).toBe('closed');
+  expect(stage.player).toBeNull();
 });

@@ -109,19 +109,23 @@ function placeListener({ listener, currentTime }: AudioContext, head: Pose<'floo
 export function createSoundStage(recipes: Recipes, createContext: () => AudioContext = () => new AudioContext()) {
   let player: SoundPlayer | null = null;
   let muted = false;
+  function createAudio(): SoundPlayer {
+    const context = createContext();
+    const created = createPlayer(context, recipes);
+    created.master.gain.value = muted ? 0 : volume;
+    // The system suspends or interrupts audio for a call or another program: it continues when that is over.
+    context.addEventListener('statechange', () => {
+      // reason: a context that may not resume yet does so at the user's next touch, which `unlock` reports
+      if (context.state === 'suspended') void context.resume().catch(() => undefined);
+    });
+    return created;
+  }
   async function awaken(): Promise<SoundPlayer> {
-    if (!player) {
-      const context = createContext();
-      player = createPlayer(context, recipes);
-      player.master.gain.value = muted ? 0 : volume;
-      // The system suspends or interrupts audio for a call or another program: it continues when that is over.
-      context.addEventListener('statechange', () => {
-        // reason: a context that may not resume yet does so at the user's next touch, which `unlock` reports
-        if (context.state === 'suspended') void context.resume().catch(() => undefined);
-      });
-    }
-    if (player.context.state !== 'running') await player.context.resume();
-    return player;
+    player ??= createAudio();
+    // The stage may be disposed before the audio has started.
+    const awakened = player;
+    if (awakened.context.state !== 'running') await awakened.context.resume();
+    return awakened;
   }
   return {
     /** null while the audio rests: it would keep everything and play it at once later. */

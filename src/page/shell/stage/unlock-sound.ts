@@ -17,7 +17,8 @@ export function unlockSound(sound: ActivitySound, wanted: boolean, notices: Pick
   if (!wanted) return stop;
   let reported = false;
   const silent = (error: unknown) => {
-    if (!reported) notices.show('info', `Sound could not be started: ${firstLine(reasonOf(error))}`);
+    if (!reported && !stopped.signal.aborted)
+      notices.show('info', `Sound could not be started: ${firstLine(reasonOf(error))}`);
     reported = true;
   };
   const wake = () => {

@@ -58,6 +58,19 @@ describe('the sound of a game on a page that no one has touched', () => {
   });
 });
 
+test('sound that cannot start after its game was left is no notice', async () => {
+  const shown: string[] = [];
+  const failing = { setMuted: () => undefined, unlock: () => Promise.reject(new Error('the audio is closed')) };
+  userActivation.hasBeenActive = true;
+  const silentNotices = { show: (_kind: string, text: string) => void shown.push(text) };
+  unlockSound(failing, true, silentNotices)();
+  await Promise.resolve();
+  expect(shown).toEqual([]);
+  unlockSound(failing, true, silentNotices);
+  await Promise.resolve();
+  expect(shown).toEqual(['Sound could not be started: the audio is closed']);
+});
+
 describe('the sound of a game that the system has suspended', () => {
   test('wakes with each touch, and when the page is seen again', () => {
     const sound = gameSound();
