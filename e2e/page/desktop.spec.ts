@@ -43,6 +43,31 @@ test('the estimators are switched live, on the same motion, without moving the h
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
 });
 
+freshTest('the address, the title and the picture name the game, and Back and reload keep it @full', async ({ page }) => {
+  const canvas = page.locator('#stage');
+  const games = async (name: string | undefined) =>
+    expect.poll(async () => (await probe(page)).game?.name, { timeout: 60_000 }).toBe(name);
+  await open(page, 'quality=low&estimator=ik&bots=on');
+  const label = await canvas.getAttribute('aria-label');
+  await page.getByRole('button', { name: 'Archery' }).click();
+  await games('archery');
+  await expect(page).toHaveTitle('Archery · threepoint');
+  await expect(canvas).toHaveAccessibleName('The archery range. Arrow keys turn the camera, plus and minus zoom.');
+  await page.getByRole('button', { name: 'Ball game' }).click();
+  await games('ball');
+  expect(new URL(page.url()).searchParams.get('play')).toBe('ball');
+  await page.goBack();
+  await games('archery');
+  await page.reload();
+  await games('archery');
+  await page.goBack();
+  await games(undefined);
+  await expect(page).toHaveTitle('threepoint');
+  await expect(canvas).toHaveAccessibleName(label ?? '');
+  await page.goForward();
+  await games('archery');
+});
+
 test('single keys can be switched off, for who presses them by chance @full', async ({ page }) => {
   await open(page, 'quality=low&estimator=ik');
   await page.getByRole('tab', { name: 'View' }).click();

@@ -10,6 +10,7 @@ import { uploadToGpu } from '../scene/gpu-upload';
 import { affordableQuality } from '../scene/renderer';
 import { Recorder } from '../studio/recorder';
 import { activities as registeredActivities } from './activity-registry';
+import { followActivity } from './follow-activity';
 import type { InputParts } from './input/input-parts';
 import { createMousePointer, pressSheetsByMouse } from './input/mouse-pointer';
 import { Pointers } from './input/pointers';
@@ -188,6 +189,7 @@ function connectParts(page: Page): void {
     timing.reset();
     controls.show();
   });
+  arrivals.listen(followActivity(activities, page.switches.study !== null));
   pressSheetsByMouse(page);
   handleLostGraphics(page);
 }
