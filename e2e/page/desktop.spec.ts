@@ -43,7 +43,7 @@ test('the estimators are switched live, on the same motion, without moving the h
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
 });
 
-freshTest('the address, the title and the picture name the game, and Back and reload keep it @full', async ({ page }) => {
+freshTest('address, title and picture name the game; Back and reload keep it @full', async ({ page }) => {
   const canvas = page.locator('#stage');
   const games = async (name: string | undefined) =>
     expect.poll(async () => (await probe(page)).game?.name, { timeout: 60_000 }).toBe(name);
