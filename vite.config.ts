@@ -49,7 +49,7 @@ const decodersWithoutNode: Plugin = {
 const pages =
   process.env.THREEPOINT_BUILD_PAGES === 'check'
     ? { input: ['check.html'], first: false }
-    : { input: ['index.html', 'results.html', 'experimenter.html', 'withdraw.html'], first: true };
+    : { input: ['index.html', 'results.html', 'experimenter.html', 'withdraw.html', '404.html'], first: true };
 
 const packages = new Set<string>();
 

@@ -14,6 +14,7 @@ const sources = [
   'results.html',
   'experimenter.html',
   'withdraw.html',
+  '404.html',
   'vite.config.ts',
   'tsconfig.json',
   'package-lock.json',

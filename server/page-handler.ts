@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
-import type { IncomingMessage, RequestListener } from 'node:http';
+import type { IncomingHttpHeaders, IncomingMessage, RequestListener } from 'node:http';
 import { extname, join } from 'node:path';
 import {
   contentSecurityPolicy,
@@ -121,6 +121,13 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
   }
   const files = load(directory, options);
 
+  function respondWith({ plain, compressed }: ServedFile, asked: IncomingHttpHeaders, status = 200): HttpResponse {
+    const encoding = encodings.find(({ name }) => compressed.has(name) && accepts(asked['accept-encoding'], name));
+    const { body, headers } = (encoding && compressed.get(encoding.name)) ?? plain;
+    const known = asked['if-none-match']?.split(/\s*,\s*/).map((tag) => tag.replace(/^W\//, ''));
+    return known?.includes(String(headers.etag)) ? { status: 304, headers } : { status, headers, body };
+  }
+
   function answerTo({ method, url, headers: asked }: IncomingMessage): HttpResponse {
     if (method !== 'GET' && method !== 'HEAD') {
       const refused = textResponse('Only GET and HEAD are answered here.', 405);
@@ -133,13 +140,10 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
     const name = path.endsWith('/') ? `${path}index.html` : path;
     // Pages are requested by name: /results is results.html.
     const file = files.get(name) ?? files.get(`${name}.html`);
-    if (!file) return textResponse('Not found.', 404);
-    const encoding = encodings.find(
-      ({ name: encodingName }) => file.compressed.has(encodingName) && accepts(asked['accept-encoding'], encodingName),
-    );
-    const { body, headers } = (encoding && file.compressed.get(encoding.name)) ?? file.plain;
-    const known = asked['if-none-match']?.split(/\s*,\s*/).map((tag) => tag.replace(/^W\//, ''));
-    return known?.includes(String(headers.etag)) ? { status: 304, headers } : { status: 200, headers, body };
+    if (file) return respondWith(file, asked);
+    // The links of the page for people are relative to the root.
+    const page = /^\/[^/]*$/.test(path) && asked.accept?.includes('text/html') ? files.get('/404.html') : undefined;
+    return page ? respondWith(page, {}, 404) : textResponse('Not found.', 404);
   }
 
   return (request, response) => sendResponse(request, response, answerTo(request));

@@ -138,6 +138,20 @@ describe('what the page does not give', () => {
     expect((await ask(origin, '/')).status).toBe(200);
   });
 
+  test('a browser gets a page for an address without a file, a program a line of text', async () => {
+    const { origin } = await served({ ...site, '404.html': '<title>Not found</title>' });
+    const people = await ask(origin, '/reslts', { headers: { accept: 'text/html,*/*' } });
+    expect(people).toMatchObject({ status: 404, headers: { 'content-type': 'text/html; charset=utf-8' } });
+    expect(people.body.toString()).toBe('<title>Not found</title>');
+    for (const [path, accept] of [
+      ['/reslts', '*/*'],
+      ['/models/other.onnx', 'text/html'],
+    ] as const) {
+      const { status, body } = await ask(origin, path, { headers: { accept } });
+      expect({ status, text: body.toString() }).toEqual({ status: 404, text: 'Not found.\n' });
+    }
+  });
+
   test('POST is refused and told what is allowed', async () => {
     const { origin } = await served();
     const { status, headers } = await ask(origin, '/', { method: 'POST' });
