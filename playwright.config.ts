@@ -10,8 +10,8 @@ export default defineConfig({
   // frame rate there. Other tests drive their page's clock, and two files may run side by side (--workers=2).
   workers: 1,
   forbidOnly: Boolean(process.env.CI),
-  // One test that a busy machine disturbs must not refuse a change. The summary names each test that was repeated; at a
-  // desk and at night none is.
+  // One test that a busy machine disturbs must not refuse a change. The summary names each test that was repeated;
+  // at a desk and at night none is.
   retries: process.env.CI && !isNightly ? 1 : 0,
   projects: [
     { name: 'day', grepInvert: /@(full|realtime|nightly)/ },

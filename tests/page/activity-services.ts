@@ -40,7 +40,7 @@ export const studyRun = (members: Partial<StudyRun> = {}): StudyRun => ({
 /** The services of a page with this address, which draws nothing, and what activities did with them. */
 export function activityServices(address = '?seed=5&quality=low') {
   const { switches } = readSwitches(address);
-  const settings = createSettings({ ...switches, actor: false }, { preferences: { sound: false } });
+  const settings = createSettings({ ...switches, actor: false }, { preferences: { sound: false } }, null);
   const kept: StoredSettings[] = [];
   const writer = new SettingsWriter(
     settings,

@@ -138,7 +138,7 @@ describe('what the page does not give', () => {
     expect((await ask(origin, '/')).status).toBe(200);
   });
 
-  test('a browser gets a page for an address without a file, a program a line of text', async () => {
+  test('browsers get a page for a missing file, programs a line of text', async () => {
     const { origin } = await served({ ...site, '404.html': '<title>Not found</title>' });
     const people = await ask(origin, '/reslts', { headers: { accept: 'text/html,*/*' } });
     expect(people).toMatchObject({ status: 404, headers: { 'content-type': 'text/html; charset=utf-8' } });

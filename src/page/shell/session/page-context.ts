@@ -18,9 +18,9 @@ export interface PageContext {
 /** Reads address and storage; what they say that this page does not understand becomes a notice. */
 export function readPageContext(notices: Notices): PageContext {
   const { switches, complaints } = readSwitches(location.search);
-  const store = createPreferenceStore(browserStorage(), (sentence) => notices.show('warning', sentence));
+  const store = createPreferenceStore(browserStorage('localStorage'), (sentence) => notices.show('warning', sentence));
   for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);
-  const settings = createSettings(switches, store);
+  const settings = createSettings(switches, store, browserStorage('sessionStorage'));
   const changes = new Emitter();
   return { switches, store, settings, changes, notices, writer: new SettingsWriter(settings, store, changes.emit) };
 }

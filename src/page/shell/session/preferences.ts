@@ -148,10 +148,10 @@ export function createPreferenceStore(
 
 export type PreferenceStore = ReturnType<typeof createPreferenceStore>;
 
-/** The browser's storage, or null where a policy or a private window forbids it. */
-export function browserStorage(): Storage | null {
+/** Returns a storage of the browser; null: a policy or a private window forbids it. */
+export function browserStorage(name: 'localStorage' | 'sessionStorage'): Storage | null {
   try {
-    return window.localStorage;
+    return window[name];
   } catch (error) {
     if (error instanceof DOMException) return null;
     throw error;

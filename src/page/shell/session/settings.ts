@@ -37,8 +37,30 @@ export interface Settings extends ActivitySettings {
   readonly calibrationSource: string;
 }
 
-/** Creates the settings from the address, else from stored preferences, else from defaults. */
-export function createSettings(switches: Switches, { preferences }: Pick<PreferenceStore, 'preferences'>): Settings {
+/** Returns the name of a player who gave none: `Guest` and two digits, which a reload of the tab keeps. */
+function guestName(tab: Pick<Storage, 'getItem' | 'setItem'> | null): string {
+  const key = 'threepoint.guest';
+  const stored = tab?.getItem(key) ?? '';
+  if (/^\d\d$/.test(stored)) return `Guest ${stored}`;
+  const number = 10 + ((crypto.getRandomValues(new Uint8Array(1))[0] ?? 0) % 90);
+  try {
+    tab?.setItem(key, String(number));
+  } catch (error) {
+    // A full storage affects only later visits.
+    if (!(error instanceof DOMException)) throw error;
+  }
+  return `Guest ${number}`;
+}
+
+/**
+ * Creates the settings from the address, else from stored preferences, else from defaults. `tab`: the storage of this
+ * tab; null: the browser grants none.
+ */
+export function createSettings(
+  switches: Switches,
+  { preferences }: Pick<PreferenceStore, 'preferences'>,
+  tab: Pick<Storage, 'getItem' | 'setItem'> | null,
+): Settings {
   return {
     mirror: preferences.mirror ?? true,
     upperBodyOnly: preferences.upperBodyOnly ?? false,
@@ -68,7 +90,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     sound: preferences.sound ?? true,
     bots: switches.bots ?? (switches.room ? false : (preferences.bots ?? true)),
     name: switches.name ?? preferences.name ?? '',
-    defaultName: `Guest ${10 + ((crypto.getRandomValues(new Uint8Array(1))[0] ?? 0) % 90)}`,
+    defaultName: guestName(tab),
     following: null,
     calibrationSource: preferences.calibration ? 'remembered' : 'not calibrated yet',
   };

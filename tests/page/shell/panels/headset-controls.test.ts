@@ -58,7 +58,7 @@ function handAt(target: Vector3, pressed = true): MutablePointer {
 
 /** The controls of a headset in the studio, and what their buttons asked for. */
 function headset() {
-  const settings = createSettings(readSwitches('').switches, { preferences: {} });
+  const settings = createSettings(readSwitches('').switches, { preferences: {} }, null);
   const writer = new SettingsWriter(settings, { remember: () => undefined }, () => undefined);
   const done: string[] = [];
   const study: PageStudy = { run: null, runners: {} };

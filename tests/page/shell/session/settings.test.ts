@@ -2,10 +2,11 @@ import { describe, expect, test } from 'vitest';
 import type { Preferences } from '../../../../src/page/shell/session/preferences';
 import { createSettings, SettingsWriter } from '../../../../src/page/shell/session/settings';
 import { readSwitches } from '../../../../src/page/shell/session/switches';
+import { memoryStorage } from './memory-storage';
 
 /** Settings of a visit with this address by a person whose browser remembers this. */
 const visit = (query: string, remembered: Preferences = {}) =>
-  createSettings(readSwitches(query).switches, { preferences: { overlay: false, ...remembered } });
+  createSettings(readSwitches(query).switches, { preferences: { overlay: false, ...remembered } }, null);
 
 describe('the settings of a new visit', () => {
   test('a first visit has a mirror, sound, the bow in the left hand, and nothing calibrated', () => {
@@ -40,6 +41,15 @@ describe('the settings of a new visit', () => {
     expect(visit('', { panel: false }).panel).toBe(false);
     expect(visit('?panel=on', { panel: false }).panel).toBe(true);
     expect(visit('?panel=off', { panel: true }).panel).toBe(false);
+  });
+
+  test('a player without a name keeps the guest’s number through a reload, in this tab alone', () => {
+    const tab = memoryStorage();
+    const visited = () => createSettings(readSwitches('').switches, { preferences: {} }, tab).defaultName;
+    const first = visited();
+    expect(first).toMatch(/^Guest \d\d$/);
+    expect(Array.from({ length: 20 }, visited)).toEqual(Array(20).fill(first));
+    expect(new Set(Array.from({ length: 20 }, () => visit('').defaultName)).size).toBeGreaterThan(1);
   });
 
   test('a round is as long as the game has it, unless the address says', () => {
