@@ -50,14 +50,15 @@ export const drawEveryFrame = (page: Page, every = true): Promise<void> =>
     window.drawsEveryFrame = every;
   }, every);
 
-/** Takes a screenshot of what the page computes now, regardless of when it was last drawn. */
-export async function screenshot(page: Page, path: string): Promise<void> {
+/** Takes a screenshot of what the page computes now, regardless of when it was last drawn; `path`: also saves it. */
+export async function screenshot(page: Page, path?: string): Promise<Buffer> {
   await drawEveryFrame(page);
   await page.evaluate(async () => {
     if (window.drivenTime) await window.drivenTime.drawn();
     // The mirror's picture may be a frame older than the scene's.
     else for (let left = 3; left > 0; left--) await new Promise(requestAnimationFrame);
   });
-  await page.screenshot({ path });
+  const picture = await page.screenshot(path === undefined ? {} : { path });
   await drawEveryFrame(page, false);
+  return picture;
 }

@@ -106,7 +106,7 @@ const programs = {
 
 /** The tools that are scripts of their own. */
 export const scriptTools = [
-  ...['train', 'train:gait', 'evaluate', 'report', 'goldens', 'renew', 'reliability'],
+  ...['train', 'train:gait', 'evaluate', 'report', 'goldens', 'renew', 'reliability', 'pictures'],
   ...['bench', 'avatars:fetch', 'avatars:try'],
 ];
 

@@ -1,12 +1,12 @@
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import { driveTime, holdAt, pass } from '../driven-time';
+import { keepFilm } from '../film';
 import { card, choose, errors } from '../mocap-card';
 import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
 
-// The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as
-// JPEG when it was looked at. That of our bodies is all.png of `npm run tool -- avatars:try public/avatars`.
+// The pictures of README.md as the page shows them now. `npm run tool -- pictures` puts them into docs/images.
 test.use({ viewport: { width: 1280, height: 720 } });
 freshTest.use({ viewport: { width: 1280, height: 720 } });
 
@@ -85,4 +85,51 @@ test('the picture of motion capture shows our actor’s file by two methods, eac
     .toBeGreaterThan(30);
   await page.getByRole('button', { name: 'Controls' }).click();
   await keepPicture(page, 'readme-motion-in');
+});
+
+test.describe('moving pictures', () => {
+  test.use({ viewport: { width: 960, height: 540 } });
+
+  test('the mirror: a person and the reflection @nightly', async ({ page }) => {
+    await open(page, 'quality=high&panel=off&view=third-person');
+    await driveTime(page);
+    await keepFilm(page, 'film-mirror', 5, 640);
+  });
+
+  test('archery: a round of the built-in archer @nightly', async ({ page }) => {
+    await open(page, 'play=archery&seed=7&quality=high&panel=off');
+    await driveTime(page);
+    await holdAt<ArcheryProbe>(page, { score: 5 });
+    await keepFilm(page, 'film-archery', 5, 640);
+  });
+
+  test('a motion by IK and by the network, each with its truth @nightly', async ({ page }) => {
+    await recordTheActor(page, 6);
+    const { bytes } = await downloaded(page, 'BVH');
+    await open(page, 'emulate&quality=high&estimator=learned&actor=off&panel=off');
+    await choose(page, [{ name: 'actor.bvh', mimeType: 'text/plain', buffer: bytes }]);
+    await card(page).getByLabel('On its right').selectOption('ik');
+    await driveTime(page);
+    await keepFilm(page, 'film-methods', 5, 640);
+  });
+});
+
+freshTest('the ball game as a moving picture @nightly', async ({ page, serve }) => {
+  freshTest.setTimeout(600_000);
+  await page.setViewportSize({ width: 960, height: 540 });
+  const { origin } = await serve();
+  await page.goto(`${origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
+  await expect(page.getByRole('button', { name: 'Play with others' })).toBeEnabled({ timeout: 120_000 });
+  await driveTime(page);
+  await holdAt<BallActivityProbe>(page, { phase: 'running', score: 1 });
+  await keepFilm(page, 'film-ball', 5, 640);
+});
+
+freshTest('archery on a phone as a moving picture @nightly', async ({ page }) => {
+  freshTest.setTimeout(600_000);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open(page, 'play=archery&seed=7&quality=low&panel=off');
+  await driveTime(page);
+  await holdAt<ArcheryProbe>(page, { score: 5 });
+  await keepFilm(page, 'film-phone', 4, 300);
 });
