@@ -3,6 +3,7 @@ import {
   type Credentials,
   createRouter,
   createSitePolicy,
+  errorLine,
   prepareServer,
   readSoftwareVersion,
 } from 'threepoint-http';
@@ -65,7 +66,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     ...(credentials && { credentials }),
     connectionLimiter,
     checkHost: site.checkHost,
-    onFault: (error) => log(`a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
+    onFault: (error) => log(errorLine(error)),
   });
   const rooms = attachRooms(prepared.http, {
     ...relaying,

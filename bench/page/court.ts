@@ -5,7 +5,6 @@ import {
   type RemotePerson,
   type Skeleton,
   skeletonFromCalibration,
-  unknownFingers,
 } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
 import {
@@ -62,7 +61,7 @@ export class Court {
     studio.setSurroundings(this.#view.placed(floorFromArena));
     this.#others = new RemoteAvatars({
       load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),
-      plain: () => false,
+      plain: defaultAvatar,
       mouthOf: () => 0,
       onRefused: () => undefined,
     });
@@ -76,7 +75,6 @@ export class Court {
       palette: 'ember',
       pose: { head, leftHand: null, rightHand: null, body: null },
       placement: composeTransforms(floorFromArena, arenaFromCirclePlace(seat, places)),
-      fingers: unknownFingers,
       opacity: 1,
     }));
     this.#shown = {
@@ -116,10 +114,9 @@ export class Court {
   /** Poses the other bodies by their received packets. */
   showOthers(time: number): void {
     this.#people.length = 0;
-    for (const { id, pose, fingers, opacity } of this.#players.follow(time)) {
+    for (const { id, pose, opacity } of this.#players.follow(time)) {
       const person = this.#seen[id]!;
       person.pose = pose;
-      person.fingers = fingers;
       person.opacity = opacity;
       this.#people.push(person);
     }

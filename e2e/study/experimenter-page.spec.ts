@@ -1,14 +1,7 @@
-import { readFileSync } from 'node:fs';
-import { parsePlan } from '../../src/study/model/plan/plan';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { expect, keepPicture } from '../page-fixture';
 import { openStudy, signIn, test } from './study-participant';
-import { experimenter } from './study-server';
-
-const plan = (id: string) => ({
-  ...parsePlan(readFileSync('public/studies/latency.json', 'utf8'), 'latency.json'),
-  id,
-});
+import { experimenter, shippedPlan } from './study-server';
 
 test.use({ viewport: { width: 1280, height: 860 } });
 
@@ -16,7 +9,7 @@ test('a participant whose page has just reported is there, though the experiment
   page,
   origin,
 }) => {
-  const study = plan('clocks');
+  const study = shippedPlan('latency', 'clocks');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
   await experimenting.consented(study, 'P01');
@@ -30,7 +23,7 @@ test('a participant whose page has just reported is there, though the experiment
 });
 
 test('a button keeps the focus while the states of the participants are refreshed @full', async ({ page, origin }) => {
-  const study = plan('refreshed');
+  const study = shippedPlan('latency', 'refreshed');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
   await openStudy(page, `${origin}/experimenter`, 'refreshed');
@@ -44,7 +37,7 @@ test('a button keeps the focus while the states of the participants are refreshe
 
 test('the list shows the open study when another one cannot be opened @full', async ({ page, origin, complaints }) => {
   complaints.allow(/ERR_FAILED/);
-  for (const id of ['kept', 'lost']) await experimenter(origin).begin(plan(id), false);
+  for (const id of ['kept', 'lost']) await experimenter(origin).begin(shippedPlan('latency', id), false);
   await openStudy(page, `${origin}/experimenter`, 'kept');
   await expect(page.getByText('kept · 18 participants')).toBeVisible();
   await page.route('**/api/studies/lost/**', (route) => route.abort());
@@ -55,7 +48,7 @@ test('the list shows the open study when another one cannot be opened @full', as
 });
 
 test('the link of a participant under way is in sight on a narrow screen too @full', async ({ page, origin }) => {
-  const study = plan('narrow');
+  const study = shippedPlan('latency', 'narrow');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
   await experimenting.consented(study, 'P01');
@@ -73,7 +66,7 @@ for (const [address, said] of [
   ['results', 'asked-for, from this server.'],
 ] as const) {
   test(`the ${address} page opens the study of its address once the token is given @full`, async ({ page, origin }) => {
-    await experimenter(origin).begin(plan('asked-for'), false);
+    await experimenter(origin).begin(shippedPlan('latency', 'asked-for'), false);
     await page.goto(`${origin}/${address}?study=asked-for`);
     await signIn(page);
     await expect(page.getByText(said)).toBeVisible();
@@ -88,9 +81,9 @@ test('a study stays marked as simulated when its first file was wrong @full', as
       .getByLabel('Study file', { exact: true })
       .setInputFiles({ name: 'mine.json', mimeType: 'application/json', buffer: Buffer.from(text) });
   await page.getByLabel('simulated: to try it, or for a program').check();
-  await choose(JSON.stringify({ ...plan('second-file'), participants: 0 }));
+  await choose(JSON.stringify({ ...shippedPlan('latency', 'second-file'), participants: 0 }));
   await expect(page.getByRole('alert')).toContainText('participants');
-  await choose(JSON.stringify(plan('second-file')));
+  await choose(JSON.stringify(shippedPlan('latency', 'second-file')));
   await expect(page.getByText('SIMULATED: a copy to try')).toBeVisible();
   await expect(page.getByText('second-file-try · ')).toBeVisible();
 });
@@ -99,7 +92,7 @@ test('a block of people who play together is voided for all unless the experimen
   page,
   origin,
 }) => {
-  const study = { ...parsePlan(readFileSync('public/studies/paper.json', 'utf8'), 'paper.json'), id: 'trios' };
+  const study = shippedPlan('paper', 'trios');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
   const { members } = scheduleFor(study, 'P01').groups.ball as { readonly members: readonly string[] };
@@ -131,7 +124,7 @@ test('a block of people who play together is voided for all unless the experimen
 });
 
 test('a block that ends while the reason is written is not taken for the next one @full', async ({ page, origin }) => {
-  const study = plan('moving-on');
+  const study = shippedPlan('latency', 'moving-on');
   const experimenting = experimenter(origin);
   await experimenting.begin(study, false);
   await experimenting.consented(study, 'P01');
@@ -149,7 +142,7 @@ test('a block that ends while the reason is written is not taken for the next on
 
 test('a picture of a study with two cohorts under way, for docs/study.md @nightly', async ({ page, origin }) => {
   const study = {
-    ...plan('latency-avatars'),
+    ...shippedPlan('latency', 'latency-avatars'),
     participants: 24,
     cohorts: [
       { id: 'small', label: 'A small body', avatar: 'child' as const },

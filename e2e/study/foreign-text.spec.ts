@@ -1,6 +1,5 @@
 import { fork } from 'node:child_process';
 import { once } from 'node:events';
-import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
 import { checkedPlan, type StudyPlan } from '../../src/study/model/plan/plan';
@@ -10,7 +9,7 @@ import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulat
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { expect, joinedRoom } from '../page-fixture';
 import { openResults, signIn, test } from './study-participant';
-import { experimenter } from './study-server';
+import { experimenter, shippedPlan } from './study-server';
 
 /** What another person may write where a page shows it; as markup it would be an element of this class. */
 const mark = '<b class=foreign>x';
@@ -33,7 +32,7 @@ function marked(value: unknown, isText = false): unknown {
 }
 
 const markedPlan = (id: string): StudyPlan => {
-  const plan = marked(JSON.parse(readFileSync('public/studies/example.json', 'utf8'))) as StudyPlan;
+  const plan = marked(shippedPlan('example')) as StudyPlan;
   return checkedPlan({ ...plan, id });
 };
 

@@ -4,7 +4,7 @@ import { scheduleFor } from '../../src/study/model/plan/schedule';
 import type { Point } from '../emulated-headset';
 import { distance, enterVr, expect, keepPicture, probe } from '../page-fixture';
 import { calibrate, consentAndFillIn, press, reaches, stretched, takePart, tenHertz, test } from './study-participant';
-import { experimenter, shortStudy } from './study-server';
+import { experimenter, shortStudy, withoutPractice } from './study-server';
 
 const conditions = [
   {
@@ -29,12 +29,11 @@ const conditions = [
 ];
 
 function plan(): StudyPlan {
-  const short = shortStudy('conditions');
+  const short = withoutPractice(shortStudy('conditions'));
   const question = { id: 'mine', text: 'It felt as if the virtual body were my own.' };
   const body = { id: 'own', title: 'Body', answer: { kind: 'likert', from: 1, to: 7 }, questions: [question] };
   const tasks = short.tasks.map((task) => ({
     ...task,
-    tutorial: { ...task.tutorial, when: 'never' },
     calibrateBeforeBlock: false,
     questionnaire: 'own',
   }));

@@ -1,20 +1,13 @@
-import { readFileSync } from 'node:fs';
 import type { Locator } from '@playwright/test';
-import { parsePlan } from '../../src/study/model/plan/plan';
 import { expect, keepPicture } from '../page-fixture';
 import { continueAtDesk, reaches, test } from './study-participant';
-
-/** A shipped plan under an id of its own. */
-const shipped = (name: string, id: string) => ({
-  ...parsePlan(readFileSync(`public/studies/${name}`, 'utf8'), name),
-  id,
-});
+import { shippedPlan } from './study-server';
 
 test('the keyboard stays within the card when another question replaces one that was answered @full', async ({
   page,
   origin,
 }) => {
-  await continueAtDesk(page, origin, shipped('paper.json', 'focus'), 'archery/1/questionnaire');
+  await continueAtDesk(page, origin, shippedPlan('paper', 'focus'), 'archery/1/questionnaire');
   const card = page.locator('.study-card');
   for (const [id, next] of [
     ['Q1', 'Q2'],
@@ -34,7 +27,7 @@ test('the keyboard stays within the card when another question replaces one that
 });
 
 test('the line of an unanswered slider is the same on either side of its middle @full', async ({ page, origin }) => {
-  await continueAtDesk(page, origin, shipped('example.json', 'slider'), 'archery/1/questionnaire');
+  await continueAtDesk(page, origin, shippedPlan('example', 'slider'), 'archery/1/questionnaire');
   for (let question = 0; question < 2; question++) {
     await page.getByRole('radio').first().check();
     await page.getByRole('button', { name: 'Next' }).click();

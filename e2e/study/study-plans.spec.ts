@@ -1,13 +1,9 @@
-import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
 import { expect, keepPicture } from '../page-fixture';
 import { signIn, test } from './study-participant';
-import { experimenter } from './study-server';
+import { experimenter, shippedPlan } from './study-server';
 
-const plan = (changes: object = {}) => ({
-  ...JSON.parse(readFileSync('public/studies/latency.json', 'utf8')),
-  ...changes,
-});
+const plan = (changes: object = {}) => ({ ...shippedPlan('latency'), ...changes });
 
 const choose = (page: Page, study: object) =>
   page

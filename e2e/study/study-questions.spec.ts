@@ -1,7 +1,5 @@
-import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
 import { english } from '../../src/study/model/phrases/english';
-import { parsePlan } from '../../src/study/model/plan/plan';
 import { enterVr, expect, keepPicture } from '../page-fixture';
 import {
   calibrate,
@@ -15,22 +13,10 @@ import {
   tenHertz,
   test,
 } from './study-participant';
-import { experimenter } from './study-server';
+import { experimenter, shortStudy, withoutPractice } from './study-server';
 
 /** The shipped example with questions of every kind, its times cut short. */
-function shortExample(id: string) {
-  const plan = parsePlan(readFileSync('public/studies/example.json', 'utf8'), 'example.json');
-  return {
-    ...plan,
-    id,
-    tasks: plan.tasks.map((task) => ({
-      ...task,
-      trialSeconds: 5,
-      restSeconds: 1,
-      tutorial: { ...task.tutorial, when: 'never' as const },
-    })),
-  };
-}
+const shortExample = (id: string) => withoutPractice(shortStudy(id, 'example'));
 
 /** What the page says in English in more than one word, each up to the first gap. */
 const ofEnglish = Object.values(english)

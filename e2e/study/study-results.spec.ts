@@ -7,9 +7,7 @@ import { statedPerformanceModel } from '../../src/study/simulation/performance-m
 import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { expect, keepPicture } from '../page-fixture';
 import { openResults, test } from './study-participant';
-import { experimenter } from './study-server';
-
-const shipped = (file: string) => JSON.parse(readFileSync(`public/studies/${file}`, 'utf8')) as Record<string, unknown>;
+import { experimenter, shippedPlan } from './study-server';
 
 /**
  * A whole simulated study on the server, as `npm run tool -- study:simulate` makes it, with these effects on answers
@@ -33,7 +31,7 @@ async function simulateOn(origin: string, file: unknown, effects: Readonly<Recor
 }
 
 test('results of fifteen simulated participants; export, delete, export', async ({ page, origin }) => {
-  const { plan } = await simulateOn(origin, shipped('paper.json'), { learned: 0.8 });
+  const { plan } = await simulateOn(origin, shippedPlan('paper'), { learned: 0.8 });
   await openResults(page, plan.id);
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
   for (const name of [/Archery: questionnaire, means/, /Ball game: questionnaire, means/, /Archery: scores, means/]) {
@@ -94,7 +92,7 @@ test('results of fifteen simulated participants; export, delete, export', async 
  * Three avatars between participants, each with three latencies within; the work load is what the avatars differ in.
  */
 function mixedStudy() {
-  const file = shipped('latency.json');
+  const file = shippedPlan('latency');
   const avatars = ['woman', 'stout', 'child'] as const;
   return {
     ...{ ...file, id: 'latency-avatars', participants: 18 },

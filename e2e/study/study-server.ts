@@ -60,41 +60,39 @@ export async function provideServers(use: (serve: Serve) => Promise<void>, share
   for (const server of servers) await server.close();
 }
 
-/** Returns the paper's study with shortened times and archery alone. */
-export function shortStudy(id: string): StudyPlan {
-  const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
+/** Returns a shipped study, under this id. */
+export const shippedPlan = (name: 'example' | 'latency' | 'paper', id: string = name): StudyPlan => ({
+  ...parsePlan(readFileSync(atRoot(`public/studies/${name}.json`), 'utf8'), `${name}.json`),
+  id,
+});
+
+/** Returns a shipped study with one of its games, for three participants, with short trials and 2 s of practice. */
+export function shortStudy(
+  id: string,
+  of: 'example' | 'paper' = 'paper',
+  game = 'archery',
+  trialSeconds = 5,
+): StudyPlan {
+  const { tasks, ...plan } = shippedPlan(of, id);
   return {
-    ...paper,
-    id,
-    participants: 4,
-    tasks: paper.tasks
-      .filter(({ game }) => game === 'archery')
+    ...plan,
+    participants: 3,
+    tasks: tasks
+      .filter((task) => task.game === game)
       .map((task) => ({
         ...task,
-        trialSeconds: 5,
-        tutorial: { ...task.tutorial, seconds: 2, restSeconds: 0 },
+        trialSeconds,
         restSeconds: 1,
+        tutorial: { ...task.tutorial, seconds: 2, restSeconds: 0 },
       })),
   };
 }
 
-/** Returns a study of the ball game alone, for one group of three, with matches of this length and without practice. */
-export function shortBallStudy(id: string, trialSeconds: number): StudyPlan {
-  const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
-  return {
-    ...paper,
-    id,
-    participants: 3,
-    tasks: paper.tasks
-      .filter(({ game }) => game === 'ball')
-      .map((task) => ({
-        ...task,
-        trialSeconds,
-        tutorial: { ...task.tutorial, when: 'never' },
-        restSeconds: 1,
-      })),
-  };
-}
+/** Returns a study without practice. */
+export const withoutPractice = (plan: StudyPlan): StudyPlan => ({
+  ...plan,
+  tasks: plan.tasks.map((task) => ({ ...task, tutorial: { ...task.tutorial, when: 'never' } })),
+});
 
 /** A client of the experimenter's API of a server. */
 export function experimenter(origin: string) {

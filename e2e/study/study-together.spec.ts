@@ -13,7 +13,7 @@ import {
   study,
   test,
 } from './study-participant';
-import { experimenter, shortBallStudy } from './study-server';
+import { experimenter, shortStudy, withoutPractice } from './study-server';
 
 /**
  * The match stands longer than any page takes to draw what has happened [s]: for so many pictures, of which each takes
@@ -32,7 +32,7 @@ test('three participants play the ball game together, each in a headset of their
   origin,
 }) => {
   test.setTimeout(900_000);
-  await experimenter(origin).begin(shortBallStudy('trio', matchSeconds), true);
+  await experimenter(origin).begin(withoutPractice(shortStudy('trio', 'paper', 'ball', matchSeconds)), true);
   const people = ['P01', 'P02', 'P03'];
   const pages = await Promise.all(
     people.map(async () => {

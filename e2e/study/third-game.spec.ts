@@ -18,7 +18,7 @@ import {
   study,
   takePart,
 } from './study-participant';
-import { experimenter, serveStudies, shortBallStudy } from './study-server';
+import { experimenter, serveStudies, shortStudy, withoutPractice } from './study-server';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
 const built = `${root}.cache/third-game/`;
@@ -87,7 +87,7 @@ test('two pages play a round of a third game to its end @full', async ({ browser
 
 /** Returns a study of the third game alone, for one group of two. */
 function touchStudy(): StudyPlan {
-  const plan = shortBallStudy('lamps', 120);
+  const plan = withoutPractice(shortStudy('lamps', 'paper', 'ball', 120));
   const tasks = plan.tasks.map((task) => ({ ...task, id: 'touch', game: 'touch', groupSize: 2 }));
   const { planned: _, ...unplanned } = plan;
   // reason: a plan of this build's server, whose games have one more name

@@ -17,5 +17,9 @@ export class HttpError extends Error {
   }
 }
 
-/** Returns what a client receives for a fault of the server; the log has the details. */
+/** Returns what a client receives for an unexpected error; the log has `errorLine`. */
 export const internalError = (): HttpError => new HttpError(500, 'the server failed; try again');
+
+/** Returns the line of the log about an unexpected error, with its stack. */
+export const errorLine = (error: unknown): string =>
+  `unexpected error: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`;

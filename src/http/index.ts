@@ -7,7 +7,7 @@ export { ConnectionLimiter, createSlotCounter } from './connection-limiter';
 export { invalidVariable, numberFrom, splitList } from './environment';
 export { GroupCommit } from './group-commit';
 export { guarded } from './guarded';
-export { HttpError, internalError } from './http-error';
+export { errorLine, HttpError, internalError } from './http-error';
 export { consumePoint, tooManyRequests } from './rate-limit';
 export { readBody } from './request-body';
 export { parseRequestTarget } from './request-target';

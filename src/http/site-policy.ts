@@ -24,8 +24,8 @@ export interface SitePolicy {
 export interface SitePolicyOptions {
   /** Origins of pages that may use the server; empty: the server's own origin. */
   readonly origins: readonly string[];
-  /** Further names of the server, beyond those of this machine and of the origins. */
-  readonly hosts: readonly string[];
+  /** Further names of the server, beyond those of this machine and of the origins; 'any': the Host is not checked. */
+  readonly hosts: readonly string[] | 'any';
   /** Whether a proxy in front sets X-Forwarded-Proto. */
   readonly trustProxy: boolean;
 }
@@ -46,7 +46,7 @@ export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptio
     'localhost',
     machine,
     `${machine}.local`,
-    ...hosts.map((host) => host.toLowerCase()),
+    ...(hosts === 'any' ? [] : hosts.map((host) => host.toLowerCase())),
     ...origins.map((origin) => new URL(origin).hostname),
   ]);
 
@@ -59,7 +59,7 @@ export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptio
   return {
     checkHost({ headers: { host } }) {
       // Browsers always send Host; a request without one (HTTP/1.0) comes from another program.
-      if (host === undefined) return null;
+      if (host === undefined || hosts === 'any') return null;
       const name = nameIn(host);
       if (name === null) return { status: 400, message: 'the Host of this request is not a valid host name' };
       if (isIP(name) !== 0 || name.endsWith('.localhost') || names.has(name)) return null;

@@ -31,8 +31,8 @@ export interface AttachRoomsOptions extends Partial<Omit<RelayConfiguration, 'se
   readonly seats?: number;
   /** Games, by name. Default: none, rooms are just people. */
   readonly games?: RoomKinds;
-  /** Further names of the server; requests with another Host are refused. Default: the Host is not checked. */
-  readonly hosts?: readonly string[];
+  /** The names of the server. Default: 'any', the Host is not checked. */
+  readonly hosts?: RelayConfiguration['hosts'];
   /** Whether the rooms also answer `/healthz` and `/metrics`. Default: false. */
   readonly monitoring?: boolean;
   /** Counts of the server's connections, for `/healthz` and `/metrics`. Default: zeros. */
@@ -94,10 +94,10 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   if (secret.length < 32) throw new RangeError(`A secret needs at least 32 characters; this one has ${secret.length}.`);
   if (!/^(\/[\w-]+)*$/.test(path))
     throw new RangeError(`The path must be like '/bodies', not ${JSON.stringify(path)}.`);
-  const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), ...settings };
+  const configuration: RelayConfiguration = { ...relayConfigurationFrom({}), hosts: 'any', ...settings };
   const kinds = new Map<string, RoomKind>([[peopleKind, peopleRoomKind(seats)], ...(games ?? [])]);
   const relay = createRelay(configuration, secret, connections, kinds);
-  const site = settings.hosts ? createSitePolicy(configuration) : originsOnly(configuration);
+  const site = createSitePolicy(configuration);
   const router = createRouter([relay.service], noPage, site);
   const { onFault } = relay.service;
   const answer = answering((request, response) => {
@@ -150,12 +150,6 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
     },
   };
 }
-
-/** The names of the server are its owner's business; the origins of pages are checked. */
-const originsOnly = ({ origins, trustProxy }: RelayConfiguration): SitePolicy => ({
-  ...createSitePolicy({ origins, hosts: [], trustProxy }),
-  checkHost: () => null,
-});
 
 /**
  * Lets pages of other origins read the answers, where they may use the rooms. Answers their preflight requests; returns

@@ -255,11 +255,31 @@ test('below a path, and for pages of other origins that are named', async () => 
   room.leave();
 });
 
-test('the configuration of an environment serves rooms under the names that it states, and no others', async () => {
-  const environment = { THREEPOINT_LOG_LEVEL: 'silent', THREEPOINT_HOSTS: 'bodies.example.com' };
-  const { url } = await servedRooms(relayConfigurationFrom(environment));
-  const statusFor = async (host: string) => (await ask(url, '/api/rooms', { headers: { host } })).status;
-  expect([await statusFor('bodies.example.com'), await statusFor('elsewhere.example.com')]).toEqual([200, 421]);
+test.each<[what: string, environment: NodeJS.ProcessEnv | null, named: boolean, other: boolean]>([
+  ['without hosts answer under any name', null, true, true],
+  ['of an environment answer under the names that it states', { THREEPOINT_HOSTS: 'bodies.example.com' }, true, false],
+  ['of an environment without hosts answer under no other name', {}, false, false],
+])('rooms %s, to requests and to WebSockets', async (_, environment, named, other) => {
+  const { server } = await servedRooms(
+    environment ? relayConfigurationFrom({ ...environment, THREEPOINT_LOG_LEVEL: 'silent' }) : {},
+  );
+  const { port } = server.address() as AddressInfo;
+  const statusOf = async (path: string, host: string, headers = '') => {
+    const socket = connect(port, '127.0.0.1');
+    socket.write(`GET ${path} HTTP/1.1\r\nHost: ${host}\r\n${headers}\r\n`);
+    const [answer] = (await once(socket, 'data')) as [Buffer];
+    socket.destroy();
+    return answer.toString().slice('HTTP/1.1 '.length, 'HTTP/1.1 200'.length);
+  };
+  const key = `Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: ${Buffer.alloc(16).toString('base64')}\r\n`;
+  const upgrade = `Connection: Upgrade\r\nUpgrade: websocket\r\n${key}`;
+  for (const [host, answered] of [
+    ['bodies.example.com', named],
+    ['elsewhere.example.com', other],
+  ] as const) {
+    expect(await statusOf('/api/rooms', host)).toBe(answered ? '200' : '421');
+    expect(await statusOf('/relay/?EIO=4&transport=websocket', host, upgrade)).toBe(answered ? '101' : '421');
+  }
 });
 
 test('requests with two names of the server reach no room, as requests and as WebSockets', async () => {

@@ -101,7 +101,7 @@ export async function startServer(
     /** Everything printed so far on the stream of errors: the log of the studies, and exceptions. */
     errors: () => errors,
     /** The faults of the studies that were logged so far. */
-    faults: () => errors.split('\n').filter((line) => line.startsWith('study, a fault: ')),
+    faults: () => errors.split('\n').filter((line) => line.startsWith('study: unexpected error: ')),
     /** Moves the clock of the server, and of nothing else, to this far from the machine's [s]. */
     setClock: (aheadSeconds: number) => ask({ aheadSeconds }),
     /** Stops the clock of the server at this time [s]. */

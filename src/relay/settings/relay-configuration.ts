@@ -7,8 +7,11 @@ export interface RelayConfiguration {
   readonly secret: string | null;
   /** Origins of pages that may connect; empty: the server's own origin. */
   readonly origins: readonly string[];
-  /** Further names of the server, beyond localhost, this machine's and those of the origins. */
-  readonly hosts: readonly string[];
+  /**
+   * Further names of the server, beyond localhost, this machine's and those of the origins: requests with another Host
+   * are rejected, those of the WebSockets, too. 'any': the Host is not checked.
+   */
+  readonly hosts: readonly string[] | 'any';
   /** The most ticks of a room per second. */
   readonly tickHz: number;
   readonly posesPerSecond: number;

@@ -13,9 +13,9 @@ interface Seated {
 
 function seated(id: number): Seated {
   const playback = new Playback();
-  const { pose, fingers } = playback.shown;
+  const { pose } = playback.shown;
   const looks = { calibration: defaultCalibration, avatar: defaultAvatar, palette: null };
-  return { playback, remote: { id, ...looks, pose, fingers, placement: makeTransform(), opacity: 1 } };
+  return { playback, remote: { id, ...looks, pose, placement: makeTransform(), opacity: 1 } };
 }
 
 /** Plays the packets of the other players with a jitter buffer for each. */

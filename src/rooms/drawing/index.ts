@@ -1,5 +1,4 @@
 // "threepoint-rooms/three": the bodies of other people in a three.js scene.
-export type { AvatarLoader } from './drawn-bodies';
 export { type JoinedRoom, type JoinRoomOptions, joinRoom, type RoomBody, type RoomPerson } from './join-room';
-export { placementOf, RemoteBodies, type RemoteBodiesOptions } from './remote-bodies';
+export { type AvatarLoader, placementOf, RemoteBodies, type RemoteBodiesOptions } from './remote-bodies';
 export { RoomBodies, type RoomBodiesOptions } from './room-bodies';

@@ -1,5 +1,5 @@
 import type { Object3D } from 'three';
-import { type AvatarRef, firstLine, type RemotePerson, reasonOf } from 'threepoint/core';
+import { type AvatarRef, defaultAvatar, firstLine, type RemotePerson, reasonOf } from 'threepoint/core';
 import type { Vec3 } from 'threepoint/math';
 import { type Avatar, RemoteAvatars } from 'threepoint/three';
 import type { RoomView } from '../client/connection';
@@ -43,8 +43,8 @@ export class RoomBodies {
     this.#options = options;
     this.#seen = new RoomAvatarLoader(options);
     const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
-    const notifyRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRefused(avatar, reason);
-    this.#drawn = new RemoteAvatars({ load, plain, mouthOf, onRefused: notifyRefused, shadows });
+    const onRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRefused(avatar, reason);
+    this.#drawn = new RemoteAvatars({ load, plain: defaultAvatar, onlyPlain: plain, mouthOf, onRefused, shadows });
     this.#shared = new SharedAvatar({ exchange, wear, send, notify });
   }
 

@@ -4,6 +4,7 @@ import { reasonOf } from 'threepoint/core';
 import {
   type Call,
   ConfigurationError,
+  errorLine,
   findClientAddress,
   HttpError,
   type Route,
@@ -13,7 +14,7 @@ import {
   ThreadCalls,
   ThreadUnavailable,
 } from 'threepoint-http';
-import { faultLine, retryAfterSeconds, type StudyDispatcher } from './routes/dispatcher';
+import { retryAfterSeconds, type StudyDispatcher } from './routes/dispatcher';
 import { failureSentence } from './routes/effect';
 import type { RouteAccess } from './routes/guard';
 import type { RouteHead, StudyRequest } from './routes/route';
@@ -76,7 +77,7 @@ class StudyThread {
     let shortage: string | null = null;
     worker.on('error', (error) => {
       shortage = shortageOf(error);
-      log(shortage === null ? `study, a fault: ${error.stack ?? error.message}` : `study: ${shortage}`);
+      log(`study: ${shortage ?? errorLine(error)}`);
     });
     worker.on('message', log);
     worker.once('exit', () => {
@@ -180,7 +181,7 @@ export function createStudyService({ routes, dispatcher, now, trustProxy, log }:
     // Without a body, admission and handling are one call to the thread.
     admit: ({ head }: Route<RouteAccess> & { readonly head: RouteHead }, call) =>
       head.bodyLimit === 0 ? undefined : dispatcher.admit(requestOf(head, call)),
-    onFault: (error) => log(faultLine(error)),
+    onFault: (error) => log(`study: ${errorLine(error)}`),
   };
 }
 

@@ -1,3 +1,4 @@
+import { gunzipSync } from 'node:zlib';
 import type { Software } from 'threepoint-http';
 import type { StudyPlan } from '../model/plan/plan';
 import type { Progress } from '../model/progress/progress';
@@ -82,6 +83,12 @@ export interface PackedMotion extends Omit<MotionFile, 'text'> {
   readonly gzipped: Uint8Array;
 }
 
+export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionFile => ({
+  participant,
+  trial,
+  text: gunzipSync(gzipped).toString(),
+});
+
 /** The recordings of trials of participants who consented to them. */
 export interface MotionStorage {
   store(study: string, participant: string, trial: string, text: string, at: number): Awaitable<void>;
@@ -118,6 +125,27 @@ export interface DeletionStorage {
 /** Software and the time since which it served the studies, in seconds since 1970. */
 export type ServedSoftware = Software & { readonly since: number };
 
+/** The software with which a server has served its studies. */
+export interface SoftwareStorage {
+  /** Stores the software that serves from now on, if it has changed. */
+  note(software: Software, at: number): Awaitable<void>;
+  /** Returns the software that has served since this moment, the oldest first. */
+  since(at: number): Awaitable<readonly ServedSoftware[]>;
+}
+
+/** What is stored of a study or of one participant, all from one state of the storage. */
+export interface StoredStudy extends Pick<StudyInfo, 'simulated' | 'retentionUntil'> {
+  /** The plan in the version of the study, or the one that the participant follows. */
+  readonly plan: StudyPlan;
+  /** The version of the study's plan, if that has several. */
+  readonly planVersion?: number;
+  /** Those of all participants who follow this version, or of the one participant. */
+  readonly records: readonly StoredRecord[];
+  readonly motion: readonly PackedMotion[];
+  /** The software that has served the study since its creation. */
+  readonly served: readonly ServedSoftware[];
+}
+
 /**
  * The studies and their records, for routes. Results are stored when a call returns and survive the end of the process.
  * They survive a power cut when `flushed` has resolved, and nothing is acknowledged before. Calls that change something
@@ -131,6 +159,9 @@ export interface StudyStorage {
   readonly motion: MotionStorage;
   readonly commands: CommandStorage;
   readonly deletion: DeletionStorage;
+  readonly software: SoftwareStorage;
+  /** Returns what an export of a version of a study, or of one participant, contains. */
+  storedStudy(study: string, version: number, participant?: string): Awaitable<StoredStudy>;
   /** Returns the state of every place at this time [s]. */
   overview(study: string, now: number): Awaitable<readonly ParticipantState[]>;
   /** Resolves when everything so far is on the disk; concurrent calls share a flush. */

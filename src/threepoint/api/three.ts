@@ -9,7 +9,6 @@ export { ObjectHolds } from '../avatar/hands/hold-object';
 export { createHeadLossFade } from '../avatar/head-loss-fade';
 export { Mirror } from '../avatar/mirror';
 export { palettes, skinColors } from '../avatar/palettes';
-export { PlacedAvatar } from '../avatar/placed-avatar';
 export { RemoteAvatars } from '../avatar/remote-avatars';
 export { thirdPersonOnlyLayer } from '../avatar/rig/body-meshes';
 export type { BoneMap } from '../core/humanoid/bones';

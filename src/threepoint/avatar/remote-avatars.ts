@@ -1,7 +1,7 @@
 import { Group, type Object3D } from 'three';
-import { type AvatarRef, isAvatarHash } from '../core/body/avatar-ref';
-import { bodyOf, defaultAvatar, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
-import type { RemotePerson } from '../core/body/remote-person';
+import type { AvatarRef } from '../core/body/avatar-ref';
+import { bodyOf, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
+import type { PersonalAvatar, RemotePerson } from '../core/body/remote-person';
 import { TransientError } from '../core/errors/transient-error';
 import { type MutableTransform, makeTransform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
@@ -10,38 +10,34 @@ import type { Avatar } from './avatar';
 import { PlacedAvatar } from './placed-avatar';
 import { meshesOf } from './scene-meshes';
 
-interface RemoteAvatarsOptions {
+interface RemoteAvatarsOptions<Wanted, Id> {
   /**
-   * Loads the body of an avatar: once for a file, and for each needed copy of a built-in body. Rejects
-   * where it is unavailable; after a TransientError it is called again some seconds later.
+   * Loads a body that nothing else draws; called for each needed copy of an avatar. Rejects where it is unavailable;
+   * after a TransientError it is called again some seconds later.
    */
-  load(avatar: AvatarRef): Promise<Avatar>;
-  /** Returns whether everybody is drawn as the plain body; called in every frame. */
-  plain(): boolean;
+  load(avatar: Wanted): Promise<Avatar>;
+  /** The avatar drawn while another one loads or if it cannot be shown. Default: the person's previous one, or none. */
+  readonly plain?: Wanted;
+  /** Returns whether everybody is drawn in the plain avatar; called in every frame. Default: false. */
+  onlyPlain?(): boolean;
   /** Returns the opening of a person's mouth: 0 shut to 1; called in every frame for each drawn person. */
-  mouthOf(id: number): number;
-  /**
-   * Called once for each avatar that cannot be shown, so that the plain one stays; not for a fault that passes soon.
-   */
-  onRefused(avatar: AvatarRef, reason: unknown): void;
+  mouthOf(id: Id): number;
+  /** Called once for each avatar that cannot be shown; not for an error that passes soon. */
+  onRefused(avatar: Wanted, reason: unknown): void;
   /** Whether a soft shadow lies under each body. Default: true. */
   readonly shadows?: boolean;
 }
 
-interface Body {
+interface Body<Wanted, Id> {
   readonly placed: PlacedAvatar;
-  readonly of: AvatarRef;
-  /** Whether the body is from a file and not one of the project's own. */
-  readonly fromFile: boolean;
-  id: number | null;
-  /** The time at which it was drawn last [s]. */
-  drawnAt: number;
+  readonly of: Wanted;
+  /** The person who has the body; null: nobody. */
+  id: Id | null;
+  /** The time at which a person had it last [s]. */
+  usedAt: number;
   palette: string;
   readonly placement: MutableTransform<'floor', 'floor'>;
 }
-
-/** The time [s] after which an unused body from a file is released. */
-const keptSeconds = 20;
 
 /** The time [s] after which a failed load is repeated. */
 const againSeconds = 5;
@@ -67,66 +63,82 @@ function shareGeometry(from: Object3D, to: Object3D): void {
   }
 }
 
-function isAmong(people: readonly RemotePerson[], id: number): boolean {
+/** Returns for how long a body that nobody has stays for another person [s]. */
+function spareSeconds(avatar: AvatarRef | PersonalAvatar): number {
+  // The built-in bodies stay as long as the others do; a file's memory is released body by body.
+  if (isBuiltInAvatar(avatar)) return Number.POSITIVE_INFINITY;
+  return typeof avatar === 'string' ? 20 : 0;
+}
+
+/** Returns the queue of an avatar, of which one is loaded at a time: the built-in bodies, the files, or a person's. */
+function queueOf(avatar: AvatarRef | PersonalAvatar): string {
+  if (typeof avatar !== 'string') return `person ${avatar.person}`;
+  return isBuiltInAvatar(avatar) ? 'built-in' : 'file';
+}
+
+function isAmong<Id>(people: readonly { readonly id: Id }[], id: Id | null): boolean {
   for (const person of people) if (person.id === id) return true;
   return false;
 }
 
 /**
- * Draws the bodies of other people. Copies of one body share its graphics memory. Bodies are created when they are
- * first needed and reused for later people. Files are loaded one at a time; while a file loads, or if it is refused,
- * the plain body is drawn. A load with a transient fault is repeated: a person who was away for long names their file
- * before it is in the store again.
+ * Draws the bodies of other people. Bodies are created when they are first needed, and reused for later people unless
+ * they are personal. Copies of one built-in body share its graphics memory. Files are loaded one at a time, a personal
+ * avatar independently of the others. A load with a transient error is repeated: a person who was away for long names
+ * their file before it is in the store again.
  */
-export class RemoteAvatars {
+export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef, Id = number> {
   readonly object = new Group();
-  readonly #options: RemoteAvatarsOptions;
-  readonly #bodies: Body[] = [];
-  /** The bodies in preparation: one of each built-in body and of each file. */
-  readonly #making: { own: boolean; file: boolean } = { own: false, file: false };
-  readonly #refused = new Map<AvatarRef, Refusal>();
+  readonly #options: RemoteAvatarsOptions<Wanted, Id>;
+  readonly #bodies: Body<Wanted, Id>[] = [];
+  /** The queues in which an avatar is loading. */
+  readonly #loading = new Set<string>();
+  readonly #refused = new Map<Wanted, Refusal>();
   #disposed = false;
   /** The time of the newest frame [s]. */
   #now = 0;
   /** The reason why the plain body could not be made; null: there is none. */
   #failed: unknown = null;
 
-  constructor(options: RemoteAvatarsOptions) {
+  constructor(options: RemoteAvatarsOptions<Wanted, Id>) {
     this.#options = options;
     this.object.name = 'other people';
   }
 
-  /** Draws these people and no others, at a time [s] on the clock of the frames. */
-  show(people: readonly RemotePerson[], time: number): void {
+  /** Draws these people and no others, at a time [s] on the clock of the frames. Opacity 0 hides a person's body. */
+  show(people: readonly RemotePerson<Wanted, Id>[], time: number): void {
     this.#now = time;
-    const plain = this.#options.plain();
+    const { plain, onlyPlain, mouthOf } = this.#options;
+    const only = onlyPlain?.() === true;
     for (const person of people) {
-      const body = this.#bodyFor(person, plain ? defaultAvatar : person.avatar, people);
+      const { id, opacity } = person;
+      const visible = opacity > 0;
+      const body = visible ? this.#bodyFor(id, (only && plain) || person.avatar, people) : this.#bodyOf(id);
       if (!body) continue;
-      body.drawnAt = time;
-      draw(body, person, this.#options.mouthOf(person.id), time);
+      body.usedAt = time;
+      body.placed.place.visible = visible;
+      if (visible) draw(body, person, mouthOf(id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {
       const body = this.#bodies[i]!;
-      let there = false;
-      for (const { id, opacity } of people) there ||= id === body.id && opacity > 0;
-      body.placed.place.visible = there;
-      if (!there) body.id = null;
-      if (body.id === null && body.fromFile && time - body.drawnAt > keptSeconds) this.#drop(i);
+      if (isAmong(people, body.id)) continue;
+      body.id = null;
+      body.placed.place.visible = false;
+      if (time - body.usedAt > spareSeconds(body.of)) this.#drop(i);
     }
   }
 
   /** Returns a person's drawn joints, floor frame of this room [m]; null: no person with this number is drawn. */
-  jointsOf(id: number): Readonly<Record<string, Vec3>> | null {
-    const body = this.#bodyOf(id);
+  jointsOf(id: Id): Readonly<Record<string, Vec3>> | null {
+    const body = this.#visibleBodyOf(id);
     if (!body) return null;
     const joints = Object.entries(body.placed.avatar.jointPositions());
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
   /** Returns the avatar that a person is drawn as; null: no person with this number is drawn. */
-  drawnAs(id: number): AvatarRef | null {
-    return this.#bodyOf(id)?.of ?? null;
+  drawnAs(id: Id): Wanted | null {
+    return this.#visibleBodyOf(id)?.of ?? null;
   }
 
   dispose(): void {
@@ -135,62 +147,71 @@ export class RemoteAvatars {
     while (this.#bodies.length > 0) this.#drop(this.#bodies.length - 1);
   }
 
-  #bodyOf(id: number): Body | null {
+  #bodyOf(id: Id): Body<Wanted, Id> | null {
     for (const body of this.#bodies) if (body.id === id) return body;
     return null;
   }
 
+  #visibleBodyOf(id: Id): Body<Wanted, Id> | null {
+    const body = this.#bodyOf(id);
+    return body?.placed.place.visible ? body : null;
+  }
+
   /** Returns the body of a person with this avatar, or the plain one; null while that is being made. */
-  #bodyFor({ id }: RemotePerson, avatar: AvatarRef, people: readonly RemotePerson[]): Body | null {
+  #bodyFor(id: Id, avatar: Wanted, people: readonly { readonly id: Id }[]): Body<Wanted, Id> | null {
+    const { plain } = this.#options;
     const own = this.#bodyOf(id);
     const wanted = own?.of === avatar ? own : this.#freeBody(avatar, people);
-    if (!wanted && avatar !== defaultAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
-    const body = wanted ?? (own?.of === defaultAvatar ? own : this.#freeBody(defaultAvatar, people));
-    if (!body) {
-      if (this.#failed) throw this.#failed;
-      this.#make(defaultAvatar);
-      // Bodies stay unchanged until the plain one is loaded.
-      return own;
-    }
-    if (body === own) return own;
+    if (!wanted && avatar !== plain && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
+    const body = wanted ?? this.#plainBody(own, people);
+    // Bodies stay unchanged until the plain one is loaded.
+    if (!body || body === own) return own;
     if (own) own.id = null;
     body.id = id;
     return body;
   }
 
-  #freeBody(avatar: AvatarRef, people: readonly RemotePerson[]): Body | null {
+  /** Returns a plain body: a person's own one or a free one; null while it is being made, or if there is none. */
+  #plainBody(own: Body<Wanted, Id> | null, people: readonly { readonly id: Id }[]): Body<Wanted, Id> | null {
+    const { plain } = this.#options;
+    if (plain === undefined) return null;
+    const body = own?.of === plain ? own : this.#freeBody(plain, people);
+    if (!body && this.#failed) throw this.#failed;
+    if (!body) this.#make(plain);
+    return body;
+  }
+
+  #freeBody(avatar: Wanted, people: readonly { readonly id: Id }[]): Body<Wanted, Id> | null {
     for (const body of this.#bodies) {
       if (body.of === avatar && (body.id === null || !isAmong(people, body.id))) return body;
     }
     return null;
   }
 
-  #make(avatar: AvatarRef): void {
-    const lane = isAvatarHash(avatar) ? 'file' : 'own';
-    if (this.#making[lane]) return;
-    this.#making[lane] = true;
-    void this.#load(avatar).finally(() => {
-      this.#making[lane] = false;
-    });
+  #make(avatar: Wanted): void {
+    const queue = queueOf(avatar);
+    if (this.#loading.has(queue)) return;
+    this.#loading.add(queue);
+    void this.#load(avatar).finally(() => this.#loading.delete(queue));
   }
 
   /**
    * Loads an avatar; never rejects: without it the plain body stays. Without the plain body the next frame throws the
    * reason.
    */
-  async #load(avatar: AvatarRef): Promise<void> {
+  async #load(avatar: Wanted): Promise<void> {
     try {
       const made = await this.#options.load(avatar);
       if (this.#disposed) made.dispose();
       else this.#add(made, avatar);
       this.#refused.delete(avatar);
     } catch (error) {
-      if (avatar === defaultAvatar) this.#failed = error;
+      if (avatar === this.#options.plain) this.#failed = error;
       this.#refuse(avatar, error);
     }
   }
 
-  #refuse(avatar: AvatarRef, error: unknown): void {
+  #refuse(avatar: Wanted, error: unknown): void {
     const before = this.#refused.get(avatar);
     const passes = error instanceof TransientError;
     const attempts = (before?.attempts ?? 0) + 1;
@@ -200,9 +221,7 @@ export class RemoteAvatars {
     if (reports && !this.#disposed) this.#options.onRefused(avatar, error);
   }
 
-  #add(avatar: Avatar, of: AvatarRef): void {
-    const fromFile = isAvatarHash(of);
-    // The built-in bodies stay as long as the others do; a file's memory is released body by body.
+  #add(avatar: Avatar, of: Wanted): void {
     if (isBuiltInAvatar(of)) {
       const first = this.#bodies.find((body) => isBuiltInAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
       if (first) shareGeometry(first.placed.avatar.object, avatar.object);
@@ -211,7 +230,7 @@ export class RemoteAvatars {
     const placed = new PlacedAvatar(avatar, this.#options.shadows ?? true);
     this.object.add(placed.place);
     const free = { id: null, palette: '', placement: makeTransform<'floor', 'floor'>() };
-    this.#bodies.push({ placed, of, fromFile, drawnAt: this.#now, ...free });
+    this.#bodies.push({ placed, of, usedAt: this.#now, ...free });
   }
 
   #drop(index: number): void {
@@ -219,10 +238,10 @@ export class RemoteAvatars {
   }
 }
 
-function draw(body: Body, person: RemotePerson, mouth: number, time: number): void {
+function draw<Wanted, Id>(body: Body<Wanted, Id>, person: RemotePerson<Wanted, Id>, mouth: number, time: number): void {
   const { avatar, place } = body.placed;
-  const { palette, placement, fingers } = person;
-  if (!body.fromFile && palette !== null && body.palette !== palette) {
+  const { palette, placement } = person;
+  if (isBuiltInAvatar(body.of) && palette !== null && body.palette !== palette) {
     avatar.setPalette(palette);
     body.palette = palette;
   }
@@ -230,7 +249,5 @@ function draw(body: Body, person: RemotePerson, mouth: number, time: number): vo
   copyQuat(placement.orientation, body.placement.orientation);
   place.position.copy(placement.position);
   place.quaternion.copy(placement.orientation);
-  avatar.setFingers('left', fingers.left);
-  avatar.setFingers('right', fingers.right);
   body.placed.draw(person, mouth, time);
 }

@@ -43,7 +43,7 @@ export { copyFingers, isFiniteHand, lerpHandShape, makeHandShape, unknownFingers
 export { headJointOf } from './body/head-joint';
 export { type EstimatedJoint, estimatedJoints, jointNames } from './body/joints';
 export { writeLocalRotations } from './body/local-rotations';
-export type { RemotePerson } from './body/remote-person';
+export type { PersonalAvatar, RemotePerson } from './body/remote-person';
 export type { Skeleton } from './body/skeleton';
 export {
   armBonesOf,

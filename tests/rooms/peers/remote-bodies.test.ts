@@ -31,3 +31,63 @@ test('a body whose peer is silent for 30 s is removed, as by the transport', asy
   expect(dispose).toHaveBeenCalledOnce();
   expect(forgotten).toEqual(['ada']);
 });
+
+/** A person who sends their pose and an avatar's reference, 60 times a second. */
+function sends(others: RemoteBodies, peer: string) {
+  const actor = solvedActor();
+  let now = 0;
+  let reference: string | null = null;
+  const sender = new PoseSender((bytes) => others.receive(peer, bytes, now), { name: peer });
+  return (timeMs: number, avatar: string) => {
+    now = timeMs;
+    actor.moveTo(now);
+    if (avatar !== reference) sender.setAvatar(avatar);
+    reference = avatar;
+    sender.update(now, actor);
+  };
+}
+
+test('an avatar that never arrives leaves its person the previous one, and holds up nobody else', async () => {
+  const file = await readFile('public/avatars/mannequin.vrm');
+  const requests: string[] = [];
+  const disposed: string[] = [];
+  const others = new RemoteBodies({
+    async avatar(reference, peer) {
+      const request = `${reference} of ${peer}`;
+      requests.push(request);
+      if (reference === 'endless') return new Promise(() => undefined);
+      const avatar = await loadAvatar(file);
+      const dispose = vi.spyOn(avatar, 'dispose');
+      dispose.mockImplementation(() => void disposed.push(request));
+      return avatar;
+    },
+  });
+  const [ada, ben] = [sends(others, 'ada'), sends(others, 'ben')];
+  let now = 0;
+  const drawn = async (count: number, adas: string, bens: string | null) => {
+    for (let i = 0; i < 30; i++) {
+      now += 1000 / 60;
+      ada(now, adas);
+      if (bens) ben(now, bens);
+      others.update(now);
+      await new Promise((resolve) => setTimeout(resolve));
+    }
+    expect(others.object.children.filter(({ visible }) => visible)).toHaveLength(count);
+  };
+  const until = (count: number, adas: string, bens: string | null) => vi.waitFor(() => drawn(count, adas, bens));
+  await until(1, 'red', null);
+  await vi.waitFor(async () => {
+    await drawn(1, 'endless', null);
+    expect(requests).toEqual(['red of ada', 'endless of ada']);
+  });
+  await until(2, 'endless', 'red');
+  await vi.waitFor(async () => {
+    await drawn(2, 'endless', 'blue');
+    expect(disposed).toEqual(['red of ben']);
+  });
+  expect(requests).toEqual(['red of ada', 'endless of ada', 'red of ben', 'blue of ben']);
+  others.remove('ben');
+  await drawn(1, 'endless', null);
+  expect(disposed).toEqual(['red of ben', 'blue of ben']);
+  others.dispose();
+});

@@ -1,7 +1,7 @@
 import { request as httpRequest } from 'node:http';
 import { type TrackingFrame, writeRecording } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import { unpacked } from '../../../src/study/server/sqlite/study-motion';
+import { unpacked } from '../../../src/study/server/study-storage';
 import { answeringHost } from '../../rooms/client/answering-host';
 import { calibration, device, toTheFirstQuestion } from './participant-device';
 import { place, type StudyServer, studyServer } from './study-server';

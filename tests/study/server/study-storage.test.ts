@@ -3,10 +3,9 @@ import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { begin, reported } from '../../../src/study/model/progress/progress';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { normalisedCode } from '../../../src/study/server/codes';
-import { unpacked } from '../../../src/study/server/sqlite/study-motion';
-import type { StudyStorage } from '../../../src/study/server/study-storage';
+import { type StudyStorage, unpacked } from '../../../src/study/server/study-storage';
 import { completed, paperPlan, session } from '../model/studies';
-import { now } from './running-studies';
+import { now, testSoftware } from './running-studies';
 import { asSent, opened } from './stored-studies';
 
 const day = 86_400;
@@ -207,6 +206,54 @@ describe.each(adapters)('a storage in $adapter', ({ open }) => {
       expect(await expired(now + 365 * day + 1)).toMatchObject([{ participant: 'P01', reason: 'retention' }]);
       expect(await store.records.all('paper')).toEqual([]);
       expect(await expired(now + 366 * day)).toEqual([]);
+    });
+  });
+
+  describe('the content of an export', () => {
+    const software = (version: string) => ({ ...testSoftware.exportedBy, version });
+
+    test('has the records and recordings of the participants who follow a version of the plan', async () => {
+      const store = await withPaperStudy();
+      await store.places.claim('paper', 'P01', now);
+      await store.records.store('paper', 'P01', completed('P01', { motion: true }), now);
+      await store.motion.store('paper', 'P01', 'archery/1/trial-1', '{"frames":[]}', now);
+      const second = paperPlan({ title: 'The second version' });
+      const { version } = await store.plans.add(second, { simulated: false, at: now, newVersion: true });
+      const places = await store.overview('paper', now);
+      const newcomer = places.find((place) => place.version === version)?.participant ?? '';
+      await store.places.claim('paper', newcomer, now);
+      await store.records.store('paper', newcomer, completed(newcomer), now);
+      const [before, after] = [await store.storedStudy('paper', 1), await store.storedStudy('paper', version)];
+      expect(before).toMatchObject({ plan: paperPlan(), planVersion: 1, simulated: false });
+      expect(before.records).toEqual(await store.records.all('paper', 'P01'));
+      expect(before.motion.map(unpacked)).toEqual([
+        { participant: 'P01', trial: 'archery/1/trial-1', text: '{"frames":[]}' },
+      ]);
+      expect(after).toMatchObject({ plan: second, planVersion: 2, motion: [] });
+      expect(after.records).toEqual(await store.records.all('paper', newcomer));
+      const { planVersion, ...one } = await store.storedStudy('paper', version, 'P01');
+      expect([one.plan, one.records, planVersion]).toEqual([before.plan, before.records, undefined]);
+    });
+
+    test('has no number of a version while the plan has one version, and refuses an unknown study', async () => {
+      const store = await withPaperStudy(true);
+      const { planVersion, simulated } = await store.storedStudy('paper', 1);
+      expect([planVersion, simulated]).toEqual([undefined, true]);
+      await expect(async () => store.storedStudy('tea', 1)).rejects.toThrow('there is no study "tea"');
+    });
+
+    test('names the software that has served the study since its creation, each version once', async () => {
+      const store = open();
+      await store.software.note(software('1.0.0'), now - 20);
+      await store.software.note(software('1.1.0'), now - 10);
+      await store.software.note(software('1.1.0'), now - 5);
+      await store.plans.add(paperPlan(), { simulated: false, at: now });
+      await store.software.note(software('1.2.0'), now + 10);
+      const { served } = await store.storedStudy('paper', 1);
+      expect(served).toEqual([
+        { since: now - 10, ...software('1.1.0') },
+        { since: now + 10, ...software('1.2.0') },
+      ]);
     });
   });
 

@@ -14,7 +14,6 @@ import {
   type RemotePerson,
   skeletonFromCalibration,
   TransientError,
-  unknownFingers,
 } from 'threepoint/core';
 import { distance, fromAxisAngle, transformPoint, up, vec3 } from 'threepoint/math';
 import { describe, expect, onTestFinished, test } from 'vitest';
@@ -39,16 +38,15 @@ const person = (id: number, more: Partial<RemotePerson> = {}): RemotePerson => (
   palette: 'ember',
   pose: poseOf(estimator, actorFrame(9.5, defaultCalibration)),
   placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
-  fingers: unknownFingers,
   opacity: 1,
   ...more,
 });
 
 /** Draws these people until each of them has a body. */
 async function gathered(people: readonly RemotePerson[]): Promise<RemoteAvatars> {
-  const others = new RemoteAvatars({
+  const others = new RemoteAvatars<AvatarRef>({
     load: (avatar) => (isBuiltInAvatar(avatar) ? load(bodyOf(avatar)) : Promise.reject(avatar)),
-    plain: () => false,
+    plain: defaultAvatar,
     mouthOf: () => 0,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
   });
@@ -137,7 +135,7 @@ describe('an avatar that could not be had', () => {
   function wearing(answers: readonly (Error | null)[]) {
     const reported: string[] = [];
     let attempts = 0;
-    const others = new RemoteAvatars({
+    const others = new RemoteAvatars<AvatarRef>({
       async load(avatar: AvatarRef) {
         if (avatar === file) {
           const fault = answers[Math.min(attempts, answers.length - 1)];
@@ -146,7 +144,7 @@ describe('an avatar that could not be had', () => {
         }
         return load('mannequin');
       },
-      plain: () => false,
+      plain: defaultAvatar,
       mouthOf: () => 0,
       onRefused: (_, reason) => reported.push((reason as Error).message),
     });

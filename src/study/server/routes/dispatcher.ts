@@ -1,5 +1,5 @@
 import { checked, identifier, participantId } from 'threepoint/core';
-import { errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
+import { errorLine, errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
 import { Refusal } from '../../model/progress/refusal';
 import type { StudyStorage } from '../study-storage';
 import { type Effect, failureSentence } from './effect';
@@ -53,10 +53,6 @@ function httpErrorOf(error: unknown, effect: Effect): HttpError | null {
   const headers = status === 503 ? { 'retry-after': String(retryAfterSeconds) } : {};
   return new HttpError(status, message, { field, headers });
 }
-
-/** Returns the line of the log about a fault of the server. */
-export const faultLine = (error: unknown): string =>
-  `study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`;
 
 export interface StudyDispatcherOptions extends Omit<StudyParts, 'guard'>, StudyGuardOptions {
   readonly store: StudyStorage;
@@ -131,7 +127,7 @@ export class StudyDispatcher {
   #answerTo(error: unknown, effect: Effect): HttpResponse {
     if (error instanceof Refusal && error.reason === 'lost') this.#logLost(error);
     const known = httpErrorOf(error, effect);
-    if (!known) this.#log(faultLine(error));
+    if (!known) this.#log(`study: ${errorLine(error)}`);
     return errorResponse(known ?? internalError());
   }
 

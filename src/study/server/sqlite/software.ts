@@ -1,16 +1,14 @@
 import type { Software } from 'threepoint-http';
-import type { ServedSoftware } from '../study-storage';
+import type { ServedSoftware, SoftwareStorage } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 
-/** The software with which this server has served its studies. */
-export class StudySoftware {
+export class StudySoftware implements SoftwareStorage {
   readonly #database: StudyDatabase;
 
   constructor(database: StudyDatabase) {
     this.#database = database;
   }
 
-  /** Notes the software that serves from now on, if it has changed. */
   note(software: Software, at: number): void {
     const text = JSON.stringify(software);
     const last = this.#database.get<{ software: string }>('SELECT software FROM software ORDER BY number DESC LIMIT 1');
@@ -20,7 +18,6 @@ export class StudySoftware {
     });
   }
 
-  /** Returns the software that has served since this moment, the oldest first. */
   since(at: number): readonly ServedSoftware[] {
     const all = this.#database
       .all<{ software: string; since: number }>('SELECT software, since FROM software ORDER BY number')

@@ -1,14 +1,8 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { Refusal } from '../../model/progress/refusal';
-import type { MotionFile, MotionStorage, PackedMotion } from '../study-storage';
+import type { MotionStorage, PackedMotion } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
-
-export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionFile => ({
-  participant,
-  trial,
-  text: gunzipSync(gzipped).toString(),
-});
 
 /** The limit of compressed recordings per participant [bytes]. */
 export const maxMotionPerParticipant = 256 * 2 ** 20;

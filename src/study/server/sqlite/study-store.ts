@@ -1,6 +1,7 @@
 import { scheduleFor } from '../../model/plan/schedule';
 import { currentStep, remainingSeconds, resumed, sinceReport } from '../../model/progress/progress';
 import type { ParticipantState, PlanVersion } from '../../model/progress/study-api';
+import type { StoredStudy } from '../study-storage';
 import { StudyDeletion } from './deletion';
 import { StudySoftware } from './software';
 import { StudyCommands } from './study-commands';
@@ -52,9 +53,9 @@ export function openStudyStore(
   const commands = new StudyCommands(database, places);
   const records = new StudyRecords(database, plans, places, commands);
   const motion = new StudyMotion(database, places);
+  const software = new StudySoftware(database);
   return {
-    ...{ plans, places, records, motion, commands },
-    software: new StudySoftware(database),
+    ...{ plans, places, records, motion, commands, software },
     deletion: new StudyDeletion({ database, plans, places, records, motion, commands }),
     overview(study: string, now: number): readonly ParticipantState[] {
       const { version: newest, versions } = plans.get(study);
@@ -63,8 +64,22 @@ export function openStudyStore(
         return stateOf(row, followed, records.count(study, row.participant), now);
       });
     },
-    /** Runs `body`, whose reads all see one state of the database. */
-    snapshot: <T>(body: () => T): T => database.snapshot(body),
+    storedStudy: (study: string, version: number, participant?: string): StoredStudy =>
+      database.snapshot(() => {
+        const { plan, simulated, createdAt, retentionUntil, versions } = plans.get(study, version);
+        const about = { simulated, retentionUntil, served: software.since(createdAt) };
+        const all = { records: records.all(study, participant), motion: motion.all(study, participant) };
+        if (participant !== undefined) return { ...about, ...all, plan: plans.planFor(study, participant) };
+        const { participants } = versions.find((one) => one.version === version) as PlanVersion;
+        const isFollower = (row: { readonly participant: string }) => participants.includes(row.participant);
+        return {
+          ...about,
+          ...(versions.length > 1 && { planVersion: version }),
+          plan,
+          records: all.records.filter(isFollower),
+          motion: all.motion.filter(isFollower),
+        };
+      }),
     flushed: () => database.flushed(),
     /** Overwrites deleted data that could not be overwritten at their deletion; returns false if that fails again. */
     purgeDeleted: () => !database.mustPurge || database.purgeDeleted(),

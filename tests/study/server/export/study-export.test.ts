@@ -1,8 +1,8 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, test } from 'vitest';
 import { exportZip } from '../../../../src/study/server/export/export-zip';
-import { unpacked } from '../../../../src/study/server/sqlite/study-motion';
 import type { StudyStore } from '../../../../src/study/server/sqlite/study-store';
+import { unpacked } from '../../../../src/study/server/study-storage';
 import { completed } from '../../model/studies';
 import { now, testSoftware } from '../running-studies';
 import { withPaperStudy } from '../stored-studies';
