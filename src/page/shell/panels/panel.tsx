@@ -1,95 +1,84 @@
-import { button, element } from 'threepoint-ui';
-import { createAvatarPage, type PaletteChoice } from './avatar-page';
-import { createBodyPage, type MeasureRanges } from './body-page';
+import { useRef, useState } from 'preact/hooks';
+import { Button } from 'threepoint-ui/controls';
+import { AvatarPage } from './avatar-page';
+import { BodyPage } from './body-page';
 import type { PanelActions } from './panel-actions';
 import { exitLabel, type PanelState } from './panel-state';
-import { createRecordingPage } from './recording-page';
-import { createViewPage } from './view-page';
+import { RecordingPage } from './recording-page';
+import { ViewPage } from './view-page';
 
-/** Creates tabs after the ARIA pattern: one tab is in the tab order, and arrow keys move between them. */
-function createTabs(pages: readonly { readonly name: string; readonly content: readonly Node[] }[]): HTMLElement[] {
-  const list = element('div', { role: 'tablist', 'aria-label': 'Controls' });
-  const tabs = pages.map(({ name }) =>
-    element('button', { type: 'button', role: 'tab', id: `tab-${name}`, 'aria-controls': `page-${name}` }, name),
-  );
-  const panels = pages.map(({ name, content }) =>
-    element(
-      'div',
-      { role: 'tabpanel', id: `page-${name}`, 'aria-labelledby': `tab-${name}`, class: 'page' },
-      ...content,
-    ),
-  );
-  const select = (chosen: number) => {
-    for (const [index, tab] of tabs.entries()) {
-      tab.setAttribute('aria-selected', String(index === chosen));
-      tab.tabIndex = index === chosen ? 0 : -1;
-      const panel = panels[index];
-      if (panel) panel.hidden = index !== chosen;
-    }
-  };
-  for (const [index, tab] of tabs.entries()) {
-    tab.addEventListener('click', () => select(index));
-    tab.addEventListener('keydown', (event) => {
-      const step = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
-      if (step === 0) return;
-      event.preventDefault();
-      const next = (index + step + tabs.length) % tabs.length;
-      select(next);
-      tabs[next]?.focus();
-    });
-  }
-  list.append(...tabs);
-  select(0);
-  return [list, ...panels];
+/** What every page of the panel shows and acts on; what happens is decided elsewhere. */
+export interface PanelPageProps {
+  readonly state: PanelState;
+  readonly actions: PanelActions;
 }
 
-/** The controls of the desktop page, a page behind each tab. */
-export function createPanel(
-  region: HTMLElement,
-  ranges: MeasureRanges,
-  palettes: readonly PaletteChoice[],
-  actions: PanelActions,
-) {
-  const pages = [
-    createBodyPage(ranges, actions),
-    createAvatarPage(palettes, actions),
-    createRecordingPage(actions),
-    createViewPage(actions),
-  ];
-  const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs(pages));
-  const recentre = button('Recentre', () => actions.recentre(), { class: 'quiet' });
-  const exit = button(exitLabel(false), () => actions.exitVr(), { class: 'quiet' });
-  const opener = button('Controls', () => toggle(), {
-    class: 'quiet opener',
-    'aria-controls': 'panel',
-    'aria-expanded': 'true',
-  });
-  function setOpen(open: boolean): void {
-    content.hidden = !open;
-    opener.setAttribute('aria-expanded', String(open));
-    region.classList.toggle('closed', !open);
-    region.dispatchEvent(new Event('toggle'));
-  }
-  function toggle(): void {
-    setOpen(content.hidden);
-    actions.keep({ panel: !content.hidden });
-  }
-  region.append(element('div', { class: 'panel-bar' }, exit, recentre, opener), content);
-  return {
-    get open(): boolean {
-      return !content.hidden;
-    },
-    /** Opens or closes the panel. The region emits the event `toggle`. */
-    setOpen,
-    /** Opens or closes the panel for the user, also on later visits. */
-    toggle,
-    show(state: PanelState): void {
-      exit.hidden = !state.inSession;
-      const label = exitLabel(state.inPassthrough);
-      if (exit.textContent !== label) exit.textContent = label;
-      for (const page of pages) page.show(state);
-    },
+const pages = [
+  { name: 'Body', Page: BodyPage },
+  { name: 'Avatar', Page: AvatarPage },
+  { name: 'Recording', Page: RecordingPage },
+  { name: 'View', Page: ViewPage },
+] as const;
+
+/** The steps of the arrow keys through the tabs. */
+const arrowSteps: Readonly<Record<string, number>> = { ArrowRight: 1, ArrowLeft: -1 };
+
+/** Tabs after the ARIA pattern: one tab is in the tab order, and arrow keys move between them. */
+function Tabs(props: PanelPageProps) {
+  const [chosen, choose] = useState(0);
+  const list = useRef<HTMLDivElement>(null);
+  const onKeyDown = (event: KeyboardEvent) => {
+    const step = arrowSteps[event.key];
+    if (step === undefined) return;
+    event.preventDefault();
+    const next = (chosen + step + pages.length) % pages.length;
+    choose(next);
+    list.current?.querySelectorAll('button')[next]?.focus();
   };
+  return (
+    <>
+      <div ref={list} role="tablist" aria-label="Controls" onKeyDown={onKeyDown}>
+        {pages.map(({ name }, index) => (
+          <Button
+            label={name}
+            role="tab"
+            id={`tab-${name}`}
+            aria-controls={`page-${name}`}
+            aria-selected={index === chosen}
+            tabIndex={index === chosen ? 0 : -1}
+            onClick={() => choose(index)}
+          />
+        ))}
+      </div>
+      {pages.map(({ name, Page }, index) => (
+        <div role="tabpanel" id={`page-${name}`} aria-labelledby={`tab-${name}`} class="page" hidden={index !== chosen}>
+          <Page {...props} />
+        </div>
+      ))}
+    </>
+  );
 }
 
-export type Panel = ReturnType<typeof createPanel>;
+/** The controls of the desktop page, a page behind each tab. `toggle` opens or closes them. */
+export const Panel = ({
+  state,
+  actions,
+  open,
+  toggle,
+}: PanelPageProps & { readonly open: boolean; readonly toggle: () => void }) => (
+  <>
+    <div class="panel-bar">
+      <Button
+        label={exitLabel(state.inPassthrough)}
+        class="quiet"
+        hidden={!state.inSession}
+        onClick={() => actions.exitVr()}
+      />
+      <Button label="Recentre" class="quiet" onClick={() => actions.recentre()} />
+      <Button label="Controls" class="quiet opener" aria-controls="panel" aria-expanded={open} onClick={toggle} />
+    </div>
+    <div class="panel" id="panel" hidden={!open}>
+      <Tabs state={state} actions={actions} />
+    </div>
+  </>
+);

@@ -1,8 +1,7 @@
-import { button, element, toggle } from 'threepoint-ui';
+import { Button, Group, Toggle } from 'threepoint-ui/controls';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../session/estimator-texts';
-import type { PanelActions } from './panel-actions';
-import type { PanelPage } from './panel-state';
+import type { PanelPageProps } from './panel';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
   'third-person': 'Third person',
@@ -24,19 +23,6 @@ const keys: readonly (readonly [string, string])[] = [
   ['Arrows, + −', 'camera, with the picture focused'],
 ];
 
-const keysSection = (on: HTMLElement): HTMLElement =>
-  element(
-    'section',
-    {},
-    element('h2', {}, 'Keys'),
-    on,
-    element(
-      'dl',
-      { class: 'keys' },
-      ...keys.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]),
-    ),
-  );
-
 /** Returns what is known of the headset's frame rate, as a line. */
 function rateText(rateHz: number, ratesHz: readonly number[]): string {
   const now = `Frame rate: ${Math.round(rateHz)} Hz`;
@@ -45,37 +31,36 @@ function rateText(rateHz: number, ratesHz: readonly number[]): string {
 }
 
 /** The camera, and what it shows in addition to the body. */
-export function createViewPage(actions: PanelActions): PanelPage {
-  const views = viewNames.map((view) => ({
-    view,
-    node: button(viewTexts[view], () => actions.chooseView(view), { 'aria-pressed': 'false' }),
-  }));
-  const mirror = toggle('Mirror', (mirror) => actions.keep({ mirror }));
-  const skeleton = toggle('Debug skeleton', (debugSkeleton) => actions.change({ debugSkeleton }));
-  const overlay = toggle('Frame times', (overlay) => actions.keep({ overlay }));
-  const largerText = toggle('Larger text', (largerText) => actions.keep({ largerText }));
-  const singleKeys = toggle('Single keys', (singleKeys) => actions.keep({ singleKeys }));
-  const rate = element('p', { class: 'hint' });
-  const camera = element(
-    'section',
-    {},
-    element('h2', {}, 'Camera'),
-    element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' }, ...views.map(({ node }) => node)),
-    ...[mirror, skeleton, overlay, largerText].map(({ node }) => node),
-    rate,
-  );
-  return {
-    name: 'View',
-    content: [camera, keysSection(singleKeys.node)],
-    show(state) {
-      for (const { view, node } of views) node.setAttribute('aria-pressed', String(view === state.view));
-      mirror.input.checked = state.mirror;
-      skeleton.input.checked = state.debugSkeleton;
-      overlay.input.checked = state.overlay;
-      largerText.input.checked = state.largerText;
-      singleKeys.input.checked = state.singleKeys;
-      rate.hidden = state.rateHz === null;
-      rate.textContent = state.rateHz === null ? '' : rateText(state.rateHz, state.ratesHz);
-    },
-  };
-}
+export const ViewPage = ({ state, actions }: PanelPageProps) => (
+  <>
+    <section>
+      <h2>Camera</h2>
+      <Group label="Camera" class="segments">
+        {viewNames.map((view) => (
+          <Button label={viewTexts[view]} aria-pressed={view === state.view} onClick={() => actions.chooseView(view)} />
+        ))}
+      </Group>
+      <Toggle label="Mirror" on={state.mirror} set={(mirror) => actions.keep({ mirror })} />
+      <Toggle
+        label="Debug skeleton"
+        on={state.debugSkeleton}
+        set={(debugSkeleton) => actions.change({ debugSkeleton })}
+      />
+      <Toggle label="Frame times" on={state.overlay} set={(overlay) => actions.keep({ overlay })} />
+      <Toggle label="Larger text" on={state.largerText} set={(largerText) => actions.keep({ largerText })} />
+      {state.rateHz !== null && <p class="hint">{rateText(state.rateHz, state.ratesHz)}</p>}
+    </section>
+    <section>
+      <h2>Keys</h2>
+      <Toggle label="Single keys" on={state.singleKeys} set={(singleKeys) => actions.keep({ singleKeys })} />
+      <dl class="keys">
+        {keys.map(([key, what]) => (
+          <>
+            <dt>{key}</dt>
+            <dd>{what}</dd>
+          </>
+        ))}
+      </dl>
+    </section>
+  </>
+);
