@@ -8,6 +8,12 @@ export const Button = ({ label, ...attributes }: ButtonHTMLAttributes & { readon
   </button>
 );
 
+/** The `ref` of a dialog that is modal while it is rendered. Closing it returns the focus. */
+export function openModal(dialog: HTMLDialogElement | null) {
+  dialog?.showModal();
+  return () => dialog?.close();
+}
+
 /** A complaint that screen readers announce at once; nothing without a text. */
 export const Complaint = ({ text }: { readonly text: string | null }) => (
   <p class="complaint" role="alert" hidden={!text}>

@@ -1,11 +1,11 @@
 // "threepoint-ui": elements, dialogs and notices of all pages.
-export type { CalibrationDialog, CalibrationStep } from './calibration-dialog';
-export { calibrationHeadline, calibrationInstruction, createCalibrationDialog } from './calibration-dialog';
+export type { CalibrationStep } from './calibration-dialog';
+export { CalibrationDialog, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 export { type CalibrationGuide, createCalibrationGuide } from './calibration-guide';
 export { button, element, labelled, pageElement } from './element';
 export { createEnterButton, type EnterButton } from './enter-button';
 export type { FrameReport } from './frame-times-overlay';
-export { createFrameTimesOverlay, differenceLines, milliseconds, missedFrames } from './frame-times-overlay';
+export { differenceLines, FrameTimes, milliseconds, missedFrames } from './frame-times-overlay';
 export { linkTo, type RoomLink, RoomLinkCard, showInvitation } from './invitation';
 export { type FileKind, fileNameOf, offerDownload, readLimited } from './limited-files';
 export { createMouseAim, isTouchFirst, type MouseAim } from './mouse-aim';

@@ -1,7 +1,6 @@
 import { render } from 'preact';
 import { useLayoutEffect, useRef, useState } from 'preact/hooks';
-import { Button } from './controls';
-import { element } from './element';
+import { Button, openModal } from './controls';
 import { pageFolder } from './page-folder';
 import { type QrCode, qrCode } from './qr-code';
 
@@ -95,19 +94,13 @@ export function RoomLinkCard({ game, room, main = false }: RoomLinkCardProps) {
  * camera.
  */
 export function showInvitation(game: string, players: number, room: string): void {
-  const place = element('div');
-  document.body.append(place);
+  const place = document.body.appendChild(document.createElement('div'));
   const remove = () => {
     render(null, place);
     place.remove();
   };
   render(
-    <dialog
-      ref={(dialog) => dialog?.showModal()}
-      class="invitation"
-      aria-labelledby="invitation-title"
-      onClose={remove}
-    >
+    <dialog ref={openModal} class="invitation" aria-labelledby="invitation-title" onClose={remove}>
       <h2 id="invitation-title">Play with others</h2>
       <p>{`Up to ${players} people play in this room. Send them the link, or let them scan the code.`}</p>
       <RoomLinkCard game={game} room={room} main />
