@@ -1,4 +1,5 @@
-import type { ButtonHTMLAttributes, ComponentChildren, InputHTMLAttributes } from 'preact';
+import type { ButtonHTMLAttributes, ComponentChildren, HTMLAttributes, InputHTMLAttributes } from 'preact';
+import { useRef } from 'preact/hooks';
 
 /** A button that cannot submit anything. */
 export const Button = ({ label, ...attributes }: ButtonHTMLAttributes & { readonly label: string }) => (
@@ -7,11 +8,44 @@ export const Button = ({ label, ...attributes }: ButtonHTMLAttributes & { readon
   </button>
 );
 
+/** The `ref` of a dialog that is modal while it is rendered. Closing it returns the focus. */
+export function openModal(dialog: HTMLDialogElement | null) {
+  dialog?.showModal();
+  return () => dialog?.close();
+}
+
 /** A complaint that screen readers announce at once; nothing without a text. */
 export const Complaint = ({ text }: { readonly text: string | null }) => (
   <p class="complaint" role="alert" hidden={!text}>
     {text}
   </p>
+);
+
+interface StatusLineProps extends HTMLAttributes<HTMLParagraphElement> {
+  readonly words: string;
+  readonly figures?: string;
+}
+
+/** A line whose words are announced when they change. The running figures after them are only shown. */
+export const StatusLine = ({ words, figures, ...attributes }: StatusLineProps) => (
+  <p {...attributes}>
+    <span role="status">{words}</span>
+    <span>{figures}</span>
+  </p>
+);
+
+interface GroupProps {
+  readonly label: string;
+  readonly class: string;
+  readonly children: ComponentChildren;
+}
+
+/** A group with a name for screen readers. */
+export const Group = ({ label, children, ...attributes }: GroupProps) => (
+  // biome-ignore lint/a11y/useSemanticElements: a fieldset needs a visible legend, and cannot be a grid everywhere
+  <div role="group" aria-label={label} {...attributes}>
+    {children}
+  </div>
 );
 
 export const Labelled = ({ label, children }: { readonly label: string; readonly children: ComponentChildren }) => (
@@ -26,6 +60,7 @@ export const Labelled = ({ label, children }: { readonly label: string; readonly
 export interface Choice {
   readonly id: string;
   readonly label: string;
+  readonly disabled?: boolean;
 }
 
 export interface ChooserProps {
@@ -48,8 +83,8 @@ export const Chooser = ({ name, choices, chosen = '', choose }: ChooserProps) =>
         choose(value);
       }}
     >
-      {choices.map(({ id, label }) => (
-        <option key={id} value={id}>
+      {choices.map(({ id, label, disabled }) => (
+        <option key={id} value={id} disabled={disabled}>
           {label}
         </option>
       ))}
@@ -66,20 +101,82 @@ interface FileFieldProps {
   readonly open: (file: File) => void;
 }
 
+type Files = readonly [File, ...File[]];
+
+/** Returns the listener of a file input, which passes the chosen files on. */
+const passFiles =
+  (open: (files: Files) => void) =>
+  ({ currentTarget }: { readonly currentTarget: HTMLInputElement }) => {
+    const [file, ...others] = currentTarget.files ?? [];
+    if (file) open([file, ...others]);
+    // Choosing the same file again must emit a change too.
+    currentTarget.value = '';
+  };
+
 export const FileField = ({ label, name, accept, open }: FileFieldProps) => (
   <Labelled label={label}>
-    <input
-      type="file"
-      accept={accept}
-      aria-label={name}
-      onChange={({ currentTarget }) => {
-        const [chosen] = currentTarget.files ?? [];
-        if (chosen) open(chosen);
-        // Choosing the same file again must emit a change too.
-        currentTarget.value = '';
-      }}
-    />
+    <input type="file" accept={accept} aria-label={name} onChange={passFiles(([file]) => open(file))} />
   </Labelled>
+);
+
+interface FileButtonProps extends Pick<FileFieldProps, 'label' | 'accept'> {
+  readonly multiple?: boolean;
+  readonly open: (files: Files) => void;
+}
+
+/** A button that opens a file dialog for one file, or for several at once. */
+export function FileButton({ label, accept, multiple, open }: FileButtonProps) {
+  const input = useRef<HTMLInputElement>(null);
+  const types = { accept, multiple, 'aria-label': label };
+  return (
+    <>
+      <Button label={label} onClick={() => input.current?.click()} />
+      <input ref={input} type="file" hidden {...types} onChange={passFiles(open)} />
+    </>
+  );
+}
+
+interface ToggleProps {
+  readonly label: string;
+  readonly on: boolean;
+  readonly set: (on: boolean) => void;
+  readonly disabled?: boolean;
+}
+
+/** A labelled switch; the whole row is its target. */
+export const Toggle = ({ label, on, set, disabled }: ToggleProps) => (
+  <label class="toggle">
+    <span>{label}</span>
+    <input
+      type="checkbox"
+      // biome-ignore lint/a11y/useAriaPropsForRole: a checkbox has its state
+      role="switch"
+      checked={on}
+      disabled={disabled}
+      onChange={({ currentTarget }) => set(currentTarget.checked)}
+    />
+  </label>
+);
+
+/** An input whose value does not change under the fingers of the user who types. */
+export function TypedInput({ value, ...attributes }: InputHTMLAttributes & { readonly value: string }) {
+  const input = useRef<HTMLInputElement>(null);
+  const isTyped = input.current !== null && document.activeElement === input.current;
+  return <input ref={input} value={isTyped ? undefined : value} {...attributes} />;
+}
+
+interface SentencesProps {
+  readonly class: string;
+  readonly sentences: readonly string[];
+}
+
+/** A list of sentences, such as the rules of a game. */
+export const Sentences = ({ sentences, ...attributes }: SentencesProps) => (
+  <ul {...attributes}>
+    {sentences.map((sentence) => (
+      <li>{sentence}</li>
+    ))}
+  </ul>
 );
 
 interface TickProps extends Pick<InputHTMLAttributes, 'name' | 'checked' | 'defaultChecked' | 'onChange'> {

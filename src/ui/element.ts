@@ -29,10 +29,6 @@ export function button(label: string, onClick: () => void, attributes: Attribute
 export const labelled = (label: string, field: HTMLElement): HTMLElement =>
   element('label', {}, element('span', {}, label), field);
 
-/** A list of sentences, such as the rules of a game. */
-export const sentenceList = (sentences: readonly string[]): HTMLUListElement =>
-  element('ul', { class: 'rules' }, ...sentences.map((sentence) => element('li', {}, sentence)));
-
 /** The element of the page with this id; throws where index.html has lost it. */
 export function pageElement<Type extends HTMLElement>(id: string, type: new () => Type): Type {
   const node = document.getElementById(id);

@@ -1,13 +1,12 @@
 // "threepoint-ui": elements, dialogs and notices of all pages.
-export type { CalibrationDialog, CalibrationStep } from './calibration-dialog';
-export { calibrationHeadline, calibrationInstruction, createCalibrationDialog } from './calibration-dialog';
+export type { CalibrationStep } from './calibration-dialog';
+export { CalibrationDialog, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 export { type CalibrationGuide, createCalibrationGuide } from './calibration-guide';
-export { button, element, labelled, pageElement, sentenceList } from './element';
+export { button, element, labelled, pageElement } from './element';
 export { createEnterButton, type EnterButton } from './enter-button';
-export { fileButton, toggle } from './fields';
 export type { FrameReport } from './frame-times-overlay';
-export { createFrameTimesOverlay, differenceLines, milliseconds, missedFrames } from './frame-times-overlay';
-export { createInvitation, createRoomLink, type Invitation, linkTo, type RoomLink } from './invitation';
+export { differenceLines, FrameTimes, milliseconds, missedFrames } from './frame-times-overlay';
+export { linkTo, type RoomLink, RoomLinkCard, showInvitation } from './invitation';
 export { type FileKind, fileNameOf, offerDownload, readLimited } from './limited-files';
 export { createMouseAim, isTouchFirst, type MouseAim } from './mouse-aim';
 export { createNotices, formatSentence, type Notice, type Notices } from './notices';
@@ -15,5 +14,4 @@ export { pageFolder } from './page-folder';
 export { drawQrCode, type QrCode, qrCode } from './qr-code';
 export { ServerPresence, type ServerState } from './server-presence';
 export { listenToShortcuts, type Shortcuts } from './shortcuts';
-export { createStatusLine } from './status-line';
 export { installTrustedTypesPolicy } from './trusted-types';

@@ -16,25 +16,6 @@ export async function qrCode(text: string): Promise<QrCode> {
   return { side: size, isDark: (x, y) => data[y]?.[x] ?? false };
 }
 
-const svgNamespace = 'http://www.w3.org/2000/svg';
-
-/** Returns the code as an SVG. It has no white of its own: the page's background is white. */
-export function qrPicture({ side, isDark }: QrCode): SVGSVGElement {
-  const svg = document.createElementNS(svgNamespace, 'svg');
-  svg.setAttribute('viewBox', `0 0 ${side} ${side}`);
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('aria-label', 'QR code of the link');
-  svg.setAttribute('shape-rendering', 'crispEdges');
-  const path = document.createElementNS(svgNamespace, 'path');
-  const modules: string[] = [];
-  for (let y = 0; y < side; y++) {
-    for (let x = 0; x < side; x++) if (isDark(x, y)) modules.push(`M${x} ${y}h1v1h-1z`);
-  }
-  path.setAttribute('d', modules.join(''));
-  svg.append(path);
-  return svg;
-}
-
 /**
  * On a canvas, black on white, in the middle of this square [pixels]. Each module is a whole number of pixels wide: the
  * code is as large as that lets it be.

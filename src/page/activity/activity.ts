@@ -1,3 +1,4 @@
+import type { ComponentChild } from 'preact';
 import type {
   AvatarPose,
   AvatarRef,
@@ -29,12 +30,11 @@ export interface ActivitySound {
   unlock(): Promise<void>;
 }
 
-/** The part of the play bar that belongs to an activity: score, buttons, settings and rules. */
-export interface ActivityPanel {
-  readonly node: HTMLElement;
-  /** Updates the panel to the current state. Called several times a second and after every change. */
-  show(): void;
-}
+/**
+ * Returns the part of the play bar that belongs to an activity, in its current state: score, buttons, settings and
+ * rules. Called several times a second and after every change.
+ */
+export type ActivityPanel = () => ComponentChild;
 
 /** A remote player as drawn, for tests and tools. */
 export interface PlayerProbe {
@@ -92,7 +92,7 @@ export interface OpenActivity {
   toggleMuted?(): void;
   /** A warning about the connection; null: none. */
   banner?(): string | null;
-  /** Builds the part of the play bar; called once. */
+  /** Creates the part of the play bar; called once. */
   createPanel?(): ActivityPanel;
   /** The part of the menu in the headset. */
   menu?(): ActivityMenu;

@@ -9,6 +9,7 @@ import {
   reasonOf,
   type TrackingFrame,
 } from 'threepoint/core';
+import type { WorkProgress } from 'threepoint/motion';
 import type { Avatar } from 'threepoint/three';
 import { fileNameOf, type Notices } from 'threepoint-ui';
 import { ClipMeans } from './clip-means';
@@ -98,13 +99,12 @@ export class MocapView {
     this.#card = createMocapCard(options.labels, this.#actions());
     this.#bones = new MotionBones({
       boneMaps: options.boneMaps,
-      show: (skeleton) => this.#card.showBones(skeleton),
+      show: (skeleton) => this.#card.show({ skeleton }),
       read: (request, bones) => void this.#read(request, bones),
     });
     options.region.append(this.#card.node);
     this.#prepared = Promise.all(this.#ghosts.map((ghost) => options.prepare(ghost.object)));
     for (const ghost of this.#ghosts) options.scene.add(ghost.object);
-    this.#card.show(null);
     this.#hide();
   }
 
@@ -128,7 +128,7 @@ export class MocapView {
     const { signal } = reading;
     this.#reading = reading;
     const name = fileNameOf(sources[0]!);
-    const onProgress = (progress: Parameters<MocapCard['showProgress']>[1]) => this.#card.showProgress(name, progress);
+    const onProgress = (progress: WorkProgress) => this.#card.show({ reading: { name, progress } });
     try {
       onProgress({ fraction: 0, secondsLeft: null });
       const { others, ...files } = pairFiles(sources);
@@ -145,7 +145,7 @@ export class MocapView {
     } catch (error) {
       if (!signal.aborted) this.#reportFailure(request, bones, error);
     } finally {
-      if (this.#reading === reading) this.#card.showProgress(name, null);
+      if (this.#reading === reading) this.#card.show({ reading: null });
     }
   }
 
@@ -216,20 +216,22 @@ export class MocapView {
     const { replay, method } = this.#options;
     const methods = [method.selected, ...(this.#second ? [this.#second.estimator] : [])];
     this.#card.show({
-      clips: opened.prepared.clips.map(({ name }) => name),
-      clip: opened.index,
-      paused: replay.paused || replay.mode !== 'replaying',
-      seconds: replay.seconds,
-      duration: replay.duration,
-      truth: this.#truthPlace,
-      shareable: addressesOf(opened.sources) !== null,
-      canCorrectBones: opened.sources.every((source) => !isMap(source)),
-      doubts: opened.prepared.doubts,
-      methods: methods.map((estimator, i) => ({
-        estimator,
-        now: this.#drawn[i] ? this.#errors[i as 0] : null,
-        mean: opened.means.errorsOf(estimator),
-      })),
+      state: {
+        clips: opened.prepared.clips.map(({ name }) => name),
+        clip: opened.index,
+        paused: replay.paused || replay.mode !== 'replaying',
+        seconds: replay.seconds,
+        duration: replay.duration,
+        truth: this.#truthPlace,
+        shareable: addressesOf(opened.sources) !== null,
+        canCorrectBones: opened.sources.every((source) => !isMap(source)),
+        doubts: opened.prepared.doubts,
+        methods: methods.map((estimator, i) => ({
+          estimator,
+          now: this.#drawn[i] ? this.#errors[i as 0] : null,
+          mean: opened.means.errorsOf(estimator),
+        })),
+      },
     });
   }
 
@@ -239,28 +241,31 @@ export class MocapView {
     this.#opened = null;
     this.#compare(null);
     this.#hide();
-    this.#card.show(null);
+    this.#card.show({ state: null });
+  }
+
+  /** Shows the effect of a press at once. */
+  #change(act: () => void): void {
+    act();
+    this.show();
   }
 
   #actions(): CardActions {
     const { replay, method, onJump, onChange } = this.#options;
     return {
       chooseClip: (index) => this.#chooseClip(index),
-      setPaused: (on) => {
-        // A replay that was stopped or has ended restarts.
-        if (replay.mode === 'replaying') {
-          replay.setPaused(on);
-          onChange();
-        } else this.#seek(0);
-        this.show();
-      },
-      seek: (seconds) => {
-        this.#seek(seconds);
-        this.show();
-      },
-      choose: (estimator) => method.select(estimator),
-      compare: (estimator) => this.#compare(estimator),
-      placeTruth: (place) => this.#placeTruth(place),
+      setPaused: (on) =>
+        this.#change(() => {
+          // A replay that was stopped or has ended restarts.
+          if (replay.mode === 'replaying') {
+            replay.setPaused(on);
+            onChange();
+          } else this.#seek(0);
+        }),
+      seek: (seconds) => this.#change(() => this.#seek(seconds)),
+      choose: (estimator) => this.#change(() => method.select(estimator)),
+      compare: (estimator) => this.#change(() => this.#compare(estimator)),
+      placeTruth: (place) => this.#change(() => this.#placeTruth(place)),
       copyLink: () => void this.#copyLink(),
       correctBones: () => this.#correctBones(),
       applyBones: (bones) => this.#bones.apply(bones),

@@ -1,30 +1,19 @@
 import { type TrackingFrame, withForearm } from 'threepoint/core';
-import {
-  type CalibrationDialog,
-  type CalibrationGuide,
-  type CalibrationStep,
-  createCalibrationDialog,
-  createCalibrationGuide,
-} from 'threepoint-ui';
+import { type CalibrationGuide, type CalibrationStep, createCalibrationGuide } from 'threepoint-ui';
 import { Emitter } from '../session/emitter';
 import type { StageParts } from '../stage/stage-parts';
 
-/** The guided calibration of this page: a dialog on the desktop, the menu in the headset. */
+/** The guided calibration of this page, which a dialog shows on the desktop and the menu in the headset. */
 export class CalibrationControl {
   /** Each step of it; null: it is over. */
   readonly steps = new Emitter<[step: CalibrationStep | null]>();
   readonly #parts: StageParts;
-  readonly #dialog: CalibrationDialog;
   readonly #guide: CalibrationGuide;
   #step: CalibrationStep | null = null;
 
   constructor(parts: StageParts) {
     const { body, headset, userCalibration } = parts;
     this.#parts = parts;
-    this.#dialog = createCalibrationDialog(
-      () => this.cancel(),
-      () => this.start(),
-    );
     this.#guide = createCalibrationGuide({
       onStep: (step) => this.#show(step),
       // Three points do not determine the length of a forearm: a typed one stays.
@@ -78,8 +67,6 @@ export class CalibrationControl {
 
   #show(step: CalibrationStep | null): void {
     this.#step = step;
-    if (step && !this.#parts.headset.worn) this.#dialog.show(step);
-    else this.#dialog.hide();
     this.steps.emit(step);
   }
 }

@@ -62,12 +62,5 @@ export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly bodyComplaint: string | null;
 }
 
-/** A page of the panel, behind its tab. It shows a state and reports wishes; what happens is decided elsewhere. */
-export interface PanelPage {
-  readonly name: string;
-  readonly content: readonly Node[];
-  show(state: PanelState): void;
-}
-
 /** Returns what the button says that ends a session; `passthrough`: the session shows the room around the user. */
 export const exitLabel = (passthrough: boolean): string => (passthrough ? 'Exit AR' : 'Exit VR');

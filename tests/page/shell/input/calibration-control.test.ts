@@ -1,6 +1,6 @@
 import type { Calibration, TrackingFrame } from 'threepoint/core';
 import { type TrackedPose, vec3 } from 'threepoint/math';
-import { beforeEach, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { createActor } from '../../../../src/page/emulator/actor';
 import type { Emulator } from '../../../../src/page/emulator/emulator';
 import { CalibrationControl } from '../../../../src/page/shell/input/calibration-control';
@@ -9,25 +9,6 @@ import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
 import { noPointers, noSession } from '../../activity-services';
 import { fake } from '../fake';
-
-/** The part of an element that the dialog needs. */
-class Element extends EventTarget {
-  readonly dataset: Record<string, string> = {};
-  textContent = '';
-  hidden = false;
-  value = 0;
-  open = false;
-  readonly setAttribute = () => undefined;
-  readonly append = () => undefined;
-  showModal(): void {
-    this.open = true;
-  }
-  close(): void {
-    this.open = false;
-  }
-}
-
-beforeEach(() => vi.stubGlobal('document', { createElement: () => new Element(), body: new Element() }));
 
 const tracked = (x: number, y: number, z: number): TrackedPose => ({
   position: vec3(x, y, z),

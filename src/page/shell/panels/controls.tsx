@@ -1,5 +1,6 @@
+import { render } from 'preact';
 import type { TrackingFrame } from 'threepoint/core';
-import { createFrameTimesOverlay, type FrameReport, pageElement } from 'threepoint-ui';
+import { CalibrationDialog, type CalibrationStep, type FrameReport, FrameTimes, pageElement } from 'threepoint-ui';
 import { createVrPointers } from 'threepoint-ui/vr';
 import { CalibrationControl } from '../input/calibration-control';
 import { acceptDroppedFiles, FileOpener } from '../input/file-opener';
@@ -27,7 +28,8 @@ export class Controls {
   readonly #desktop: DesktopControls;
   readonly #inHeadset: HeadsetControls;
   readonly #layout: WindowLayout;
-  readonly #overlay = createFrameTimesOverlay(pageElement('overlay', HTMLElement));
+  readonly #overlay = pageElement('overlay', HTMLElement);
+  readonly #dialog = document.body.appendChild(document.createElement('div'));
   /** Whether the panel was open when the headset was put on. */
   #panelOpenBefore = false;
 
@@ -45,7 +47,10 @@ export class Controls {
     this.#inHeadset = new HeadsetControls(parts, measuring, actions, createVrPointers());
     this.#layout = new WindowLayout(parts, panelRegion, () => this.#desktop.panelOpen);
     stage.studio.scene.add(...this.#inHeadset.objects);
-    measuring.steps.listen(() => this.#inHeadset.show());
+    measuring.steps.listen((step) => {
+      this.#inHeadset.show();
+      this.#showCalibration(step);
+    });
     acceptDroppedFiles((files) => this.#files.openAll(files));
     setInterval(() => this.#report(), reportEveryMs);
   }
@@ -57,7 +62,7 @@ export class Controls {
     document.body.classList.toggle('in-session', headset.worn);
     document.body.classList.toggle('in-activity', activities.current !== null);
     document.body.classList.toggle('prefers-ar', settings.passthrough);
-    this.#overlay.setVisible(settings.overlay);
+    this.#overlay.hidden = !settings.overlay;
     stage.setSkeletonVisible(settings.debugSkeleton);
     avatar.current?.setUpperBodyOnly(settings.upperBodyOnly);
     this.#desktop.show();
@@ -110,11 +115,21 @@ export class Controls {
     return this.#files.openRecording(source, requestNumber);
   }
 
+  /** Shows a step of the guided calibration at the desk; null: it is over. */
+  #showCalibration(step: CalibrationStep | null): void {
+    const measuring = this.#measuring;
+    const isShown = step !== null && !this.#parts.headset.worn;
+    render(
+      isShown && <CalibrationDialog step={step} cancel={() => measuring.cancel()} again={() => measuring.start()} />,
+      this.#dialog,
+    );
+  }
+
   /** What changes by itself: frame times, a replay's progress, a round. */
   #report(): void {
-    const { recorder, activities, mocap } = this.#parts;
+    const { recorder, activities, mocap, settings } = this.#parts;
     const report = this.#frameReport();
-    this.#overlay.show(report);
+    if (settings.overlay) render(<FrameTimes report={report} />, this.#overlay);
     this.#inHeadset.showReport(report);
     mocap.show();
     if (recorder.mode !== 'idle') this.show();

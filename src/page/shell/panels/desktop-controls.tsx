@@ -1,17 +1,11 @@
-import {
-  armSpanRange,
-  fingertipSpanFromArmSpan,
-  forearmRange,
-  statureFromEyeHeight,
-  statureRange,
-} from 'threepoint/core';
-import { palettes } from 'threepoint/three';
+import { render } from 'preact';
+import { fingertipSpanFromArmSpan, statureFromEyeHeight } from 'threepoint/core';
 import { listenToShortcuts, type Shortcuts } from 'threepoint-ui';
 import { viewNames } from '../../scene/desktop-view';
 import type { InputParts } from '../input/input-parts';
 import { estimatorOrder } from '../session/estimator-texts';
 import type { MotionExport } from './motion-export';
-import { createPanel, type Panel } from './panel';
+import { Panel } from './panel';
 import type { PanelActions } from './panel-actions';
 import type { PanelState } from './panel-state';
 
@@ -19,42 +13,42 @@ const centimetres = (metres: number): number => 100 * metres;
 
 /** The panel and the keys of the desktop page. */
 export class DesktopControls {
+  readonly #region: HTMLElement;
   readonly #parts: InputParts;
   readonly #actions: PanelActions;
   readonly #motionExport: MotionExport;
-  readonly #panel: Panel;
+  #open = true;
 
   constructor(region: HTMLElement, parts: InputParts, actions: PanelActions, motionExport: MotionExport) {
     const { headset, settings, study } = parts;
+    this.#region = region;
     this.#parts = parts;
     this.#actions = actions;
     this.#motionExport = motionExport;
-    this.#panel = createPanel(
-      region,
-      {
-        height: { min: centimetres(statureRange.min), max: centimetres(statureRange.max) },
-        armSpan: {
-          min: centimetres(fingertipSpanFromArmSpan(armSpanRange.min)),
-          max: centimetres(fingertipSpanFromArmSpan(armSpanRange.max)),
-        },
-        forearm: { min: centimetres(forearmRange.min), max: centimetres(forearmRange.max) },
-      },
-      palettes,
-      actions,
-    );
     listenToShortcuts(this.#shortcuts(), () => settings.singleKeys && !headset.worn && study.run === null);
   }
 
   get panelOpen(): boolean {
-    return this.#panel.open;
+    return this.#open;
   }
 
+  /** Opens or closes the panel. Its region emits the event `toggle`. */
   setPanelOpen(open: boolean): void {
-    this.#panel.setOpen(open);
+    this.#open = open;
+    this.#region.classList.toggle('closed', !open);
+    this.show();
+    this.#region.dispatchEvent(new Event('toggle'));
   }
 
   show(): void {
-    this.#panel.show(this.#state());
+    const toggle = () => this.#toggle();
+    render(<Panel state={this.#state()} actions={this.#actions} open={this.#open} toggle={toggle} />, this.#region);
+  }
+
+  /** Opens or closes the panel for the user, also on later visits. */
+  #toggle(): void {
+    this.setPanelOpen(!this.#open);
+    this.#actions.keep({ panel: this.#open });
   }
 
   #shortcuts(): Shortcuts {
@@ -72,7 +66,7 @@ export class DesktopControls {
       u: () => actions.keep({ upperBodyOnly: !settings.upperBodyOnly }),
       o: () => actions.keep({ overlay: !settings.overlay }),
       t: () => activities.current?.toggleMuted?.(),
-      p: () => this.#panel.toggle(),
+      p: () => this.#toggle(),
     };
   }
 

@@ -1,8 +1,10 @@
+import { render } from 'preact';
 import type { WebGLRenderer } from 'three';
 import { firstLine, reasonOf } from 'threepoint/core';
 import { BodyTracker } from 'threepoint/three';
 import { describeXrSupport } from 'threepoint/webxr';
-import { createEnterButton, element, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
+import { createEnterButton, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
+import { Complaint } from 'threepoint-ui/controls';
 import { installEmulator } from '../emulator/emulator';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { FrameTiming } from '../shell/session/frame-timing';
@@ -12,7 +14,7 @@ import type { CheckStep } from './check-steps';
 import { readCheckSwitches } from './check-switches';
 import { CheckWorlds } from './check-worlds';
 import { HeadsetCheck } from './headset-check';
-import { showResultCard } from './result-card';
+import { ResultCard } from './result-card';
 
 /** The estimators whose networks are loaded before the session; the last one draws first. */
 const preloaded = ['paper', 'learned'] as const;
@@ -35,8 +37,9 @@ function showStep(
   progress.hidden = false;
   if (caption.textContent !== now.sentence) caption.textContent = now.sentence;
   const titles = [...new Set(all.map(({ title }) => title))];
-  list.replaceChildren(
-    ...titles.map((title) => element('li', title === now.title ? { 'aria-current': 'step' } : {}, title)),
+  render(
+    titles.map((title) => <li aria-current={title === now.title ? 'step' : undefined}>{title}</li>),
+    list,
   );
 }
 
@@ -115,7 +118,10 @@ async function start(): Promise<void> {
       onReport(report) {
         progress.hidden = true;
         canvas.hidden = true;
-        showResultCard(result, report);
+        // Each check has its own card.
+        render(<ResultCard key={report} report={report} />, result);
+        result.hidden = false;
+        result.focus();
         offer('Check again');
       },
     });
@@ -131,7 +137,8 @@ async function start(): Promise<void> {
 }
 
 start().catch((error: unknown) => {
-  pageElement('enter', HTMLElement).replaceChildren(
-    element('p', { class: 'complaint', role: 'alert' }, `The page could not start: ${firstLine(reasonOf(error))}`),
+  render(
+    <Complaint text={`The page could not start: ${firstLine(reasonOf(error))}`} />,
+    pageElement('enter', HTMLElement),
   );
 });

@@ -1,0 +1,303 @@
+import { render } from 'preact';
+import { useRef } from 'preact/hooks';
+import {
+  type BoneMap,
+  type EstimatedJoint,
+  type EstimatorName,
+  estimatedJoints,
+  threePointNames,
+} from 'threepoint/core';
+import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
+import { element } from 'threepoint-ui';
+import { Button, type Choice, Chooser, StatusLine } from 'threepoint-ui/controls';
+import { LazyBonesForm } from '../bones/lazy-bones-form';
+import type { SkeletonToMap } from '../bones/skeleton-to-map';
+import type { ClipMean } from './clip-means';
+import { type JointErrors, meanOf } from './joint-errors';
+import { type TruthPlace, truthPlaces } from './truth-places';
+import './mocap.css';
+
+interface MethodErrors {
+  readonly estimator: EstimatorName;
+  /** The errors of the current frame; null: no body is drawn. */
+  readonly now: JointErrors | null;
+  /** The mean errors of the whole clip. */
+  readonly mean: ClipMean;
+}
+
+/** The state of an opened clip that the card shows. */
+interface CardState {
+  readonly clips: readonly string[];
+  readonly clip: number;
+  readonly paused: boolean;
+  readonly seconds: number;
+  readonly duration: number;
+  readonly truth: TruthPlace;
+  /** Whether the files have addresses that others can open. */
+  readonly shareable: boolean;
+  /** Whether the user can correct the bones: no JSON map names them. */
+  readonly canCorrectBones: boolean;
+  /** Signs that the file is wrong, one sentence each. */
+  readonly doubts: readonly string[];
+  /** The errors of the body, and of the second body if there is one. */
+  readonly methods: readonly MethodErrors[];
+}
+
+export interface CardActions {
+  chooseClip(index: number): void;
+  setPaused(on: boolean): void;
+  seek(seconds: number): void;
+  choose(estimator: EstimatorName): void;
+  compare(estimator: EstimatorName | null): void;
+  placeTruth(place: TruthPlace): void;
+  copyLink(): void;
+  /** Opens the form for the bones of the motion. */
+  correctBones(): void;
+  /** Reads the motion with these bones; null: forgets the user's map. */
+  applyBones(bones: BoneMap | null): void;
+  cancelBones(): void;
+  cancel(): void;
+  close(): void;
+}
+
+export type Labels = Readonly<Record<EstimatorName, string>>;
+
+const jointLabels: Readonly<Record<EstimatedJoint, string>> = {
+  leftLowerArm: 'Left elbow',
+  rightLowerArm: 'Right elbow',
+  leftUpperArm: 'Left shoulder',
+  rightUpperArm: 'Right shoulder',
+  chest: 'Chest',
+  hips: 'Pelvis',
+};
+const none = '–';
+const centimetres = (value: number): string => value.toFixed(1);
+const percent = ({ fraction, secondsLeft }: WorkProgress): string =>
+  `${Math.floor(100 * fraction)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
+
+/** Returns the progress of measuring; null: it has ended or failed. */
+const progressOf = (mean: ClipMean): WorkProgress | null =>
+  typeof mean === 'string' || mean instanceof Float64Array ? null : mean;
+
+interface ErrorsProps {
+  readonly labels: Labels;
+  readonly methods: readonly MethodErrors[];
+}
+
+/** The text of a row of the table, of which the first is the mean of all joints. */
+function errorText(errors: MethodErrors['mean'] | null, row: number): string {
+  if (!(errors instanceof Float64Array)) return none;
+  return centimetres(row === 0 ? meanOf(errors) : errors[row - 1]!);
+}
+
+/** The errors by joint, of each method now and over the clip. */
+const ErrorTable = ({ labels, methods }: ErrorsProps) => (
+  <table>
+    <thead>
+      <tr>
+        <td>cm</td>
+        {methods.map(({ estimator }) => (
+          <th scope="colgroup" colSpan={2}>
+            {labels[estimator]}
+          </th>
+        ))}
+      </tr>
+      <tr>
+        <td />
+        {methods.map(() => (
+          <>
+            <th scope="col">now</th>
+            <th scope="col">clip</th>
+          </>
+        ))}
+      </tr>
+    </thead>
+    <tbody>
+      {['Mean', ...estimatedJoints.map((joint) => jointLabels[joint])].map((label, row) => (
+        <tr>
+          <th scope="row">{label}</th>
+          {methods.map(({ now, mean }) => (
+            <>
+              <td>{errorText(now, row)}</td>
+              <td>{errorText(mean, row)}</td>
+            </>
+          ))}
+        </tr>
+      ))}
+    </tbody>
+  </table>
+);
+
+/** Lists the methods whose errors over the clip are not measured. */
+function Unmeasured({ labels, methods }: ErrorsProps) {
+  const unmeasured = methods.filter(({ mean }) => !(mean instanceof Float64Array));
+  // One method is measured at a time: it is listed last, before its figures.
+  const measured = unmeasured.find(({ mean }) => progressOf(mean)?.fraction);
+  const listed = [...unmeasured.filter((method) => method !== measured), ...(measured ? [measured] : [])];
+  const words = listed.map(
+    ({ estimator, mean }) => `${labels[estimator]}: ${typeof mean === 'string' ? mean : 'measuring …'}`,
+  );
+  const progress = measured && progressOf(measured.mean);
+  return (
+    <StatusLine
+      class="hint"
+      words={words.join(' · ')}
+      figures={progress ? `, ${percent(progress)}` : ''}
+      hidden={words.length === 0}
+    />
+  );
+}
+
+/** Shows the signs that the file is wrong; those of the errors appear once all methods are measured. */
+function Doubts({ methods, doubts }: Pick<CardState, 'methods' | 'doubts'>) {
+  const means = methods.map(({ mean }) => mean).filter((mean): mean is JointErrors => mean instanceof Float64Array);
+  const ofErrors = means.length < methods.length ? null : doubtOfErrors(means.map(meanOf));
+  const sentences = [...doubts, ...(ofErrors === null ? [] : [ofErrors])].map(
+    (sentence) => `${sentence[0]!.toUpperCase()}${sentence.slice(1)}.`,
+  );
+  return (
+    <p class="complaint" role="status" hidden={sentences.length === 0}>
+      {sentences.join(' ')}
+    </p>
+  );
+}
+
+interface OpenedProps {
+  readonly labels: Labels;
+  readonly actions: CardActions;
+  readonly state: CardState;
+}
+
+/** Shows the position in the clip, and lets the user seek. */
+const Timeline = ({ state: { paused, seconds, duration }, actions }: Omit<OpenedProps, 'labels'>) => (
+  <div class="timeline">
+    <Button label={paused ? 'Play' : 'Pause'} aria-pressed={paused} onClick={() => actions.setPaused(!paused)} />
+    <input
+      type="range"
+      min={0}
+      max={duration}
+      step={0.01}
+      aria-label="Time of the clip in seconds"
+      value={seconds}
+      onInput={({ currentTarget }) => actions.seek(currentTarget.valueAsNumber)}
+    />
+    <span class="time">{`${seconds.toFixed(1)} / ${duration.toFixed(1)} s`}</span>
+  </div>
+);
+
+/** Lets the user choose the clip, the methods and the place of the truth. */
+function Choices({ labels, state, actions }: OpenedProps) {
+  const [first, second] = state.methods;
+  const methods: readonly Choice[] = threePointNames.map((name) => ({ id: name, label: labels[name] }));
+  // No file has a device's body. The option is shown if the user selected it before.
+  const device = { id: 'device', label: `${labels.device} (not in the file: ${labels.learned} draws)`, disabled: true };
+  return (
+    <>
+      {state.clips.length > 1 && (
+        <Chooser
+          name="Clip"
+          choices={state.clips.map((label, index) => ({ id: String(index), label }))}
+          chosen={String(state.clip)}
+          choose={(index) => actions.chooseClip(Number(index))}
+        />
+      )}
+      <Chooser
+        name="Method"
+        choices={[...methods, device]}
+        chosen={first?.estimator}
+        choose={(name) => actions.choose(name as EstimatorName)}
+      />
+      <Chooser
+        name="On its right"
+        choices={[{ id: '', label: 'nothing' }, ...methods]}
+        chosen={second?.estimator}
+        choose={(name) => actions.compare(name === '' ? null : (name as EstimatorName))}
+      />
+      <Chooser
+        name="Truth"
+        choices={truthPlaces.map((place) => ({ id: place, label: place }))}
+        chosen={state.truth}
+        choose={(place) => actions.placeTruth(place as TruthPlace)}
+      />
+      <Button
+        label="Copy link"
+        disabled={!state.shareable}
+        title={
+          state.shareable
+            ? 'To this second and this method'
+            : 'A file on this device has no address that others could open'
+        }
+        onClick={() => actions.copyLink()}
+      />
+    </>
+  );
+}
+
+/** Shows the progress of reading a file, and lets the user cancel it. */
+const Reading = ({ reading, actions }: Pick<CardProps, 'reading' | 'actions'>) => (
+  <div class="reading" hidden={reading === null}>
+    <StatusLine
+      words={reading ? `Reading ${reading.name}` : ''}
+      figures={reading ? `: ${percent(reading.progress)}` : ''}
+    />
+    <progress max={1} value={reading?.progress.fraction ?? 0} aria-label="Progress of reading" />
+    <Button label="Cancel" onClick={() => actions.cancel()} />
+  </div>
+);
+
+interface CardProps {
+  readonly labels: Labels;
+  readonly actions: CardActions;
+  /** The progress of reading a file; null: none is being read. */
+  readonly reading: { readonly name: string; readonly progress: WorkProgress } | null;
+  /** The skeleton of a motion that waits for the user's map; null: none. The form takes the place of the motion. */
+  readonly skeleton: SkeletonToMap | null;
+  /** null: no clip is open. */
+  readonly state: CardState | null;
+}
+
+/** The card of an opened motion: errors by joint, timeline, methods and bones. */
+function Card({ labels, actions, reading, skeleton, state }: CardProps) {
+  const correct = useRef<HTMLButtonElement>(null);
+  return (
+    <>
+      <Reading reading={reading} actions={actions} />
+      <LazyBonesForm skeleton={skeleton} opener={correct} apply={actions.applyBones} cancel={actions.cancelBones} />
+      {state && (
+        <div class="opened" hidden={skeleton !== null}>
+          <div class="title">
+            <h2>{state.clips[state.clip]}</h2>
+            <Button label="Close" class="quiet" onClick={() => actions.close()} />
+          </div>
+          <Timeline state={state} actions={actions} />
+          <ErrorTable labels={labels} methods={state.methods} />
+          <Doubts methods={state.methods} doubts={state.doubts} />
+          <Unmeasured labels={labels} methods={state.methods} />
+          <div class="choices">
+            <Choices labels={labels} state={state} actions={actions} />
+            <button type="button" ref={correct} hidden={!state.canCorrectBones} onClick={() => actions.correctBones()}>
+              Correct the bones…
+            </button>
+          </div>
+        </div>
+      )}
+    </>
+  );
+}
+
+/** Creates the card, which is hidden while it has nothing to show. */
+export function createMocapCard(labels: Labels, actions: CardActions) {
+  const node = element('section', { class: 'mocap', 'aria-label': 'Motion capture', hidden: true });
+  let shown: Pick<CardProps, 'reading' | 'skeleton' | 'state'> = { reading: null, skeleton: null, state: null };
+  return {
+    node,
+    /** Updates these parts of the card. */
+    show(part: Partial<typeof shown>): void {
+      shown = { ...shown, ...part };
+      node.hidden = Object.values(shown).every((value) => value === null);
+      render(<Card labels={labels} actions={actions} {...shown} />, node);
+    },
+  };
+}
+
+export type MocapCard = ReturnType<typeof createMocapCard>;

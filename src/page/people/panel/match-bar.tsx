@@ -1,0 +1,238 @@
+import type { HostedGame } from 'threepoint-rooms/room';
+import { isTouchFirst, RoomLinkCard, type ServerState } from 'threepoint-ui';
+import { Button, Group, Sentences, Toggle, TypedInput } from 'threepoint-ui/controls';
+import type { SeatedGame } from '../match/seated-game';
+import type { MatchRound } from './match-round';
+import { otherPlayers } from './other-players';
+import { VoicesBar, type VoicesBarActions } from './voices-bar';
+
+/** A match as the bar shows it. */
+export interface MatchBarState {
+  /** null: not in the room yet. */
+  readonly round: MatchRound | null;
+  /** null: in this page alone. */
+  readonly room: string | null;
+  /** The state of the server, which hosts shared rooms. */
+  readonly server: ServerState;
+  readonly bots: boolean;
+  readonly sound: boolean;
+  /** A simulated player moves the user's body: no person can be asked. */
+  readonly acting: boolean;
+  /** The mouse moves the user's body; null: it cannot, because a headset is worn or an emulated one is steered. */
+  readonly mouse: boolean | null;
+  readonly name: string;
+  /** The name that others see if the player gave none. */
+  readonly defaultName: string;
+  /** The seat that a spectator's camera follows; null: the camera is free. */
+  readonly following: number | null;
+}
+
+export interface MatchBarActions {
+  ready(on: boolean): void;
+  setOption(on: boolean): void;
+  sit(seat: number | null): void;
+  setBots(on: boolean): void;
+  setSound(on: boolean): void;
+  setName(name: string): void;
+  /** Opens a room that other people can join. */
+  openRoom(): void;
+  /** Asks for the server again. */
+  askServer(): void;
+  /** Shows the invitation to this room. */
+  invite(): void;
+  /** Rejoins the room that this page is no longer in. */
+  rejoin(): void;
+  /** The camera of a spectator: with a player, or null: free. */
+  follow(seat: number | null): void;
+  /** Lets the mouse or the simulated player move the user's body. */
+  steer(on: boolean): void;
+  readonly voices: VoicesBarActions;
+}
+
+interface MatchBarProps {
+  readonly game: Pick<SeatedGame<HostedGame>, 'name' | 'roles' | 'bots' | 'rules' | 'option'>;
+  readonly actions: MatchBarActions;
+  readonly state: MatchBarState;
+}
+
+/** This page is no longer in the room. */
+const isOut = (round: MatchRound | null): boolean => (round?.ended ?? null) !== null;
+
+/** Before and after a match, while another person could take a place. */
+const isWaitedFor = (round: MatchRound | null): boolean =>
+  round !== null && !isOut(round) && round.phase !== 'running' && round.people.some(({ free }) => free);
+
+/** Players and rules, in a section that can be folded. */
+const Players = ({ game, actions, state: { round, bots, sound, name, defaultName } }: MatchBarProps) => (
+  <details>
+    <summary>Players and rules</summary>
+    <Sentences class="rules" sentences={round?.rules ?? game.rules(null)} />
+    <label class="toggle">
+      <span>Your name</span>
+      <TypedInput
+        type="text"
+        maxLength={24}
+        autocomplete="nickname"
+        aria-label="Your name"
+        placeholder={defaultName}
+        value={name}
+        onChange={({ currentTarget }) => actions.setName(currentTarget.value)}
+      />
+    </label>
+    {game.bots && <Toggle label="Bots take free places" on={bots} set={actions.setBots} />}
+    {game.option && (
+      <Toggle
+        label={game.option.label}
+        on={round?.option ?? false}
+        disabled={round?.seat === null || isOut(round)}
+        set={actions.setOption}
+      />
+    )}
+    <Toggle label="Sound" on={sound} set={actions.setSound} />
+  </details>
+);
+
+/** Describes the room, the user's role and the quality of the connection. */
+function whereText({ round, room }: MatchBarState): string {
+  const place = room ? `Room “${room}”` : 'Your own room';
+  if (!round) return `${place} · joining …`;
+  // A spectator counts among the spectators, and knows that already.
+  const watchers = round.spectators - (round.seat === null ? 1 : 0);
+  const watching = watchers > 0 ? `${watchers} ${round.seat === null ? 'more ' : ''}watching` : null;
+  return [place, round.role, watching, round.connection].filter(Boolean).join(' · ');
+}
+
+/** The score, what is left to play, and the time. */
+function Score({ round }: Pick<MatchBarState, 'round'>) {
+  const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
+  return (
+    <div class="row board">
+      <output class="score" aria-label="Score">
+        {round ? `${round.score} / ${round.of}` : '–'}
+      </output>
+      <span class="arrows">{round?.remainder}</span>
+      <span class="time">{round?.paused ? `${seconds}, paused` : seconds}</span>
+    </div>
+  );
+}
+
+/** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
+function Buttons({ actions, state: { round, acting, mouse } }: Omit<MatchBarProps, 'game'>) {
+  const touch = isTouchFirst();
+  const out = isOut(round);
+  const isSeated = round !== null && round.seat !== null;
+  const isReady = round?.ready ?? false;
+  const hint = round?.hints[touch ? 'touch' : 'mouse'] ?? null;
+  return (
+    <>
+      <div class="row">
+        <Button label="Rejoin" class="primary" hidden={!out} onClick={actions.rejoin} />
+        <Button
+          label={isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready'}
+          class={isReady || out ? '' : 'primary'}
+          hidden={!isSeated || round.phase === 'running' || acting}
+          disabled={out}
+          onClick={() => actions.ready(!isReady)}
+        />
+        <Button
+          label={touch ? 'Play by touch' : 'Play with the mouse'}
+          class={out ? '' : 'primary'}
+          hidden={!isSeated || mouse !== false || hint === null}
+          disabled={out}
+          onClick={() => actions.steer(true)}
+        />
+        <Button
+          label="Let the computer play"
+          hidden={!isSeated || mouse !== true}
+          disabled={out}
+          onClick={() => actions.steer(false)}
+        />
+        <Button label="Watch" hidden={!isSeated} disabled={out} onClick={() => actions.sit(null)} />
+      </div>
+      {isSeated && mouse === true && !out && <p class="hint">{hint}</p>}
+    </>
+  );
+}
+
+/** The places that are free, and for a spectator the players to follow. */
+function Seats({ actions, state: { round, following } }: Omit<MatchBarProps, 'game'>) {
+  const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
+  const followed = round?.seat === null ? otherPlayers(round, false) : null;
+  return (
+    <>
+      {free.length > 0 && (
+        <Group label="Places" class="places">
+          {free.map(({ seat, role }) => (
+            <Button
+              key={seat}
+              label={`Play as ${role.toLowerCase()}`}
+              disabled={isOut(round)}
+              onClick={() => actions.sit(seat)}
+            />
+          ))}
+        </Group>
+      )}
+      {followed && (
+        <Group label="Camera" class="segments">
+          {[{ seat: null, label: 'Free' }, ...followed].map(({ seat, label }) => (
+            <Button key={seat} label={label} aria-pressed={seat === following} onClick={() => actions.follow(seat)} />
+          ))}
+        </Group>
+      )}
+    </>
+  );
+}
+
+/** The reason why there are no shared rooms; null: there are, or the state is unknown. */
+const serverTexts: Readonly<Record<ServerState, string | null>> = {
+  unknown: null,
+  asked: null,
+  here: null,
+  none: 'This page’s host has no threepoint server, so there are no shared rooms.',
+  silent: 'The server with the shared rooms does not answer. Try again later.',
+};
+
+/** The controls for playing with other people, or the reason why there is no shared room. */
+function Company({ game, actions, state: { room, server, round } }: MatchBarProps) {
+  // In a room the banner describes the problem with its server.
+  const text = room === null ? serverTexts[server] : null;
+  return (
+    <div class="company">
+      <p class="hint" role="status" hidden={text === null}>
+        {text}
+        {game.bots && server === 'none' && ' You can play alone with bots.'}
+      </p>
+      {room !== null && isWaitedFor(round) && <RoomLinkCard key={room} game={game.name} room={room} />}
+      <div class="row">
+        <Button
+          label="Play with others"
+          hidden={room !== null || text !== null}
+          disabled={server !== 'here'}
+          onClick={actions.openRoom}
+        />
+        <Button label="Invite others" hidden={room === null} onClick={actions.invite} />
+        <Button label="Ask again" hidden={text === null} onClick={actions.askServer} />
+      </div>
+    </div>
+  );
+}
+
+/** Score, places and settings of a match. */
+export function MatchBar({ game, actions, state }: MatchBarProps) {
+  const { round } = state;
+  const sentence = round?.ended ?? round?.waiting ?? null;
+  return (
+    <div class="round">
+      <Score round={round} />
+      <p class="hint">{whereText(state)}</p>
+      <p class="waiting" role="status" hidden={sentence === null}>
+        {sentence}
+      </p>
+      <Buttons actions={actions} state={state} />
+      <Company game={game} actions={actions} state={state} />
+      <Seats actions={actions} state={state} />
+      {round && <VoicesBar state={round.voices} room={round} actions={actions.voices} />}
+      <Players game={game} actions={actions} state={state} />
+    </div>
+  );
+}

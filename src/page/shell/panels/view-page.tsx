@@ -1,0 +1,66 @@
+import { Button, Group, Toggle } from 'threepoint-ui/controls';
+import { type ViewName, viewNames } from '../../scene/desktop-view';
+import { estimatorOrder } from '../session/estimator-texts';
+import type { PanelPageProps } from './panel';
+
+const viewTexts: Readonly<Record<ViewName, string>> = {
+  'third-person': 'Third person',
+  front: 'Front',
+  'first-person': 'First person',
+};
+
+const keys: readonly (readonly [string, string])[] = [
+  [`1 – ${estimatorOrder.length}`, 'estimator'],
+  ['V', 'next view'],
+  ['C', 'calibrate'],
+  ['R', 'recentre'],
+  ['M', 'mirror'],
+  ['B', 'debug skeleton'],
+  ['U', 'upper body only'],
+  ['O', 'frame times'],
+  ['T', 'mute, in voices'],
+  ['P', 'this panel'],
+  ['Arrows, + −', 'camera, with the picture focused'],
+];
+
+/** Returns what is known of the headset's frame rate, as a line. */
+function rateText(rateHz: number, ratesHz: readonly number[]): string {
+  const now = `Frame rate: ${Math.round(rateHz)} Hz`;
+  if (ratesHz.length === 0) return `${now}.`;
+  return `${now}, the highest that the page holds of ${ratesHz.map((rate) => Math.round(rate)).join(', ')} Hz.`;
+}
+
+/** The camera, and what it shows in addition to the body. */
+export const ViewPage = ({ state, actions }: PanelPageProps) => (
+  <>
+    <section>
+      <h2>Camera</h2>
+      <Group label="Camera" class="segments">
+        {viewNames.map((view) => (
+          <Button label={viewTexts[view]} aria-pressed={view === state.view} onClick={() => actions.chooseView(view)} />
+        ))}
+      </Group>
+      <Toggle label="Mirror" on={state.mirror} set={(mirror) => actions.keep({ mirror })} />
+      <Toggle
+        label="Debug skeleton"
+        on={state.debugSkeleton}
+        set={(debugSkeleton) => actions.change({ debugSkeleton })}
+      />
+      <Toggle label="Frame times" on={state.overlay} set={(overlay) => actions.keep({ overlay })} />
+      <Toggle label="Larger text" on={state.largerText} set={(largerText) => actions.keep({ largerText })} />
+      {state.rateHz !== null && <p class="hint">{rateText(state.rateHz, state.ratesHz)}</p>}
+    </section>
+    <section>
+      <h2>Keys</h2>
+      <Toggle label="Single keys" on={state.singleKeys} set={(singleKeys) => actions.keep({ singleKeys })} />
+      <dl class="keys">
+        {keys.map(([key, what]) => (
+          <>
+            <dt>{key}</dt>
+            <dd>{what}</dd>
+          </>
+        ))}
+      </dl>
+    </section>
+  </>
+);
