@@ -26,7 +26,7 @@ export class SessionChanges implements HeadsetListener {
     // Another source moves the body now, which the recording's header does not name.
     if (recorder.mode === 'recording') recorder.stop();
     this.#controls.setWorn(false);
-    stage.view.setView(stage.view.view);
+    stage.view.recentre();
     this.#controls.layOut();
     this.#changed();
   }

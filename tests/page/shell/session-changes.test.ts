@@ -24,7 +24,7 @@ function player(recorder = new Recorder()) {
     headset,
     recorder,
     timing: new FrameTiming(() => 0),
-    stage: { view: { view: 'third-person', setView: nothing } },
+    stage: { view: { recentre: nothing } },
     body: { discontinuity: nothing },
     activities: {
       sessionChanged: nothing,

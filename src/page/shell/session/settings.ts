@@ -37,6 +37,9 @@ export interface Settings extends ActivitySettings {
   readonly calibrationSource: string;
 }
 
+/** The body of a visitor who has not chosen one. A participant of a study has the plain one. */
+const firstBody: BuiltInBody = 'woman';
+
 /** Creates the settings from the address, else from stored preferences, else from defaults. */
 export function createSettings(switches: Switches, { preferences }: Pick<PreferenceStore, 'preferences'>): Settings {
   return {
@@ -49,7 +52,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     singleKeys: preferences.singleKeys ?? true,
     panel: switches.panel ?? preferences.panel ?? true,
     palette: preferences.palette ?? 'porcelain',
-    builtInBody: preferences.builtInBody ?? defaultAvatar,
+    builtInBody: preferences.builtInBody ?? (switches.study ? defaultAvatar : firstBody),
     skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,
