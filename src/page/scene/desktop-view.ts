@@ -47,14 +47,14 @@ export interface CameraScene extends Readonly<Record<Exclude<ViewName, 'first-pe
 }
 
 /** The base of the neck, from the pelvis [m]: the camera turns about it and zooms to it. */
-const bust: Vec3 = { x: 0, y: 0.6, z: 0 };
+const neckBase: Vec3 = { x: 0, y: 0.6, z: 0 };
 /** How far from the start of a view the point that the camera looks at may be moved [m]. */
 const panRadius = 0.9;
 
 /** The body in front of the mirror. The room ends 3 m from the body. */
 export const studioScene: CameraScene = {
-  front: { offset: { x: 1.4, y: 0.4, z: -2.1 }, aim: bust, fovDegrees: 44 },
-  'third-person': { offset: { x: 1.05, y: 0.6, z: 2.4 }, aim: bust, fovDegrees: 50 },
+  front: { offset: { x: 1.4, y: 0.4, z: -2.1 }, aim: neckBase, fovDegrees: 44 },
+  'third-person': { offset: { x: 1.05, y: 0.6, z: 2.4 }, aim: neckBase, fovDegrees: 50 },
   initial: 'front',
   maxDistance: 2.7,
 };
