@@ -30,9 +30,7 @@ freshTest('a newcomer sees a moving body within seconds, without touching anythi
 /** Returns the box of the avatar's joints in the window [CSS pixels]. */
 const bodyBox = async (page: Page) => (await probe(page)).avatar.box;
 
-test('the first picture shows a whole clothed person from the front, clear of the button', async ({
-  page,
-}) => {
+test('the first picture shows a whole clothed person from the front, clear of the button', async ({ page }) => {
   for (const [width, height] of [
     [1280, 720],
     [820, 520],

@@ -35,6 +35,7 @@ function player(recorder = new Recorder()) {
       } as OpenActivity,
     },
     study: { run: null },
+    onChange: nothing,
   });
   const controls = fake<Controls>({ show: nothing, setWorn: nothing, layOut: nothing });
   const changes = new SessionChanges(parts, controls, fake<PassthroughHost>({ sessionChanged: async () => undefined }));

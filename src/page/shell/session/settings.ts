@@ -21,6 +21,7 @@ export interface Settings extends ActivitySettings {
   readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
+  /** The emulator's panel for developers is visible while mouse and keys move the headset. */
   readonly emulatorPanel: boolean;
   /**
    * The next session asks the headset for the body that it tracks itself; never remembered, because a browser has
@@ -59,7 +60,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     voicesByRelay: preferences.voicesByRelay ?? false,
     actor: switches.actor,
     mouse: false,
-    emulatorPanel: true,
+    emulatorPanel: false,
     deviceBody: false,
     passthrough: preferences.passthrough ?? false,
     gaze: preferences.gaze ?? false,
