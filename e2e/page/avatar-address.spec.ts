@@ -62,7 +62,7 @@ test('an avatar of the address that never arrives leaves our own body standing, 
       (await probe(page)).notices.filter(({ level }) => level === 'error'),
       name,
     ).toHaveLength(1);
-    expect((await probe(page)).avatar).toMatchObject({ name: 'Mannequin' });
+    expect((await probe(page)).avatar).toMatchObject({ name: 'Woman' });
     stood += 1;
   }
   await page.getByRole('button', { name: 'Controls' }).click();
@@ -95,7 +95,7 @@ test('an avatar on its way can be given up, and ours stays @full', async ({ page
   await expect(page.getByText('endless.vrm is loading.')).toBeHidden();
   await expect(page.getByRole('button', { name: 'Cancel loading' })).toBeHidden();
   letThrough.emit('now');
-  expect((await probe(page)).avatar).toMatchObject({ name: 'Mannequin' });
+  expect((await probe(page)).avatar).toMatchObject({ name: 'Woman' });
   expect((await probe(page)).notices.filter(({ level }) => level === 'error')).toEqual([]);
 });
 
@@ -117,7 +117,7 @@ test('our own body stands until the address’s avatar arrives; the last one ask
   letThrough.emit('now');
   await expect.poll(async () => (await probe(page)).avatar.name).toBe('slow.vrm');
   await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
-  await expect.poll(async () => (await probe(page)).avatar.name).toBe('Mannequin');
+  await expect.poll(async () => (await probe(page)).avatar.name).toBe('Woman');
 });
 
 freshTest(
@@ -136,7 +136,7 @@ freshTest(
         const shown = await page.waitForFunction(() => {
           const { avatar, notices } = window.threepoint!.probe();
           const [said] = notices.filter(({ level }) => level === 'error');
-          return said?.text ?? (avatar.name === 'Mannequin' ? null : avatar.name);
+          return said?.text ?? (avatar.name === 'Woman' ? null : avatar.name);
         });
         return (await shown.jsonValue()) ?? '';
       } finally {

@@ -1,9 +1,11 @@
+import type { Page } from '@playwright/test';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import {
   expect,
   freshTest,
   joint,
   keepPicture,
+  load,
   open,
   openWithHeadset,
   probe,
@@ -24,6 +26,48 @@ freshTest('a newcomer sees a moving body within seconds, without touching anythi
     .toBeGreaterThan(0.02);
   await expect(page.getByRole('heading', { name: 'threepoint' })).toBeVisible();
 });
+
+/** Returns the box of the avatar's joints in the window [CSS pixels]. */
+const bodyBox = async (page: Page) => (await probe(page)).avatar.box;
+
+test('the first picture shows a whole clothed person from the front, clear of the button', async ({ page }) => {
+  for (const [width, height] of [
+    [1280, 720],
+    [820, 520],
+    [390, 844],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    await load(page, 'quality=low&estimator=ik');
+    const { view, avatar } = await probe(page);
+    expect([view, avatar.name]).toEqual(['front', 'Woman']);
+    const button = (await page.getByRole('button', { name: /^Enter VR/ }).boundingBox())!;
+    const { left, right, top, bottom } = avatar.box;
+    expect(bottom, `${width}: feet`).toBeLessThan(button.y);
+    expect(top, `${width}: head or hand`).toBeLessThan(height / 2);
+    expect(left, `${width}`).toBeGreaterThan(0);
+    expect(right, `${width}`).toBeLessThan(width);
+  }
+});
+
+for (const [how, zoomIn] of [
+  ['the wheel', async (page: Page) => page.mouse.wheel(0, -240)],
+  ['the plus key', async (page: Page) => page.keyboard.press('+')],
+] as const)
+  test(`zooming in with ${how} keeps the face in the picture @full`, async ({ page }) => {
+    await openWithHeadset(page, 'estimator=ik&panel=off');
+    await page.getByRole('button', { name: 'Recentre' }).click();
+    await expect.poll(async () => (await bodyBox(page)).bottom).toBeLessThan(600);
+    const before = await bodyBox(page);
+    await page.locator('#stage').focus();
+    await page.mouse.move(480, 300);
+    for (let times = 0; times < 20; times++) await zoomIn(page);
+    const tall = before.bottom - before.top;
+    await expect.poll(async () => (await bodyBox(page)).bottom).toBeGreaterThan(before.top + 2 * tall);
+    const { top } = await bodyBox(page);
+    expect(top).toBeGreaterThan(0);
+    expect(top).toBeLessThan(300);
+    await keepPicture(page, `zoomed-by-${how.replaceAll(' ', '-')}`);
+  });
 
 test('the estimators are switched live, on the same motion, without moving the hands', async ({ page }) => {
   await openWithHeadset(page);

@@ -1,5 +1,16 @@
 import { frames } from '../emulated-headset';
-import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from '../page-fixture';
+import {
+  distance,
+  enterVr,
+  expect,
+  freshTest,
+  joint,
+  keepPicture,
+  open,
+  openWithHeadset,
+  probe,
+  test,
+} from '../page-fixture';
 
 test('the button enters VR, and leaving brings the page back', async ({ page }) => {
   const headset = await openWithHeadset(page);
@@ -10,6 +21,43 @@ test('the button enters VR, and leaving brings the page back', async ({ page }) 
   await headset.endSession();
   await expect.poll(async () => (await probe(page)).activity).toBe('desktop');
   await expect(page.getByRole('button', { name: 'Enter VR' })).toBeEnabled();
+});
+
+freshTest('an emulated session names the actor, and is taken over by mouse and keys', async ({ page }) => {
+  await open(page, 'quality=low&estimator=ik');
+  await enterVr(page, { stepMs: null });
+  const bar = page.getByRole('region', { name: 'Emulated headset' });
+  await expect(bar).toContainText('The actor moves this body.');
+  await expect(page.getByText('Remote Control Active')).toBeHidden();
+  await page.getByRole('button', { name: 'Take over' }).click();
+  await expect(bar).toContainText('Drag the arrows at a hand');
+  // The developer's panel shows these lines for each controller.
+  await expect(page.getByText('Controller [')).toHaveCount(2);
+  for (const panel of await page.getByText('Controller [').all()) await expect(panel).toBeHidden();
+  const tracked = async () => (await probe(page)).tracking!;
+  await expect.poll(async () => (await tracked()).rightHand?.[1]).toBeCloseTo(1.3, 1);
+
+  const before = await tracked();
+  await keepPicture(page, 'taken-over');
+  // The upper arrow of the right hand.
+  await page.mouse.move(627, 385);
+  await page.mouse.down();
+  await page.mouse.move(627, 345, { steps: 5 });
+  await page.mouse.up();
+  await expect.poll(async () => (await tracked()).rightHand![1]).toBeGreaterThan(before.rightHand![1] + 0.03);
+  expect((await tracked()).leftHand).toEqual(before.leftHand);
+
+  await page.getByRole('button', { name: 'Look and walk' }).click();
+  await expect(bar).toContainText('The mouse looks');
+  await page.keyboard.down('ShiftLeft');
+  await page.keyboard.down('w');
+  await expect.poll(async () => (await tracked()).head[2]).toBeLessThan(-0.2);
+  await page.keyboard.up('w');
+  await page.keyboard.up('ShiftLeft');
+  await page.evaluate(() => document.exitPointerLock());
+  await page.getByRole('button', { name: 'Let the actor move' }).click();
+  await expect(bar).toContainText('The actor moves this body.');
+  await expect(page.getByText('Remote Control Active')).toBeHidden();
 });
 
 test('recentring moves the floor under the head, and the body goes on', async ({ page }) => {

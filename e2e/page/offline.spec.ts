@@ -191,7 +191,7 @@ test('a page in use keeps its files; the next visit has the newer version and co
   await visit(page);
   await expect(page).toHaveTitle('newer');
   // Another version than the kept one: all of it comes from its host.
-  expect(again.asked).toEqual(expect.arrayContaining(['/avatars/mannequin.vrm', '/models/learned.onnx']));
+  expect(again.asked).toEqual(expect.arrayContaining(['/avatars/woman.vrm', '/models/learned.onnx']));
 
   // It is kept beside the older one, and takes its place when no window has that any more.
   await newerCopyWaits(page);

@@ -15,7 +15,7 @@ const estimators = ['learned', 'ik', 'paper', 'hands-only'] as const;
 test('pictures from behind and from the front, with each estimator @nightly', async ({ page }) => {
   const headset = await openWithHeadset(page, 'panel=off&quality=high');
   await headset.place(standing(0));
-  for (const view of ['third-person', 'front'] as const) {
+  for (const view of ['front', 'third-person'] as const) {
     await expect.poll(async () => (await probe(page)).view).toBe(view);
     for (const [index, estimator] of estimators.entries()) {
       await page.keyboard.press(String(index + 1));

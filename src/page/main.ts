@@ -42,9 +42,8 @@ async function offerSessions(headset: Headset, button: EnterButton, study: boole
 }
 
 /** Starts the frame loop. The panel is open as the address asks, else as in the last visit. */
-function run({ controls, stage, frame, body, timing, switches, settings }: Page): void {
+function run({ controls, stage, frame, body, timing, settings }: Page): void {
   controls.setPanelOpen(settings.panel);
-  if (switches.view) stage.view.setView(switches.view);
   controls.layOut();
   const loop = createFrameLoop<XRFrame>(frame, body, timing);
   stage.renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
@@ -63,10 +62,11 @@ async function showFirstBody({ avatarShown, frame, loading }: Page): Promise<voi
  * Goes to the place in the address, and then opens what the address asks for: arriving in a game ends a replay and
  * closes the controls.
  */
-async function openFromAddress({ activities, controls, mocap, recorder, switches }: Page): Promise<void> {
+async function openFromAddress({ activities, controls, mocap, recorder, stage, switches }: Page): Promise<void> {
   // These requests precede anything that the user opens meanwhile.
   const [replay, motion] = [recorder.nextRequest(), recorder.nextRequest()];
   await activities.goTo(switches.play);
+  if (switches.view) stage.view.setView(switches.view);
   if (switches.panel) controls.setPanelOpen(true);
   if (switches.replay) void controls.openRecording(switches.replay, replay);
   if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap, motion);

@@ -14,6 +14,7 @@ export const courtScenes: MatchScenes = {
   spectator: {
     'third-person': { offset: { x: 4.6, y: 2.1, z: 4.6 }, aim: { x: 0.4, y: 0.15, z: 0 }, fovDegrees: 54 },
     front: { offset: { x: -4.6, y: 1.7, z: -3.6 }, aim: { x: 0, y: -0.1, z: 0 }, fovDegrees: 50 },
+    maxDistance: 14,
     free: true,
   },
   middle: { x: 0, y: 1, z: -2.4 },

@@ -12,8 +12,8 @@ import {
 } from 'threepoint/math';
 import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
 
-/** The initial head and hands of a person of 1.70 m [m]. */
-const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };
+/** The initial head and hands of a person of 1.70 m, who sees both hands [m]. */
+const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.32, -0.45), right: vec3(0.22, 1.32, -0.45) };
 
 /**
  * Installs iwer in place of the browser's own WebXR. The code of the emulator is loaded here and nowhere else, so that
@@ -33,7 +33,7 @@ export class Emulator {
   readonly device: XRDevice;
   readonly #config: ControllerConfig;
   readonly #fit: HandleFit;
-  #panel: Promise<void> | null = null;
+  #controls: Promise<void> | null = null;
   #panelVisible = false;
 
   constructor(device: XRDevice, config: ControllerConfig) {
@@ -59,8 +59,8 @@ export class Emulator {
 
   /** Moves headset and controllers to the head and wrists of a frame, to within 0.1 mm, and presses these buttons. */
   drive(frame: TrackingFrame, buttons?: Buttons): void {
-    // In the manual mode the panel would reset every pose in each frame.
-    this.device.controlMode = 'programmatic';
+    // In the manual mode the controls would reset every pose in each frame.
+    this.#setControlMode('programmatic');
     place(this.device, frame.head);
     for (const side of sides) {
       const wrist = side === 'left' ? frame.leftHand : frame.rightHand;
@@ -77,21 +77,42 @@ export class Emulator {
     }
   }
 
-  /** Lets the panel move headset and controllers again. */
+  /** Lets mouse and keys move headset and controllers again. */
   release(): void {
-    this.device.controlMode = 'manual';
+    this.#setControlMode('manual');
   }
 
-  /** Shows or hides the developer's panel; it is loaded when first shown. */
-  async setPanelVisible(visible: boolean): Promise<void> {
+  /**
+   * Loads the controls by mouse and keys: arrows at the hands, and the developer's panel. iwer shows them when a
+   * session begins; controls that are installed during one fail at its end.
+   */
+  async loadControls(): Promise<void> {
+    this.#controls ??= import('@iwer/devui').then(({ DevUI }) => this.device.installDevUI(DevUI));
+    await this.#controls;
+    this.#showPanel();
+  }
+
+  /** Shows or hides the developer's panel while mouse and keys move the headset. */
+  setPanelVisible(visible: boolean): void {
     this.#panelVisible = visible;
-    // iwer shows the panel when a session begins. A panel that is installed during a session fails at its end.
-    if (visible && !this.device.activeSession) {
-      this.#panel ??= import('@iwer/devui').then(({ DevUI }) => this.device.installDevUI(DevUI));
-    }
-    await this.#panel;
+    this.#showPanel();
+  }
+
+  /** Lets the mouse turn the head, and keys walk, until Esc. Call it when a button is pressed. */
+  lookAround(): void {
+    void this.device.devui?.devUICanvas.requestPointerLock();
+  }
+
+  #setControlMode(mode: XRDevice['controlMode']): void {
+    if (this.device.controlMode === mode) return;
+    this.device.controlMode = mode;
+    this.#showPanel();
+  }
+
+  /** In the programmatic mode the panel is a glowing frame and a notice for developers. */
+  #showPanel(): void {
     const container = this.device.devui?.devUIContainer;
-    if (container) container.hidden = !this.#panelVisible;
+    if (container) container.hidden = !this.#panelVisible || this.device.controlMode === 'programmatic';
   }
 
   #readHand(side: Side): TrackedPose | null {

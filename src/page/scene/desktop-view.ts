@@ -2,8 +2,8 @@ import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { type Pose, type Ray, smoothingFactor, type Vec3 } from 'threepoint/math';
 
-export const viewNames = ['third-person', 'front', 'first-person'] as const;
-/** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
+export const viewNames = ['front', 'third-person', 'first-person'] as const;
+/** front: orbits the body from the front. third-person: from behind, with what lies ahead. first-person: the eyes. */
 export type ViewName = (typeof viewNames)[number];
 
 /** Distances of the part that is left to the picture from the window's edges [CSS pixels]. */
@@ -38,14 +38,25 @@ interface CameraStart {
 
 /** The starts of the camera in one place. */
 export interface CameraScene extends Readonly<Record<Exclude<ViewName, 'first-person'>, CameraStart>> {
-  /** The mouse may also pan the camera and move it far away. */
+  /** The view until another one is chosen; default third-person. */
+  readonly initial?: ViewName;
+  /** How far from the point that it looks at the camera may move [m]; default 7. */
+  readonly maxDistance?: number;
+  /** The camera may be moved anywhere, and not only about the body. */
   readonly free?: boolean;
 }
 
-/** The mirror and the body in front of it. */
+/** The base of the neck, from the pelvis [m]: the camera turns about it and zooms to it. */
+const neckBase: Vec3 = { x: 0, y: 0.6, z: 0 };
+/** How far from the start of a view the point that the camera looks at may be moved [m]. */
+const panRadius = 0.9;
+
+/** The body in front of the mirror. The room ends 3 m from the body. */
 export const studioScene: CameraScene = {
-  'third-person': { offset: { x: 1.95, y: 0.5, z: 2.95 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 42 },
-  front: { offset: { x: -0.55, y: 0.25, z: -3.2 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 42 },
+  front: { offset: { x: 1.4, y: 0.4, z: -2.1 }, aim: neckBase, fovDegrees: 44 },
+  'third-person': { offset: { x: 1.05, y: 0.6, z: 2.4 }, aim: neckBase, fovDegrees: 50 },
+  initial: 'front',
+  maxDistance: 2.7,
 };
 const firstPersonFov = 78;
 
@@ -55,9 +66,7 @@ function createControls(camera: PerspectiveCamera, canvas: HTMLCanvasElement): O
   const controls = new OrbitControls(camera, canvas);
   controls.enableDamping = true;
   controls.dampingFactor = 0.12;
-  controls.enablePan = false;
-  controls.minDistance = 0.9;
-  controls.maxDistance = 7;
+  controls.minDistance = 0.5;
   controls.minPolarAngle = 0.15;
   controls.maxPolarAngle = Math.PI / 2 + 0.12;
   return controls;
@@ -91,18 +100,16 @@ export class DesktopView {
   readonly #before = new Vector3();
   /** How far above the pelvis the camera aims [m], for a head that is larger than people's. */
   #rise = 0;
-  #view: ViewName = 'third-person';
+  /** The view that the user or the address chose in this scene; null: none. */
+  #chosen: ViewName | null = null;
   #scene = studioScene;
   #orbit = true;
   #insets: Insets = { left: 0, right: 0, top: 0, bottom: 0 };
-  /** The way from the target to where the view began [m]. */
-  readonly #start = new Vector3();
 
   constructor(canvas: HTMLCanvasElement) {
     this.#controls = createControls(this.camera, canvas);
     canvas.addEventListener('keydown', (event) => this.#pressed(event));
-    this.#place();
-    this.#project();
+    this.setScene(studioScene);
   }
 
   get pose(): Pose<'floor'> {
@@ -114,30 +121,29 @@ export class DesktopView {
   }
 
   get view(): ViewName {
-    return this.#view;
+    return this.#chosen ?? this.#scene.initial ?? 'third-person';
   }
 
   setView(view: ViewName): void {
-    this.#view = view;
+    this.#chosen = view;
     this.setOrbit(this.#orbit);
-    if (view === 'first-person') this.camera.fov = firstPersonFov;
-    this.#place();
-    this.#project();
+    this.recentre();
   }
 
-  /** Moves the camera to the start of a scene. */
+  /** Moves the camera to the start of a scene. Another scene begins with its own view. */
   setScene(scene: CameraScene): void {
+    if (scene !== this.#scene) this.#chosen = null;
     this.#scene = scene;
-    this.#controls.enablePan = scene.free ?? false;
-    this.#controls.maxDistance = scene.free ? 14 : 7;
-    this.#place();
-    this.#project();
+    this.#controls.maxTargetRadius = scene.free ? Number.POSITIVE_INFINITY : panRadius;
+    this.#controls.maxDistance = scene.maxDistance ?? 7;
+    this.setOrbit(this.#orbit);
+    this.recentre();
   }
 
   /** Whether mouse and touch turn the camera; arrow keys always do. */
   setOrbit(on: boolean): void {
     this.#orbit = on;
-    this.#controls.enabled = on && this.#view !== 'first-person';
+    this.#controls.enabled = on && this.view !== 'first-person';
   }
 
   setInsets(insets: Insets): void {
@@ -173,7 +179,7 @@ export class DesktopView {
   /** Follows a body: its pelvis and eyes, floor frame; elapsed [s] since the last call. */
   update(pelvis: Vec3, { position, orientation }: Pose<'floor'>, elapsed: number): void {
     const { camera } = this;
-    if (this.#view === 'first-person') {
+    if (this.view === 'first-person') {
       camera.position.copy(position);
       camera.quaternion.copy(orientation);
       return;
@@ -186,6 +192,7 @@ export class DesktopView {
     target.z += (pelvis.z - target.z) * part;
     camera.position.add(target).sub(before);
     this.#controls.target.add(target).sub(before);
+    this.#controls.cursor.add(target).sub(before);
     this.#controls.update();
   }
 
@@ -206,20 +213,17 @@ export class DesktopView {
 
   /** Moves the camera to the start of the view. */
   #place(): void {
-    if (this.#view === 'first-person') return;
-    const { camera } = this;
-    const { left, right } = this.#insets;
-    const { offset: wide, aim, fovDegrees } = this.#scene[this.#view];
-    const free = Math.max(1, window.innerWidth - left - right) / window.innerHeight;
-    // A narrow window shows the mirror only where it stands behind the body.
-    const offset = new Vector3().copy(wide);
-    if (free < 0.8) offset.x *= 0.6;
-    // A narrow window sees less to the sides: step back until the body and the mirror fit.
-    const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
+    const { camera, view } = this;
+    if (view === 'first-person') {
+      camera.fov = firstPersonFov;
+      return;
+    }
+    const { offset, aim, fovDegrees } = this.#scene[view];
     camera.fov = fovDegrees;
     camera.up.copy(up);
     this.#controls.target.copy(this.#target).add(aim);
-    camera.position.copy(this.#target).add(this.#start.copy(offset).multiplyScalar(distance));
+    this.#controls.cursor.copy(this.#controls.target);
+    camera.position.copy(this.#target).add(offset);
     this.#controls.update();
   }
 
@@ -229,11 +233,12 @@ export class DesktopView {
     const width = window.innerWidth;
     const height = window.innerHeight;
     camera.aspect = width / height;
-    if (this.#view === 'first-person') {
+    const { view } = this;
+    if (view === 'first-person') {
       camera.zoom = 1;
       camera.clearViewOffset();
     } else {
-      const { zoom, shift, rise } = this.#fitBody(this.#view);
+      const { zoom, shift, rise } = this.#fitBody(view);
       camera.zoom = zoom;
       camera.setViewOffset(width, height, shift, rise, width, height);
     }
@@ -265,9 +270,9 @@ export class DesktopView {
 
   /** Returns how far head and feet of a standing body are above the window's middle at the start [CSS pixels]. */
   #standing(view: Exclude<ViewName, 'first-person'>): { readonly head: number; readonly feet: number } {
-    const { aim, fovDegrees, headroom = 0 } = this.#scene[view];
+    const { offset, aim, fovDegrees, headroom = 0 } = this.#scene[view];
     const start = new PerspectiveCamera(fovDegrees, this.camera.aspect, 0.05, 90);
-    start.position.copy(this.#start);
+    start.position.copy(offset);
     start.lookAt(aim.x, aim.y, aim.z);
     start.updateMatrixWorld();
     const heightAt = (y: number) => (new Vector3(0, y, 0).project(start).y * window.innerHeight) / 2;
@@ -278,7 +283,7 @@ export class DesktopView {
   }
 
   #pressed(event: KeyboardEvent): void {
-    if (this.#view === 'first-person' || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.view === 'first-person' || event.ctrlKey || event.metaKey || event.altKey) return;
     const { target } = this.#controls;
     const arm = this.camera.position.clone().sub(target);
     if (!moveArm(arm, event.key)) return;

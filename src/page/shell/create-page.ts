@@ -5,6 +5,7 @@ import { type Avatar, BodyTracker } from 'threepoint/three';
 import { Pointing } from 'threepoint/webxr';
 import { createMouseAim, pageElement, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createActor } from '../emulator/actor';
+import { createEmulatorBar } from '../emulator/emulator-bar';
 import { OfflineCopy } from '../offline/offline-copy';
 import { uploadToGpu } from '../scene/gpu-upload';
 import { affordableQuality } from '../scene/renderer';
@@ -120,7 +121,8 @@ function createParts(context: PageContext, loading: PageLoading) {
     difference: new DeviceDifference(),
   };
 
-  const actor = createActor();
+  const calm = matchMedia('(prefers-reduced-motion: reduce)');
+  const actor = createActor(() => calm.matches);
   const parts: InputParts = { ...stageParts, pointers, source: new TrackingSource(stageParts, pointers, actor) };
   const controls = new Controls(parts);
   const isCovered = () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken);
@@ -176,7 +178,14 @@ function connectParts(page: Page): void {
   const sessions = new SessionChanges(page, controls, page.passthrough);
   headset.listen(sessions);
   sessions.followWindow();
-  changes.listen(() => controls.show());
+  const emulatorBar = createEmulatorBar(pageElement('emulator', HTMLElement), {
+    setActor: (on) => headset.setActor(on),
+    lookAround: () => headset.emulator?.lookAround(),
+  });
+  changes.listen(() => {
+    controls.show();
+    emulatorBar.show(headset.worn && headset.emulator && !page.study.run ? settings.actor : null);
+  });
   captions.listen((text) => {
     controls.caption(text);
     // In the headset a caption lies in front of the game: it is for players without sound.

@@ -26,7 +26,7 @@ export class SessionChanges implements HeadsetListener {
     // Another source moves the body now, which the recording's header does not name.
     if (recorder.mode === 'recording') recorder.stop();
     this.#controls.setWorn(false);
-    stage.view.setView(stage.view.view);
+    stage.view.recentre();
     this.#controls.layOut();
     this.#changed();
   }
@@ -49,7 +49,7 @@ export class SessionChanges implements HeadsetListener {
   }
 
   emulatorChanged(): void {
-    this.#controls.show();
+    this.#parts.onChange();
   }
 
   /** The window of the page goes behind others, or comes back. */
@@ -69,13 +69,13 @@ export class SessionChanges implements HeadsetListener {
   }
 
   #changed(): void {
-    const { timing, headset, body, activities, study } = this.#parts;
+    const { timing, headset, body, activities, study, onChange } = this.#parts;
     void this.#passthrough.sessionChanged();
     timing.setRate(headset.pictureRateHz);
     this.#sightChanged();
     body.discontinuity();
     activities.sessionChanged();
-    this.#controls.show();
+    onChange();
     study.run?.sessionChanged();
   }
 }

@@ -24,7 +24,7 @@ function player(recorder = new Recorder()) {
     headset,
     recorder,
     timing: new FrameTiming(() => 0),
-    stage: { view: { view: 'third-person', setView: nothing } },
+    stage: { view: { recentre: nothing } },
     body: { discontinuity: nothing },
     activities: {
       sessionChanged: nothing,
@@ -35,6 +35,7 @@ function player(recorder = new Recorder()) {
       } as OpenActivity,
     },
     study: { run: null },
+    onChange: nothing,
   });
   const controls = fake<Controls>({ show: nothing, setWorn: nothing, layOut: nothing });
   const changes = new SessionChanges(parts, controls, fake<PassthroughHost>({ sessionChanged: async () => undefined }));

@@ -54,7 +54,7 @@ export class DesktopControls {
   #shortcuts(): Shortcuts {
     const { settings, stage, activities } = this.#parts;
     const actions = this.#actions;
-    const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'third-person';
+    const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'front';
     const estimators = estimatorOrder.map((name, index) => [String(index + 1), () => actions.chooseEstimator(name)]);
     return {
       ...Object.fromEntries(estimators),

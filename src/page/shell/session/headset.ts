@@ -194,6 +194,13 @@ export class Headset {
     this.#listener?.emulatorChanged();
   }
 
+  /** Lets the actor move the body, or the person who wears the headset: without a real one the emulated one. */
+  setActor(on: boolean): void {
+    this.#context.writer.change({ actor: on });
+    this.#tracker.body.discontinuity();
+    if (!on) void this.ensureEmulator().then((emulator) => emulator?.release());
+  }
+
   /**
    * Enters a session; `passthrough`: one that shows the room around the user. Never rejects: what goes wrong becomes a
    * notice. Nothing happens in a session or on the way into one.
@@ -210,7 +217,7 @@ export class Headset {
       if (!this.#real) {
         const emulator = await this.ensureEmulator();
         if (!emulator) return;
-        await emulator.setPanelVisible(this.#context.settings.emulatorPanel);
+        await emulator.loadControls();
       }
       await this.#begin(passthrough);
     } catch (error) {

@@ -21,6 +21,7 @@ export interface Settings extends ActivitySettings {
   readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
+  /** The emulator's panel for developers is visible while mouse and keys move the headset. */
   readonly emulatorPanel: boolean;
   /**
    * The next session asks the headset for the body that it tracks itself; never remembered, because a browser has
@@ -36,6 +37,9 @@ export interface Settings extends ActivitySettings {
   /** The source of the user's measurements, in words. */
   readonly calibrationSource: string;
 }
+
+/** The body of a visitor who has not chosen one. A participant of a study has the plain one. */
+const firstBody: BuiltInBody = 'woman';
 
 /** Returns the name of a player who gave none: `Guest` and two digits, which a reload of the tab keeps. */
 function guestName(tab: Pick<Storage, 'getItem' | 'setItem'> | null): string {
@@ -71,14 +75,14 @@ export function createSettings(
     singleKeys: preferences.singleKeys ?? true,
     panel: switches.panel ?? preferences.panel ?? true,
     palette: preferences.palette ?? 'porcelain',
-    builtInBody: preferences.builtInBody ?? defaultAvatar,
+    builtInBody: preferences.builtInBody ?? (switches.study ? defaultAvatar : firstBody),
     skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,
     voicesByRelay: preferences.voicesByRelay ?? false,
     actor: switches.actor,
     mouse: false,
-    emulatorPanel: true,
+    emulatorPanel: false,
     deviceBody: false,
     passthrough: preferences.passthrough ?? false,
     gaze: preferences.gaze ?? false,

@@ -1,6 +1,6 @@
 /**
- * The names of the bodies that come with every page. The first is the default, and the body of all participants of a
- * study.
+ * The names of the bodies that come with every page. The first is the plain one: it replaces an avatar that is missing,
+ * and all participants of a study have it.
  */
 export const builtInBodies = ['mannequin', 'woman', 'man', 'stout', 'child'] as const;
 export type BuiltInBody = (typeof builtInBodies)[number];

@@ -242,7 +242,7 @@ describe('a player who takes the headset off', () => {
       headset: { pictureRateHz: 72, visibility: 'none' },
       recorder: new Recorder(),
       timing: new FrameTiming(() => 0),
-      stage: { view: { view: 'third-person', setView: nothing } },
+      stage: { view: { recentre: nothing } },
       body: { discontinuity: () => activities.current?.discontinuity?.() },
       activities,
       study,
