@@ -30,6 +30,10 @@ export async function joinedRoom(page: Page): Promise<void> {
   );
 }
 
+/** Presses Ready in a match with other people. */
+export const pressReady = (page: Page): Promise<void> =>
+  page.getByRole('button', { name: /^(Ready|Play again)$/ }).click();
+
 /** Returns a joint's current position [m, floor frame]; waits for an avatar that is still loading. */
 export async function joint(page: Page, name: string): Promise<Point> {
   const shown = await page.waitForFunction((name) => window.threepoint?.probe().avatar.joints[name], name);

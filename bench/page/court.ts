@@ -88,7 +88,7 @@ export class Court {
       secondsLeft: 90,
       pageTime: 0,
       inRoom: true,
-      acting: true,
+      readyByItself: true,
       voices: { markOf: () => 'none', levelOf: () => 0 },
       hidden: new Set<number>(),
       paused: false,

@@ -3,7 +3,7 @@ import type { BallProbe } from '../../src/page/ball/match/ball-probe';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { processesOf } from '../browser-processes';
 import { drawSeldom } from '../draw-seldom';
-import { ballMatch, collectErrors, expect, joinedRoom, probe } from '../page-fixture';
+import { ballMatch, collectErrors, expect, joinedRoom, pressReady, probe } from '../page-fixture';
 import { test } from '../study/study-participant';
 
 const hour = 3_600_000;
@@ -39,6 +39,7 @@ async function inMatch(page: Page, origin: string, room: string): Promise<BallPr
   const query = `play=ball&room=${room}&name=ann&bots=on&seconds=600&panel=off&quality=low&estimator=ik&overlay=off`;
   await page.goto(`${origin}/?${query}`);
   await joinedRoom(page);
+  await pressReady(page);
   await plays(page);
   return ballMatch(page);
 }

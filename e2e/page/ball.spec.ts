@@ -7,7 +7,7 @@ import { drawSeldom } from '../draw-seldom';
 import { driveTime, goOn, holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { freePort } from '../free-port';
-import { enterVr, expect, joinedRoom, keepPicture, open, probe, test } from '../page-fixture';
+import { enterVr, expect, joinedRoom, keepPicture, open, pressReady, probe, test } from '../page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 480, height: 300 } });
@@ -198,6 +198,7 @@ test('three browsers play a whole match over the relay and agree, one watches, o
     const [ann, ben, cal] = people as [Page, Page, Page];
     await come('spectate&name=dora');
     // The sender solves, so an elbow moves on the receiver's picture as it does on the sender's own.
+    for (const person of people) await pressReady(person);
     await Promise.all([elbowTravels(cal, 0), elbowTravels(ann, 1), elbowTravels(ben, 2, 0.05)]);
     // At one frame a second the first match may end without a catch: then a later match scores.
     const scored = await until(ann, ({ score, phase }) => score > 0 && phase === 'running', 3 * (seconds + 20) * 1000);
@@ -228,6 +229,9 @@ test('a relay restarted in the middle of a match brings all back and voids the r
   let running = await startServer(60, port);
   try {
     const page = await join(browser, port, 'again', 'name=ann&bots=on');
+    await until(page, ({ people }) => people.every(Boolean), 60_000);
+    await expect(page.getByText('Waiting for you: press Ready.')).toBeVisible();
+    await pressReady(page);
     await until(page, ({ phase, ballsLeft }) => phase === 'running' && ballsLeft < 20, 90_000);
     await running.kill();
     await expect(page.locator('#banner')).toBeVisible();
@@ -236,6 +240,7 @@ test('a relay restarted in the middle of a match brings all back and voids the r
     const back = Date.now();
     await until(page, ({ connection, voided }) => connection === 'joined' && voided === 1, 30_000);
     console.log(`back in the room ${((Date.now() - back) / 1000).toFixed(1)} s after the restart`);
+    await pressReady(page);
     await until(page, ({ phase, people }) => phase === 'running' && people.every(Boolean), 60_000);
     await leave(page);
   } finally {

@@ -3,7 +3,7 @@ import { reportFigures } from '../../tests/reliability/report-figures';
 import { startTabbedBrowser } from '../background-tab';
 import { drawSeldom } from '../draw-seldom';
 import { countsOf, megabytes } from '../memory-usage';
-import { ballMatch, collectErrors, expect, joinedRoom, newPage, probe } from '../page-fixture';
+import { ballMatch, collectErrors, expect, joinedRoom, newPage, pressReady, probe } from '../page-fixture';
 import { test } from '../study/study-participant';
 
 /** Returns the presence of everyone in the match as this page shows it, by name. */
@@ -54,6 +54,7 @@ for (const [seconds, suite] of [
       const { errors } = collectErrors(page, origin);
       await play(page, origin, room, 'ann');
       await play(other, origin, room, 'ben');
+      for (const one of [page, other]) await pressReady(one);
       for (const one of [page, other]) {
         await expect.poll(async () => (await ballMatch(one)).phase, { timeout: 60_000 }).toBe('running');
         await shows(one, { ann: 'here', ben: 'here', Kim: 'here' });

@@ -93,8 +93,8 @@ async function reader(people: readonly [Talker, Talker], server: InspectedNode, 
   });
 }
 
-/** Counts the matches that begin in a page, in the page: it sees each of its own frames. */
-const countMatches = (page: Page) =>
+/** Presses Ready for each match and counts those that begin, in the page: it sees each of its own frames. */
+const playMatches = (page: Page) =>
   page.evaluate(() => {
     let was = '';
     window.soakMatches = 0;
@@ -103,6 +103,10 @@ const countMatches = (page: Page) =>
       const phase = game?.name === 'ball' ? game.phase : was;
       if (phase === 'running' && was !== phase) window.soakMatches = (window.soakMatches ?? 0) + 1;
       was = phase;
+      const button = [...document.querySelectorAll('button')].find(({ textContent }) =>
+        /^(Ready|Play again)$/.test(textContent),
+      );
+      if (button?.checkVisibility()) button.click();
     }, 1000);
   });
 
@@ -216,7 +220,7 @@ function judge(run: readonly Minute[]): void {
 
 declare global {
   interface Window {
-    /** Put there by `countMatches` in e2e/rooms/soak.spec.ts. */
+    /** Put there by `playMatches` in e2e/rooms/soak.spec.ts. */
     soakMatches?: number;
   }
 }
@@ -232,7 +236,8 @@ test('the memory of pages and server stays level through matches of two people a
   const ann = await talker(origin, 'Ann', { query: 'bots=on', ...light });
   const ben = await talker(origin, 'Ben', light);
   for (const { page } of [ann, ben]) await join(page);
-  await countMatches(ann.page);
+  await playMatches(ann.page);
+  await playMatches(ben.page);
   const bots = async () => (await probe(ann.page)).players.map(({ bot }) => bot).sort();
   await expect.poll(bots, { timeout: 60_000 }).toEqual([false, true]);
   for (const { page } of [ann, ben]) await expectVoices(page);

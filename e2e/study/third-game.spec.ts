@@ -7,7 +7,7 @@ import { buildServer } from '../../scripts/build-server.mjs';
 import type { StudyPlan } from '../../src/study/model/plan/plan';
 import type { StudyRecord, TrialRecord } from '../../src/study/model/records/study-record';
 import { thirdGame } from '../../tests/page/third-game/added-lines';
-import { enterVr, keepPicture, newPage } from '../page-fixture';
+import { enterVr, keepPicture, newPage, pressReady } from '../page-fixture';
 import {
   calibrate,
   consentAndFillIn,
@@ -74,6 +74,7 @@ test('two pages play a round of a third game to its end @full', async ({ browser
   }
   const [ann, ben] = pages as [Page, Page];
   await expect(ann.getByText('2 · ben')).toBeVisible();
+  for (const page of pages) await pressReady(page);
   await expect.poll(async () => (await match(ben))?.phase, { timeout: 60_000 }).toBe('running');
   await keepPicture(ann, 'third-game');
   for (const page of pages) {

@@ -78,7 +78,7 @@ export class CheckWorlds {
       aim: null,
       secondsLeft: defaultBallOptions.seconds,
       inRoom: true,
-      acting: true,
+      readyByItself: true,
       voices: { markOf: () => 'none', levelOf: () => 0 },
       hidden: new Set<number>(),
       paused: false,

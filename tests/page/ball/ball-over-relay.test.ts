@@ -36,7 +36,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
       new SocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
     visitor: { name, calibration: defaultCalibration, ...(options.spectate && { spectate: true }) },
     bots: () => options.bots ?? false,
-    acting: () => !options.spectate,
+    readyByItself: () => !options.spectate,
     seed: 11,
   });
   const estimator = createEstimator('ik', defaultCalibration);

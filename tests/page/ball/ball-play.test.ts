@@ -31,7 +31,7 @@ function page(options: {
       ...(options.spectate && { spectate: true }),
     },
     bots: () => bots,
-    acting: () => acting && !options.steering?.(),
+    readyByItself: () => acting && !options.steering?.(),
     ...(options.steering && { steering: options.steering }),
     seed: 7,
   });

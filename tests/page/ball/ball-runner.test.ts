@@ -72,7 +72,7 @@ async function group({ stopped = false } = {}) {
         connect: room.connect,
         visitor: { name: participant, calibration: defaultCalibration, seat },
         bots: () => false,
-        acting: () => false,
+        readyByItself: () => false,
         seed: 7,
       });
       const { settings, writer } = activityServices();

@@ -23,7 +23,7 @@ test('a catch shows for a moment, and not again at that second of the next match
     secondsLeft: 50,
     pageTime,
     inRoom: true,
-    acting: false,
+    readyByItself: false,
     voices: { markOf: () => 'none', levelOf: () => 0 },
     hidden: new Set(),
     head: { position: vec3(0, 1.6, 0), orientation: identity },

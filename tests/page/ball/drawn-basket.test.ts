@@ -14,7 +14,7 @@ function holder() {
     connect: (visitor, time) => host.connect(visitor, time),
     visitor: visitor('Cal', { seat: 2 }),
     bots: () => false,
-    acting: () => false,
+    readyByItself: () => false,
     seed: 1,
   });
   const connection = host.connect(visitor('Ann', { seat: 0 }), 10);

@@ -13,7 +13,7 @@ function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, s
     connect: (visitor, time) => host.connect(visitor, time),
     visitor: { name, calibration: defaultCalibration, seat },
     bots: () => false,
-    acting: () => true,
+    readyByItself: () => true,
     seed: 3,
   });
   const estimator = createEstimator('ik', defaultCalibration);

@@ -17,7 +17,7 @@ function court() {
       connect: () => line,
       visitor: visitor('Ann'),
       bots: () => false,
-      acting: () => false,
+      readyByItself: () => false,
       seed: 1,
     });
   let page = open(wire);

@@ -39,7 +39,7 @@ const standing = (
   seconds: 90,
   players,
   me,
-  acting: false,
+  readyByItself: false,
 });
 
 const withReady = (...ready: boolean[]): BallState => ({
@@ -68,7 +68,9 @@ describe('the board', () => {
     expect(told(true, true, true)).toBe('The match starts in a moment.');
     const over = { ...withReady(false, true, true), phase: 'over' as const, end: 'balls' as const };
     expect(waitingSentence(ballGame, standing(all, over))).toBe('Waiting for you: press Play again.');
-    expect(waitingSentence(ballGame, { ...standing(all, over), acting: true })).toBe('The match starts in a moment.');
+    expect(waitingSentence(ballGame, { ...standing(all, over), readyByItself: true })).toBe(
+      'The match starts in a moment.',
+    );
     expect(waitingSentence(ballGame, standing(all, { ...over, phase: 'running' }))).toBeNull();
     const throwers = [all[0]!, all[1]!, null];
     expect(waitingSentence(ballGame, standing(throwers, over))).toBe('Waiting for a basket holder.');

@@ -121,7 +121,7 @@ function goesOn(step: number): void {
       connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration },
       bots: () => true,
-      acting: () => true,
+      readyByItself: () => true,
       seed: 3,
     });
     const shown = new Map<number, number>();

@@ -20,7 +20,7 @@ function pair(terms: { goal?: number; seconds?: number }) {
   const pages = people.map((name, seat) => {
     const visitor = { name, calibration: defaultCalibration, seat };
     const connect = host.connect.bind(host);
-    return new TouchPlay(touchGame, { connect, visitor, acting: () => true });
+    return new TouchPlay(touchGame, { connect, visitor, readyByItself: () => true });
   });
   return {
     pages,

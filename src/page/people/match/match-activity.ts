@@ -63,7 +63,7 @@ export interface MatchParts<Game extends HostedGame, Frame extends MatchFrame<Ga
   readonly game: SeatedGame<Game>;
   readonly view: MatchView<Game, Frame>;
   readonly scenes: MatchScenes;
-  /** A simulated player moves the user's body: no person can be asked. */
+  /** A simulated player moves the user's body. */
   acting(): boolean;
   createPlay(options: MatchPlayOptions<Game>): Play;
 }
@@ -96,6 +96,8 @@ export abstract class MatchActivity<
   readonly mirrorSide = null;
   protected readonly context: ActivityContext;
   readonly #parts: MatchParts<Game, Frame, Play>;
+  /** In a room with other people everyone presses Ready, also who lets a simulated player play. */
+  readonly readyByItself: () => boolean;
   readonly #bodies: RoomBodies;
   readonly #menu: PeopleMenu;
   /** The width up to which the bar lies over the picture. */
@@ -118,6 +120,7 @@ export abstract class MatchActivity<
     this.game = game;
     this.#parts = parts;
     this.#unnamed = place === null && settings.name === '';
+    this.readyByItself = () => !room.shared && acting();
     this.play = parts.createPlay({
       connect: room.connect,
       visitor: {
@@ -126,7 +129,7 @@ export abstract class MatchActivity<
         ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
-      acting,
+      readyByItself: this.readyByItself,
     });
     const { play } = this;
     this.sound = view.sound;
@@ -199,7 +202,7 @@ export abstract class MatchActivity<
     this.#bodies.show(this.blocked.visible(bodies), time);
     if (!newest) return;
     const { headset, stage } = this.context;
-    const { view, acting } = this.#parts;
+    const { view } = this.#parts;
     view.showBoards?.(headset.worn || !this.#phone.matches);
     view.show({
       ...newest,
@@ -207,7 +210,7 @@ export abstract class MatchActivity<
       head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? stage.view.pose,
       pageTime: time,
       inRoom: !this.#ended,
-      acting: acting(),
+      readyByItself: this.readyByItself(),
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
     });
@@ -264,7 +267,7 @@ export abstract class MatchActivity<
       play,
       frame,
       players: this.#named(frame.players),
-      acting: this.#parts.acting(),
+      readyByItself: this.readyByItself(),
       voices,
     });
   }

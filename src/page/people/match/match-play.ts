@@ -8,8 +8,8 @@ import { SeatedPeople } from './seated-people';
 export interface MatchPlayOptions<Game extends HostedGame> {
   connect(visitor: Visitor, time: number): Connection<Game>;
   readonly visitor: Visitor;
-  /** Whether a simulated player moves the user's body. It is ready without being asked. */
-  acting(): boolean;
+  /** Whether this player is ready without being asked: a simulated one in a room of this page. */
+  readyByItself(): boolean;
 }
 
 /** A simulated player is ready after this time [s]. */
@@ -119,7 +119,7 @@ export abstract class MatchPlay<
       return;
     }
     if (this.#waitingSince?.phase !== match.phase) this.#waitingSince = { phase: match.phase, at: time };
-    if (!this.#options.acting() || match.players[seen.mySeat]?.ready) return;
+    if (!this.#options.readyByItself() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - this.#waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {
       this.connection?.setReady(true);

@@ -20,6 +20,8 @@ export interface RoomPlace<Game extends HostedGame> {
   readonly avatars: AvatarExchange | null;
   /** Asks whether its people can talk; null: they cannot. */
   readonly voiceTerms: (() => Promise<VoiceSettings>) | null;
+  /** Other people can be in it. */
+  readonly shared: boolean;
 }
 
 /**
@@ -34,7 +36,7 @@ export async function assignedSeat<Game extends HostedGame>(
   const [{ RoomAddress }, first] = await Promise.all([import('threepoint-rooms/socket'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   const address = new RoomAddress(policy, { url: pageFolder(), room: first.room, clock, pass });
-  return { connect: (visitor) => address.connect(visitor), avatars: null, voiceTerms: null };
+  return { connect: (visitor) => address.connect(visitor), avatars: null, voiceTerms: null, shared: true };
 }
 
 /** Connects to the room of this name on the page's server. The first page in it sets its terms. */
@@ -52,6 +54,7 @@ async function sharedRoom<Game extends HostedGame>(
     connect: (visitor) => address.connect(visitor),
     avatars: address.avatars,
     voiceTerms: () => fetchVoiceSettings(url, room, address.pass),
+    shared: true,
   };
 }
 
@@ -67,5 +70,5 @@ export async function roomFor<Game extends HostedGame>(
     return sharedRoom(game.policy, switches.room, terms, clock);
   }
   const host = new LoopbackHost(game.matchPolicy(terms, layout.seed), game.policy);
-  return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null };
+  return { connect: (visitor, time) => host.connect(visitor, time), avatars: null, voiceTerms: null, shared: false };
 }

@@ -16,8 +16,8 @@ export interface MatchBarState {
   readonly server: ServerState;
   readonly bots: boolean;
   readonly sound: boolean;
-  /** A simulated player moves the user's body: no person can be asked. */
-  readonly acting: boolean;
+  /** The user is ready without being asked. */
+  readonly readyByItself: boolean;
   /** The mouse moves the user's body; null: it cannot, because a headset is worn or an emulated one is steered. */
   readonly mouse: boolean | null;
   readonly name: string;
@@ -117,7 +117,7 @@ function Score({ round }: Pick<MatchBarState, 'round'>) {
 }
 
 /** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
-function Buttons({ actions, state: { round, acting, mouse } }: Omit<MatchBarProps, 'game'>) {
+function Buttons({ actions, state: { round, readyByItself, mouse } }: Omit<MatchBarProps, 'game'>) {
   const touch = isTouchFirst();
   const out = isOut(round);
   const isSeated = round !== null && round.seat !== null;
@@ -130,7 +130,7 @@ function Buttons({ actions, state: { round, acting, mouse } }: Omit<MatchBarProp
         <Button
           label={isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready'}
           class={isReady || out ? '' : 'primary'}
-          hidden={!isSeated || round.phase === 'running' || acting}
+          hidden={!isSeated || round.phase === 'running' || readyByItself}
           disabled={out}
           onClick={() => actions.ready(!isReady)}
         />

@@ -18,6 +18,7 @@ export interface MatchControls {
   readonly blocked: BlockList;
   readonly camera: Pick<MatchCamera, 'follow'>;
   round(): MatchRound | null;
+  readyByItself(): boolean;
 }
 
 /** The fragment of an address that opens a new room and its invitation. */
@@ -77,7 +78,7 @@ function barState(match: MatchControls, { settings, switches, headset, server }:
     server: server.state,
     bots: settings.bots,
     sound: settings.sound,
-    acting: settings.actor && !settings.mouse && !headset.worn,
+    readyByItself: match.readyByItself(),
     mouse: headset.worn || !settings.actor ? null : settings.mouse,
     name: settings.name,
     defaultName: settings.defaultName,

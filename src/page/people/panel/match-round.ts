@@ -44,15 +44,15 @@ export interface MatchRoundParts<Game extends HostedGame> {
   readonly frame: MatchFrame<Game>;
   /** The players with the names that this page shows. */
   readonly players: MatchFrame['players'];
-  /** A simulated player has the user's seat. */
-  readonly acting: boolean;
+  /** The user is ready without being asked. */
+  readonly readyByItself: boolean;
   readonly voices: { readonly state: VoicesState; readonly seats: { voiceOf(seat: number): PersonVoice } };
 }
 
 /** Summarises a frame of a match. */
 export function matchRound<Game extends HostedGame>(
   game: SeatedGame<Game>,
-  { play, frame, players, acting, voices }: MatchRoundParts<Game>,
+  { play, frame, players, readyByItself, voices }: MatchRoundParts<Game>,
 ): MatchRound {
   const { state, secondsLeft, me, spectators, paused } = frame;
   const ended = play.status.phase === 'ended';
@@ -60,7 +60,7 @@ export function matchRound<Game extends HostedGame>(
   const roleOf = (seat: number) => game.roles[game.stationOf(state, seat)] ?? '';
   const hint = (touch: boolean) => (me === null ? null : game.hint(state, me, touch));
   const { score, of } = game.figures(state);
-  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, acting };
+  const standing = { state, seconds: Math.ceil(secondsLeft), players, me, readyByItself };
   return {
     phase: state.phase,
     score,

@@ -13,8 +13,8 @@ export interface DisplayedMatch<State extends MatchState = MatchState> {
   readonly players: readonly (DisplayedPlayer | null)[];
   /** The user's player; null: a spectator. */
   readonly me: number | null;
-  /** A simulated player has the user's seat, and is ready without being asked. */
-  readonly acting: boolean;
+  /** The user is ready without being asked. */
+  readonly readyByItself: boolean;
 }
 
 /** The displayed name of the user if none was given. */

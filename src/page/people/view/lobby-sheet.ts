@@ -55,7 +55,7 @@ export class LobbySheet<Game extends HostedGame> {
    * eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false.
    */
   show(match: DisplayedMatch<Game['state']>, eyeHeight: number, time: number, inRoom: boolean): void {
-    const { state, players, me, acting } = match;
+    const { state, players, me, readyByItself } = match;
     this.object.position.y = Math.max(0.75, eyeHeight - 0.16);
     if (state.phase === 'running' || !inRoom) {
       this.sheet.show(null, time);
@@ -73,7 +73,7 @@ export class LobbySheet<Game extends HostedGame> {
           players,
           me,
           game.option?.isOn(state),
-          acting,
+          readyByItself,
         ]),
         buttons: lobbyButtons(game, match),
         paint: (context, hovered) => this.#paint(context, match, hovered),

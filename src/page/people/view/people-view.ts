@@ -16,8 +16,8 @@ export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Ga
   /** The page's time [s], and whether it is still in the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;
-  /** A simulated player has the user's seat. */
-  readonly acting: boolean;
+  /** The user is ready without being asked. */
+  readonly readyByItself: boolean;
   readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
   /** The seats of the players that the user has hidden. */
   readonly hidden: ReadonlySet<number>;
@@ -50,9 +50,9 @@ export class PeopleView<Game extends HostedGame> {
 
   /** Shows a frame to eyes at this height [m]. Returns the match as boards show it. */
   show(scene: PeopleScene<Game>, eyeHeight: number): DisplayedMatch<Game['state']> {
-    const { state, attendants, me, acting } = scene;
+    const { state, attendants, me, readyByItself } = scene;
     const players = attendants.map(writtenOf);
-    const match = { state, seconds: Math.ceil(scene.secondsLeft), players, me, acting };
+    const match = { state, seconds: Math.ceil(scene.secondsLeft), players, me, readyByItself };
     this.lobby.show(match, eyeHeight, scene.pageTime, scene.inRoom);
     this.#showNames(scene, players);
     return match;

@@ -10,13 +10,14 @@ export function waitingSentence<Game extends HostedGame>(
   game: Pick<SeatedGame<Game>, 'lacks'>,
   match: DisplayedMatch<Game['state']>,
 ): string | null {
-  const { state, players, me, acting } = match;
+  const { state, players, me, readyByItself } = match;
   if (state.phase === 'running') return null;
   const lack = game.lacks(match);
   if (lack !== null) return `${lack}.`;
   const idle = players.flatMap((person, player) => (person && !state.players[player]?.ready ? [player] : []));
   const names = idle.flatMap((player) => (player !== me && players[player] ? [markedName(players[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
-  if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
+  if (me !== null && !readyByItself && idle.includes(me))
+    return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
   return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match starts in a moment.';
 }

@@ -184,7 +184,7 @@ describe('the ball game without hands', () => {
       connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration, seat: 0 },
       bots: () => true,
-      acting: () => input.isActor,
+      readyByItself: () => input.isActor,
       steering: () => input.steering(),
       seed: 7,
     });
