@@ -1,12 +1,11 @@
 import { checked, ValidationError } from 'threepoint/core';
+import { games } from 'threepoint-games/all';
 import * as v from 'valibot';
 import { type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import type { Answer, AnswerForm } from './question-kind';
 import { questionKind } from './question-kinds';
 import type { Question, QuestionnaireFile, Scale } from './questionnaire-schema';
 import { questionnaireSchema } from './questionnaire-schema';
-import archery from './shipped/archery.json' with { type: 'json' };
-import ball from './shipped/ball.json' with { type: 'json' };
 import nasaTlx from './shipped/nasa-tlx.json' with { type: 'json' };
 import nasaTlxRaw from './shipped/nasa-tlx-raw.json' with { type: 'json' };
 import ssq from './shipped/ssq.json' with { type: 'json' };
@@ -113,9 +112,12 @@ const shipped = (file: unknown): readonly [string, Questionnaire] => {
   return [questionnaire.id, questionnaire];
 };
 
-/** The questionnaires of this package by id; plans use them by name. */
+/** The questionnaires of the games and of this package by id; plans use them by name. */
 export const shippedQuestionnaires: Readonly<Record<string, Questionnaire>> = Object.fromEntries(
-  [archery, ball, nasaTlx, nasaTlxRaw, ssq, systemUsability].map(shipped),
+  [
+    ...Object.values(games).flatMap(({ questionnaire }) => questionnaire ?? []),
+    ...[nasaTlx, nasaTlxRaw, ssq, systemUsability],
+  ].map(shipped),
 );
 
 /** Returns the questionnaire of this id, of the plan or shipped, or null. */
