@@ -23,7 +23,7 @@ export interface Questionnaire {
 /** The answers by the id of the question, as given: reversed questions are not converted. */
 export type Answers = Readonly<Record<string, Answer>>;
 
-function refuseScale(scale: Scale, questions: readonly Question[], field: string): void {
+function rejectScale(scale: Scale, questions: readonly Question[], field: string): void {
   const named = (list: 'questions' | 'choices') =>
     (scale[list] ?? []).forEach((id, index) => {
       const found = questions.find((question) => question.id === id);
@@ -69,7 +69,7 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
   });
   const scales = file.scales ?? [];
   scales.forEach((scale, index) => {
-    refuseScale(scale, questions, at(`scales[${index}]`));
+    rejectScale(scale, questions, at(`scales[${index}]`));
     if (scales.findIndex(({ id }) => id === scale.id) !== index || questions.some(({ id }) => id === scale.id)) {
       throw new ValidationError(at(`scales[${index}].id`), `"${scale.id}" is the name of another scale or a question`);
     }
@@ -99,7 +99,7 @@ function textsOf(
 }
 
 /** Throws a ValidationError for the first text that one of the languages lacks. */
-export function refuseMissingLanguages(file: QuestionnaireFile, languages: readonly string[], field: string): void {
+export function rejectMissingLanguages(file: QuestionnaireFile, languages: readonly string[], field: string): void {
   for (const [at, text] of textsOf(file, field)) {
     const missing = missingLanguage(text, languages);
     if (missing !== null)
