@@ -139,7 +139,7 @@ export interface StoredStudy extends Pick<StudyInfo, 'simulated' | 'retentionUnt
   readonly plan: StudyPlan;
   /** The version of the study's plan, if that has several. */
   readonly planVersion?: number;
-  /** Those of all participants who follow this version, or of the one participant. */
+  /** The records and recordings of all participants who follow this version, or of the one participant. */
   readonly records: readonly StoredRecord[];
   readonly motion: readonly PackedMotion[];
   /** The software that has served the study since its creation. */
