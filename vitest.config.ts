@@ -9,7 +9,9 @@ import { thirdGame } from './tests/page/third-game/added-lines.ts';
 const apart = ['tests/page/shell/**/*.test.ts', 'tests/ui/vr-touch.test.ts'];
 
 /** Tests with a third game in the registries. */
-const withThirdGame = ['tests/page/third-game/*.test.ts', 'tests/study/third-game.test.ts'];
+const withThirdGame = ['page/third-game/*', 'server/third-game', 'study/third-game'].map(
+  (path) => `tests/${path}.test.ts`,
+);
 
 const projects: TestProjectConfiguration[] = [
   {

@@ -1,5 +1,6 @@
 import { parseArgs } from 'node:util';
 import { ConfigurationError, secretWeakness } from 'threepoint-http';
+import { gamesWithRooms } from './room-kinds';
 
 /** The settings of this process, from the command line and the environment. */
 export interface Configuration {
@@ -13,13 +14,15 @@ export interface Configuration {
   readonly experimenterToken: string | null;
 }
 
+const roundLengths = gamesWithRooms.map(({ variable, rooms }) => `${variable}, default ${rooms.seconds}`).join('; ');
+
 export const usage = `Usage: npm start -- [options]
   --port NUMBER  port to serve on (or the environment variable PORT); default 3333, the next free one if it is taken
   --lan          HTTPS for every device on the network, with a self-signed certificate
   --studies DIR  folder of the studies (or the environment variable STUDIES); default study-data
   --help         this text
 The environment variable EXPERIMENTER_TOKEN (32 characters or more, as from "openssl rand -base64 32") replaces the token that the server
-generates. THREEPOINT_BALL_SECONDS is the length of a round of the ball game in seconds, 1 to 3600; default 90.`;
+generates. The length of a round in seconds, 1 to 3600: ${roundLengths}.`;
 
 function portFrom(text: string, source: string): number {
   const port = Number(text);

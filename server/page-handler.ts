@@ -130,8 +130,8 @@ export function createPageHandler(directory: string, options: PageOptions = {}):
 
   function answerTo({ method, url, headers: asked }: IncomingMessage): HttpResponse {
     if (method !== 'GET' && method !== 'HEAD') {
-      const refused = textResponse('Only GET and HEAD are answered here.', 405);
-      return { ...refused, headers: { ...refused.headers, allow: 'GET, HEAD' } };
+      const rejected = textResponse('Only GET and HEAD are answered here.', 405);
+      return { ...rejected, headers: { ...rejected.headers, allow: 'GET, HEAD' } };
     }
     const target = parseRequestTarget(url);
     if (!target) return textResponse('This address is not well formed.', 400);

@@ -66,7 +66,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     ...(credentials && { credentials }),
     connectionLimiter,
     checkHost: site.checkHost,
-    onFault: (error) => log(errorLine(error)),
+    onError: (error) => log(errorLine(error)),
   });
   const rooms = attachRooms(prepared.http, {
     ...relaying,

@@ -11,6 +11,7 @@ import { enterVr, keepPicture, newPage, pressReady } from '../page-fixture';
 import {
   calibrate,
   consentAndFillIn,
+  openStudy,
   press,
   reaches,
   recordsOf,
@@ -89,7 +90,8 @@ test('two pages play a round of a third game to its end @full', async ({ browser
 /** Returns a study of the third game alone, for one group of two. */
 function touchStudy(): StudyPlan {
   const plan = withoutPractice(shortStudy('lamps', 'paper', 'ball', 120));
-  const tasks = plan.tasks.map((task) => ({ ...task, id: 'touch', game: 'touch', groupSize: 2 }));
+  const touch = { id: 'touch', title: 'Targets', game: 'touch', groupSize: 2, questionnaire: 'touch' };
+  const tasks = plan.tasks.map((task) => ({ ...task, ...touch }));
   const { planned: _, ...unplanned } = plan;
   // reason: a plan of this build's server, whose games have one more name
   return { ...unplanned, participants: 2, tasks } as unknown as StudyPlan;
@@ -106,6 +108,25 @@ const touchLitTarget = (page: Page): Promise<void> =>
       await new Promise((resolve) => requestAnimationFrame(resolve));
     }
   });
+
+test('the results page of a study shows tables and figures of the third game @full', async ({ browser, origin }) => {
+  const page = await newPage(browser, origin);
+  await page.setViewportSize({ width: 1280, height: 860 });
+  await experimenter(origin).begin({ ...touchStudy(), participants: 8 }, false);
+  await openStudy(page, '/experimenter', 'lamps');
+  await page.getByRole('button', { name: 'Simulate …' }).click();
+  await page.getByRole('button', { name: 'Simulate', exact: true }).click();
+  await expect(page.getByText('SIMULATED: a copy to try')).toBeVisible({ timeout: 90_000 });
+  await page.getByRole('link', { name: 'Results' }).last().click();
+  await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
+  for (const name of ['Targets: questionnaire, means', 'Targets: scores, means']) {
+    await expect(page.getByRole('img', { name })).toBeVisible();
+  }
+  await expect(page.getByRole('row', { name: /^reach\b/ })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Targets, per cent 4 / })).toBeVisible();
+  await page.screenshot({ path: 'artifacts/screenshots/third-game-results.png', fullPage: true });
+  await page.context().close();
+});
 
 test('two participants play the third game in a study, and their trials are recorded @nightly', async ({
   browser,

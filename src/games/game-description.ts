@@ -23,8 +23,10 @@ export interface GameDescription {
   readonly because: string;
   /** The remark for experimenters whose conditions need a mirror that the game does not have; null: it has one. */
   readonly unmirrored: string | null;
-  /** The figure of the paper that shows the scores; null: the paper has none. */
-  readonly paperFigure: number | null;
+  /** A questionnaire that plans use by the name of the game, in the format of plans; null: there is none. */
+  readonly questionnaire: Readonly<Record<string, unknown>> | null;
+  /** The figures of the paper that show the answers and the scores; null: the paper does not have the game. */
+  readonly paperFigures: { readonly answers: number; readonly scores: number } | null;
   /** The reasons for which a round ends before its time. */
   readonly ends: readonly string[];
   readonly phrases: Readonly<Record<'en' | 'de', GamePhrases>>;

@@ -21,7 +21,16 @@ export {
   sendResponse,
   textResponse,
 } from './response';
-export { type Call, createRouter, jsonOf, noPage, type Route, refusalOf, type Service, textOf } from './router';
+export {
+  type Call,
+  createRouter,
+  jsonOf,
+  noPage,
+  type Route,
+  rejectionOf as refusalOf,
+  type Service,
+  textOf,
+} from './router';
 export { secretWeakness } from './secret-strength';
 export { contentSecurityPolicy, permissionsPolicy } from './security-headers';
 export { createSitePolicy, type SitePolicy } from './site-policy';

@@ -36,7 +36,7 @@ export interface Service<Access extends string = string> {
    */
   admit(route: Route<Access>, call: Omit<Call, 'body'>): HttpResponse | undefined | Promise<HttpResponse | undefined>;
   /** Called with each internal error; the client receives status 500 without details. */
-  onFault(error: unknown): void;
+  onError(error: unknown): void;
 }
 
 /** The deepest nesting of a JSON body. Stored data needs less, and recursion would overflow the stack at 100,000. */
@@ -63,7 +63,7 @@ export function jsonOf(call: Pick<Call, 'body'>): unknown {
 }
 
 /** Returns what the client receives for an error; null: an internal error. */
-export function refusalOf(error: unknown): HttpError | null {
+export function rejectionOf(error: unknown): HttpError | null {
   if (error instanceof ValidationError) return new HttpError(400, error.message, { field: error.field || null });
   return error instanceof HttpError ? error : null;
 }
@@ -75,15 +75,15 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
   const pattern = new RegExp(`^${route.path.replace(/:\w+/g, segment)}/?$`);
   return {
     route,
-    onFault: service.onFault,
+    onError: service.onError,
     /** Returns the named segments; null: the path does not match. */
     match(path: string): Readonly<Record<string, string>> | null {
       const found = pattern.exec(path);
       return found && Object.fromEntries(names.map((name, i) => [name, decodeURIComponent(found[i + 1] as string)]));
     },
     async answer(call: Omit<Call, 'body'>): Promise<HttpResponse> {
-      const refused = await service.admit(route, call);
-      if (refused) return refused;
+      const rejected = await service.admit(route, call);
+      if (rejected) return rejected;
       if (route.bodyLimit === 0) return route.handle({ ...call, body: new Uint8Array() });
       if (!/^application\/json(;|$)/i.test(call.request.headers['content-type'] ?? '')) {
         throw new HttpError(415, 'the content type must be application/json');
@@ -91,9 +91,9 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       return route.handle({ ...call, body: await readWholeBody(call.request, route.bodyLimit) });
     },
     answerTo(error: unknown): HttpResponse {
-      const known = refusalOf(error);
+      const known = rejectionOf(error);
       if (known) return errorResponse(known);
-      service.onFault(error);
+      service.onError(error);
       return errorResponse(internalError());
     },
   };
@@ -150,7 +150,7 @@ export function createRouter(
       .catch((error: unknown) => matcher.answerTo(error))
       .then((answer) => sendResponse(request, response, answer))
       .catch((error: unknown) => {
-        matcher.onFault(error);
+        matcher.onError(error);
         response.destroy();
       });
   };

@@ -2,7 +2,7 @@ import type { IncomingMessage } from 'node:http';
 import { isIP } from 'node:net';
 import { hostname } from 'node:os';
 
-interface SiteRefusal {
+interface SiteRejection {
   readonly status: 400 | 403 | 421;
   readonly message: string;
 }
@@ -13,12 +13,12 @@ export interface SitePolicy {
    * Returns why the request's Host is not a name of this server; null: it is. This blocks DNS rebinding, in which
    * another site's name points at this machine. IP addresses are allowed, because they cannot be rebound.
    */
-  checkHost(request: IncomingMessage): SiteRefusal | null;
+  checkHost(request: IncomingMessage): SiteRejection | null;
   /**
    * Returns why the request's origin may not use the server; null: it may. Programs other than browsers send no origin;
    * they need a secret.
    */
-  checkOrigin(request: IncomingMessage): SiteRefusal | null;
+  checkOrigin(request: IncomingMessage): SiteRejection | null;
 }
 
 export interface SitePolicyOptions {
@@ -70,11 +70,11 @@ export function createSitePolicy({ origins, hosts, trustProxy }: SitePolicyOptio
     },
     checkOrigin(request) {
       const { origin, 'sec-fetch-site': site } = request.headers;
-      const refused = { status: 403, message: 'this page may not use this server' } as const;
-      if (origin === undefined) return ownFetchSites.includes(site) ? null : refused;
-      if (!URL.canParse(origin)) return refused;
+      const rejected = { status: 403, message: 'this page may not use this server' } as const;
+      if (origin === undefined) return ownFetchSites.includes(site) ? null : rejected;
+      if (!URL.canParse(origin)) return rejected;
       const allowed = origins.length > 0 ? origins : [ownOrigin(request)];
-      return allowed.includes(new URL(origin).origin) ? null : refused;
+      return allowed.includes(new URL(origin).origin) ? null : rejected;
     },
   };
 }

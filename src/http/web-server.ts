@@ -46,7 +46,7 @@ interface WebServerOptions {
   /** Checks the Host of requests that are redirected to https; every one is accepted without it. */
   readonly checkHost?: SitePolicy['checkHost'];
   /** Receives the exceptions of the listeners, after which the server goes on. Default: writes them to the console. */
-  readonly onFault?: FaultListener;
+  readonly onError?: ErrorListener;
   /**
    * Idle timeout of a connection [ms], also while a client does not read; WebSockets have their own pings. Default:
    * 30,000.
@@ -73,9 +73,9 @@ const redirectToHttps =
       sendError(request, response, new HttpError(400, 'the address of this request is malformed'));
       return;
     }
-    const refusal = checkHost(request);
-    if (refusal) {
-      sendError(request, response, new HttpError(refusal.status, refusal.message));
+    const rejection = checkHost(request);
+    if (rejection) {
+      sendError(request, response, new HttpError(rejection.status, rejection.message));
       return;
     }
     const search = target.query.size > 0 ? `?${target.query}` : '';
@@ -83,7 +83,7 @@ const redirectToHttps =
   };
 
 /** Returns the refusal for an error of Node's HTTP parser. */
-function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
+function rejectionOfParser({ code }: NodeJS.ErrnoException): HttpError {
   if (code === 'HPE_HEADER_OVERFLOW') return new HttpError(431, 'the headers of this request are too long');
   if (code === 'HPE_CHUNK_EXTENSIONS_OVERFLOW') return new HttpError(413, 'the chunks of this body are too long');
   if (code === 'ERR_HTTP_REQUEST_TIMEOUT') return new HttpError(408, 'the request did not arrive in time');
@@ -91,7 +91,7 @@ function refusalOfParser({ code }: NodeJS.ErrnoException): HttpError {
 }
 
 /** Receives the exceptions of a server's handlers, for its log. */
-type FaultListener = (error: unknown) => void;
+type ErrorListener = (error: unknown) => void;
 
 /** The responses that each connection has not sent yet, in the order of their requests. */
 const unanswered = new WeakMap<Duplex, Set<ServerResponse>>();
@@ -116,19 +116,19 @@ function afterEarlierAnswers(socket: Duplex, next: () => void): void {
  * Returns a listener for requests that never throws and tolerates clients that disconnect. It refuses requests with a
  * wrong Host, and answers 500 to those whose listener throws.
  */
-export const answering = (listener: RequestListener, onFault: FaultListener): RequestListener =>
+export const answering = (listener: RequestListener, onError: ErrorListener): RequestListener =>
   guarded(
     (request, response) => {
       followResponse(request, response);
       // A client may disconnect before it has read its answer; that is not an error.
       request.on('error', () => undefined);
       response.on('error', () => undefined);
-      const complaint = hostProblem(request);
-      if (complaint === null) listener(request, response);
-      else sendError(request, response, new HttpError(400, complaint));
+      const problem = hostProblem(request);
+      if (problem === null) listener(request, response);
+      else sendError(request, response, new HttpError(400, problem));
     },
     (error, request, response) => {
-      onFault(error);
+      onError(error);
       if (response.headersSent) response.destroy();
       else sendError(request, response, internalError());
     },
@@ -148,18 +148,18 @@ export function lastResponse(request: IncomingMessage, socket: Duplex): ServerRe
  * requests with a wrong Host. The answers to earlier requests on the connection are sent before.
  */
 export const handingOver =
-  (listener: (request: IncomingMessage, socket: Duplex, head: Buffer) => void, onFault: FaultListener) =>
+  (listener: (request: IncomingMessage, socket: Duplex, head: Buffer) => void, onError: ErrorListener) =>
   (request: IncomingMessage, socket: Duplex, head: Buffer): void => {
     // Node has removed its own listeners.
     socket.on('error', () => socket.destroy()).on('timeout', () => socket.destroy());
     const answer = guarded(
       () => {
-        const complaint = hostProblem(request);
-        if (complaint === null) listener(request, socket, head);
-        else sendError(request, lastResponse(request, socket), new HttpError(400, complaint));
+        const problem = hostProblem(request);
+        if (problem === null) listener(request, socket, head);
+        else sendError(request, lastResponse(request, socket), new HttpError(400, problem));
       },
       (error) => {
-        onFault(error);
+        onError(error);
         socket.destroy();
       },
     );
@@ -184,45 +184,45 @@ function answerAll(
   server: HttpServer,
   listener: RequestListener,
   upgrade: UpgradeListener,
-  onFault: FaultListener,
+  onError: ErrorListener,
 ): void {
   // reason: missing in the types, but an option of http.Server: a client that has closed its side still receives the
   // answer.
   (server as HttpServer & { httpAllowHalfOpen: boolean }).httpAllowHalfOpen = true;
-  server.on('request', answering(listener, onFault));
-  const refuseExpectation: RequestListener = (request, response) =>
+  server.on('request', answering(listener, onError));
+  const rejectExpectation: RequestListener = (request, response) =>
     sendError(request, response, new HttpError(417, 'this server supports no expectation but 100-continue'));
-  server.on('checkExpectation', answering(refuseExpectation, onFault));
-  const refuseTunnel = (request: IncomingMessage, socket: Duplex): void => {
-    const refusal = new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } });
-    sendError(request, lastResponse(request, socket), refusal);
+  server.on('checkExpectation', answering(rejectExpectation, onError));
+  const rejectTunnel = (request: IncomingMessage, socket: Duplex): void => {
+    const rejection = new HttpError(405, 'this server is not a proxy', { headers: { allow: 'GET, HEAD' } });
+    sendError(request, lastResponse(request, socket), rejection);
   };
-  server.on('connect', handingOver(refuseTunnel, onFault));
+  server.on('connect', handingOver(rejectTunnel, onError));
   const handleUpgrade = (request: IncomingMessage, socket: Duplex, head: Buffer): void => {
     if (!upgrade(request, socket, head)) ignoreOffer(server, request, socket);
   };
-  server.on('upgrade', handingOver(handleUpgrade, onFault));
-  const refuseGarbage = (error: NodeJS.ErrnoException, socket: Duplex): void => {
+  server.on('upgrade', handingOver(handleUpgrade, onError));
+  const rejectGarbage = (error: NodeJS.ErrnoException, socket: Duplex): void => {
     if (error.code === 'ECONNRESET') socket.destroy();
     if (!socket.writable) return;
-    const refusal = refusalOfParser(error);
+    const rejection = rejectionOfParser(error);
     const newest = newestUnanswered(socket);
     if (newest && !newest.req.complete) {
       // The error is in the body of the newest request, and its response is sent in its turn.
       if (newest.headersSent) return;
       // Its handler may still wait for the body.
       newest.once('close', () => newest.req.destroy());
-      sendError(newest.req, newest, refusal);
+      sendError(newest.req, newest, rejection);
     } else {
       // Nothing more is read before the answer; Node reports an error for each chunk.
       socket.pause();
-      afterEarlierAnswers(socket, () => sendRawResponse(socket, errorResponse(refusal)));
+      afterEarlierAnswers(socket, () => sendRawResponse(socket, errorResponse(rejection)));
     }
   };
   server.on(
     'clientError',
-    guarded(refuseGarbage, (error, _cause, socket) => {
-      onFault(error);
+    guarded(rejectGarbage, (error, _cause, socket) => {
+      onError(error);
       socket.destroy();
     }),
   );
@@ -230,7 +230,7 @@ function answerAll(
 }
 
 /** Creates a server that splits one port: TLS goes to `secure`, plain HTTP to `plain`. */
-function splitByProtocol(secure: HttpServer, plain: HttpServer, onFault: FaultListener): NetServer {
+function splitByProtocol(secure: HttpServer, plain: HttpServer, onError: ErrorListener): NetServer {
   return createNetServer((socket) => {
     socket.setTimeout(handshakeTimeoutMs, () => socket.destroy());
     socket.once('error', () => socket.destroy());
@@ -244,7 +244,7 @@ function splitByProtocol(secure: HttpServer, plain: HttpServer, onFault: FaultLi
       process.nextTick(() => socket.resume());
     };
     const endSocket = (error: unknown): void => {
-      onFault(error);
+      onError(error);
       socket.destroy();
     };
     socket.once('data', guarded(passOn, endSocket));
@@ -302,17 +302,17 @@ export function prepareServer(
     upgrade = () => false,
     connectionLimiter,
     checkHost = () => null,
-    onFault = (error) => console.error(error),
+    onError = (error) => console.error(error),
     idleTimeoutMs = 30_000,
   }: WebServerOptions,
 ): PreparedServer {
   const requests: HttpServer = credentials
     ? createHttpsServer({ ...credentials, ...limits, handshakeTimeout: handshakeTimeoutMs })
     : createHttpServer(limits);
-  answerAll(requests, listener, upgrade, onFault);
+  answerAll(requests, listener, upgrade, onError);
   const redirects = createHttpServer(limits);
-  answerAll(redirects, redirectToHttps(checkHost), () => false, onFault);
-  const entrance: NetServer = credentials ? splitByProtocol(requests, redirects, onFault) : requests;
+  answerAll(redirects, redirectToHttps(checkHost), () => false, onError);
+  const entrance: NetServer = credentials ? splitByProtocol(requests, redirects, onError) : requests;
   for (const server of [requests, redirects]) {
     server.timeout = idleTimeoutMs;
     // Node starts to check timeouts on this event; a server that receives its connections from another never emits it.
@@ -337,7 +337,7 @@ export function prepareServer(
     async listen({ host, port }) {
       const chosen = await listenOnFreePort(entrance, host, port);
       // A connection that could not be accepted, for example without a free file handle.
-      entrance.on('error', onFault);
+      entrance.on('error', onError);
       return { port: chosen, close };
     },
   };

@@ -99,10 +99,10 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
   const relay = createRelay(configuration, secret, connections, kinds);
   const site = createSitePolicy(configuration);
   const router = createRouter([relay.service], noPage, site);
-  const { onFault } = relay.service;
+  const { onError } = relay.service;
   const answer = answering((request, response) => {
     if (allowOrigin(request, response, site)) router(request, response);
-  }, onFault);
+  }, onError);
 
   /** Returns whether the address is the rooms', and takes the path off it. */
   function takeOwnUrl(request: IncomingMessage): boolean {
@@ -126,7 +126,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
       const [asked, connection] = [request as IncomingMessage, socket as Duplex];
       const { url } = asked;
       // Without another listener, the offer is to be ignored: this listener made Node hand over the connection.
-      const ignore = handingOver(() => ignoreOffer(httpServer, asked, connection), onFault);
+      const ignore = handingOver(() => ignoreOffer(httpServer, asked, connection), onError);
       const passOnOffer = (): void => {
         if (!passOn(asked, connection, head)) ignore(asked, connection, head as Buffer);
       };
@@ -134,7 +134,7 @@ export function attachRooms(httpServer: Server, options: AttachRoomsOptions = {}
         if (relay.upgrade(...offer)) return;
         asked.url = url;
         passOnOffer();
-      }, onFault);
+      }, onError);
       if (takeOwnUrl(asked)) answerOwn(asked, connection, head as Buffer);
       else passOnOffer();
     }),

@@ -162,6 +162,6 @@ export function createRelayService(context: RelayContext, options: RelayServiceO
       }
       return undefined;
     },
-    onFault: (error) => log.error({ error: String(error) }, 'request failed'),
+    onError: (error) => log.error({ error: String(error) }, 'request failed'),
   };
 }

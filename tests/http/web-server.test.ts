@@ -57,7 +57,7 @@ describe('an exception', () => {
 
   test('in the listener of requests gets 500 and a log entry, and the server goes on', async () => {
     const faults: unknown[] = [];
-    const server = await serve(fail, { onFault: (error) => faults.push(error) });
+    const server = await serve(fail, { onError: (error) => faults.push(error) });
     onTestFinished(() => server.close());
     for (const headers of [{}, offer]) {
       const { status, body } = await ask(`http://127.0.0.1:${server.port}`, '/', { headers });
@@ -69,8 +69,8 @@ describe('an exception', () => {
 
   test('in the listener of upgrades closes the connection, is logged, and leaves the server running', async () => {
     const faults: unknown[] = [];
-    const onFault = (error: unknown) => faults.push(error);
-    const server = await serve(hello, { upgrade: fail, onFault });
+    const onError = (error: unknown) => faults.push(error);
+    const server = await serve(hello, { upgrade: fail, onError });
     onTestFinished(() => server.close());
     await expect(ask(`http://127.0.0.1:${server.port}`, '/', { headers: offer })).rejects.toThrow(/socket hang up/);
     expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');

@@ -11,7 +11,7 @@ import { paperPlan } from './model/studies';
 function touchPlan() {
   const { planned: _, tasks, ...paper } = paperPlan();
   const [task] = tasks;
-  const touch = { ...task, id: 'touch', game: 'touch', groupSize: 2, questionnaire: 'nasa-tlx-raw' };
+  const touch = { ...task, id: 'touch', game: 'touch', groupSize: 2, questionnaire: 'touch' };
   return checkedPlan({ ...paper, participants: 8, tasks: [touch] });
 }
 
@@ -21,6 +21,16 @@ test('an entry makes a game a task in two languages', () => {
     'Touch the lit targets with your hands.',
     'Berühren Sie die leuchtenden Ziele.',
   ]);
+});
+
+test('the questionnaire of the third game is asked by the name of the game', () => {
+  const plan = touchPlan();
+  const records = simulateStudy(plan, modelsWith(plan, { answers: {}, scores: {} }), 5, 1e9).flatMap(
+    (participant) => participant.records,
+  );
+  const table = studyTables(records, plan).find(({ name }) => name === 'answers');
+  expect(table?.rows).toHaveLength(8 * plan.conditions.length);
+  expect(table?.rows[0]).toMatchObject({ task: 'touch', questionnaire: 'touch', question: 'reach' });
 });
 
 test('a plan has the third game, and its recorded trial is a row of the table', () => {

@@ -1,11 +1,13 @@
 import type { GameDescription } from '../game-description';
+import questionnaire from './questionnaire.json' with { type: 'json' };
 
 /** Archery for servers and studies. A score would count for all of a group. */
 export const archery = {
   players: 1,
   because: 'archery is played alone',
   unmirrored: null,
-  paperFigure: 12,
+  questionnaire,
+  paperFigures: { answers: 11, scores: 12 },
   ends: ['arrows', 'targets'],
   phrases: {
     en: {

@@ -1,11 +1,13 @@
 import type { GameDescription } from '../game-description';
+import questionnaire from './questionnaire.json' with { type: 'json' };
 
 /** The ball game for servers and studies. In a study it waits for every seat. */
 export const ball = {
   players: 3,
   because: 'the ball game is played by three',
   unmirrored: 'the ball game has no mirror',
-  paperFigure: 14,
+  questionnaire,
+  paperFigures: { answers: 13, scores: 14 },
   ends: ['balls'],
   phrases: {
     en: {

@@ -5,7 +5,7 @@ import type { RoomRegistry } from './room-registry';
 
 const badMessagesAllowed = 3;
 /** The most messages in a row beyond the limit; more count as an attack. */
-const maxRefusedInARow = 60;
+const maxRejectedInARow = 60;
 
 /** Returns whether a message is a join with another protocol version, from a page that was loaded before an update. */
 const isOtherVersion = (value: unknown): boolean => {
@@ -102,7 +102,7 @@ export class MessageHandler {
   /** Returns whether a message is within the client's limit. */
   #isWithin(client: Client, bucket: TokenBucket, at: number): boolean {
     if (bucket.take(at)) return true;
-    if (bucket.refusedInARow > maxRefusedInARow) this.kick(client, 'misbehaved', 'budget');
+    if (bucket.rejectedInARow > maxRejectedInARow) this.kick(client, 'misbehaved', 'budget');
     return false;
   }
 

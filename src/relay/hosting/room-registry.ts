@@ -165,7 +165,7 @@ export class RoomRegistry {
           clients.delete(id);
           if (client) disconnect(client, reason);
         },
-        refused({ client, seat, what, reason }) {
+        rejected({ client, seat, what, reason }) {
           metrics.refused(what, reason);
           log.info({ room: id, client, seat, what, reason }, 'refused');
         },

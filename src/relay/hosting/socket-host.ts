@@ -4,7 +4,7 @@ import { consumePoint, guarded } from 'threepoint-http';
 import { messageEvent } from 'threepoint-rooms/host';
 import { allowedTerms } from '../access/room-tokens';
 import type { RelayContext } from '../relay-context';
-import { closeConnection, type RelayTransport, type WireFault } from '../sockets/relay-transport';
+import { closeConnection, type RelayTransport, type WireProblem } from '../sockets/relay-transport';
 import { type Client, createClient, disconnect } from './client';
 import { MessageHandler } from './message-handler';
 import type { RoomRegistry } from './room-registry';
@@ -19,7 +19,7 @@ const connectsPerMinute = 30;
 /** Returns middleware that accepts sockets with a valid pass, and limits the connections of each person. */
 function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<Server['use']>[0] {
   const connects = new RateLimiterMemory({ points: connectsPerMinute, duration: 60 });
-  async function refusalOf(socket: Socket): Promise<'refused' | 'too-often' | null> {
+  async function rejectionOf(socket: Socket): Promise<'refused' | 'too-often' | null> {
     const { token } = socket.handshake.auth as { token?: unknown };
     const pass = typeof token === 'string' ? await tokens.verify(token) : null;
     const terms = pass && allowedTerms(kinds, pass);
@@ -35,8 +35,8 @@ function createGate({ kinds, tokens, metrics, log }: RelayContext): Parameters<S
     return null;
   }
   return (socket, next) => {
-    refusalOf(socket).then(
-      (refusal) => (refusal ? next(new Error(refusal)) : next()),
+    rejectionOf(socket).then(
+      (rejection) => (rejection ? next(new Error(rejection)) : next()),
       (error: unknown) => {
         log.error({ error: String(error) }, 'the pass could not be verified');
         next(new Error('refused'));
@@ -68,8 +68,8 @@ export function hostSockets(
     };
     listen(socket, {
       onPose: (bytes) => messages.onPose(client, bytes),
-      onFault: guarded(
-        (fault: WireFault) => messages.kick(client, fault === 'slow' ? 'slow' : 'misbehaved', fault),
+      onError: guarded(
+        (problem: WireProblem) => messages.kick(client, problem === 'slow' ? 'slow' : 'misbehaved', problem),
         endClient,
       ),
     });

@@ -89,7 +89,7 @@ function folderFrom(text: string | undefined): string | null {
   return url.href;
 }
 
-function refuseWeak(name: string, secret: string | null): void {
+function rejectWeak(name: string, secret: string | null): void {
   const weakness = secret === null ? null : secretWeakness(secret);
   if (weakness) throw new ConfigurationError(`The secret in the environment variable ${name} ${weakness}`);
 }
@@ -97,9 +97,9 @@ function refuseWeak(name: string, secret: string | null): void {
 /** Reads the settings. Throws a ConfigurationError that names the variable and its valid values. */
 export function relayConfigurationFrom(environment: NodeJS.ProcessEnv): RelayConfiguration {
   const secret = environment.THREEPOINT_SECRET || null;
-  refuseWeak('THREEPOINT_SECRET', secret);
+  rejectWeak('THREEPOINT_SECRET', secret);
   const adminToken = environment.THREEPOINT_ADMIN_TOKEN || null;
-  refuseWeak('THREEPOINT_ADMIN_TOKEN', adminToken);
+  rejectWeak('THREEPOINT_ADMIN_TOKEN', adminToken);
   if (adminToken !== null && !/^\S{1,256}$/.test(adminToken)) {
     throw new ConfigurationError(
       `The environment variable THREEPOINT_ADMIN_TOKEN must have no spaces and at most 256 characters, has ${adminToken.length}.`,

@@ -102,15 +102,15 @@ export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
     addCounter(registry, name, help, () => counts[key]);
   }
   for (const key of keysOf(gaugeHelp)) addGauge(registry, key, gaugeHelp[key], () => census()[key]);
-  const refusedHelp = 'Connections refused because their address had too many.';
-  addCounter(registry, 'connections_refused', refusedHelp, () => census().refusedConnections);
+  const rejectedHelp = 'Connections refused because their address had too many.';
+  addCounter(registry, 'connections_refused', rejectedHelp, () => census().refusedConnections);
   const kicks = new Counter({
     name: 'threepoint_kicks_total',
     help: 'Clients that were disconnected, by reason.',
     labelNames: ['reason'],
     registers,
   });
-  const refusals = new Counter({
+  const rejections = new Counter({
     name: 'threepoint_refusals_total',
     help: 'Requests that rooms refused, by reason.',
     labelNames: ['what', 'reason'],
@@ -127,7 +127,7 @@ export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
     counts,
     tick,
     kicked: (reason) => kicks.inc({ reason }),
-    refused: (what, reason) => refusals.inc({ what, reason }),
+    refused: (what, reason) => rejections.inc({ what, reason }),
     close: () => registry.clear(),
   };
 }

@@ -23,13 +23,13 @@ export const relayPath = '/relay';
 type Connection = Socket['conn'];
 
 /** Why the transport ends a connection: it sends too many frames, or reads too slowly. */
-export type WireFault = 'flood' | 'slow';
+export type WireProblem = 'flood' | 'slow';
 
 /** Receives what a connection sends besides socket.io's packets. */
 interface WireListener {
   onPose(bytes: Uint8Array): void;
   /** Called once before the transport ends the connection; further messages are dropped. */
-  onFault(fault: WireFault): void;
+  onError(problem: WireProblem): void;
 }
 
 /**
@@ -131,12 +131,12 @@ export function createRelayTransport(context: RelayContext) {
   const { engine } = io;
   const slowReaders = new SlowReaders(context, (conn) => end(conn, 'slow'));
 
-  function end(conn: Connection, fault: WireFault): void {
+  function end(conn: Connection, problem: WireProblem): void {
     const listener = listeners.get(conn);
-    if (listener) listener.onFault(fault);
+    if (listener) listener.onError(problem);
     else {
-      metrics.kicked(fault);
-      log.warn({ because: fault }, 'ended a connection that had not joined');
+      metrics.kicked(problem);
+      log.warn({ because: problem }, 'ended a connection that had not joined');
     }
     // A client that has left its room may still be connected.
     conn.close();
@@ -151,11 +151,11 @@ export function createRelayTransport(context: RelayContext) {
       if (listener) listener.onPose(message);
       else conn.close();
     };
-    const onFault = (error: unknown): void => {
+    const onError = (error: unknown): void => {
       log.error({ error: String(error) }, 'a frame failed');
       conn.close();
     };
-    websocket.on('message', guarded(onMessage, onFault));
+    websocket.on('message', guarded(onMessage, onError));
   }
 
   engine.on('connection', (conn: Connection) => {

@@ -37,11 +37,11 @@ export function createUpgradeAdmission({
   return (request, query) => {
     const error = protocolErrorOf(request, query);
     if (error) throw error;
-    const refusal = site.checkHost(request) ?? site.checkOrigin(request);
-    if (refusal) {
+    const rejection = site.checkHost(request) ?? site.checkOrigin(request);
+    if (rejection) {
       metrics.kicked('origin');
       log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
-      throw new HttpError(refusal.status, refusal.message);
+      throw new HttpError(rejection.status, rejection.message);
     }
     const { network } = clientAddressOf(request, configuration.trustProxy);
     if (!addresses.acquire(network)) {

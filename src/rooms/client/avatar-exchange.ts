@@ -42,7 +42,7 @@ const terms = v.object({
 /** Creates the exchange of a room. `base`: the address of the relay, without a trailing slash. */
 export function createAvatarExchange(base: string, room: string, pass: RoomPass): AvatarExchange {
   const addressOf = (hash?: AvatarHash): string => `${base}/api/avatars${hash ? `/${hash}` : ''}?room=${room}`;
-  async function refusalOf(response: Response): Promise<Error> {
+  async function rejectionOf(response: Response): Promise<Error> {
     const body = (await response.json().catch(() => null)) as { error?: unknown } | null;
     return new Error(
       typeof body?.error === 'string' ? body.error : `the server answered with status ${response.status}`,
@@ -51,7 +51,7 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
 
   async function askTerms(): Promise<AvatarTerms> {
     const response = await fetchWithPass(pass, addressOf());
-    if (!response.ok) throw await refusalOf(response);
+    if (!response.ok) throw await rejectionOf(response);
     const read = v.safeParse(terms, await response.json().catch(() => null));
     if (!read.success) throw new Error('the server has no avatar store');
     return read.output;
@@ -70,7 +70,7 @@ export function createAvatarExchange(base: string, room: string, pass: RoomPass)
     async store(hash, file) {
       const headers = { 'content-type': 'model/gltf-binary' };
       const response = await fetchWithPass(pass, addressOf(hash), { method: 'PUT', body: file, headers });
-      if (!response.ok) throw await refusalOf(response);
+      if (!response.ok) throw await rejectionOf(response);
     },
     async addressesOf(hash) {
       // This request also renews an expired pass.

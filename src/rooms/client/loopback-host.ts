@@ -2,13 +2,13 @@ import type { ClientMessage, DisconnectReason } from '../protocol/messages';
 import { encodeFrame } from '../protocol/pose-frame';
 import type { HostedGame, MatchAction, MatchPolicy } from '../room/match-policy';
 import { Room, type RoomOptions } from '../room/room';
-import type { ClientId, RoomRefusal } from '../room/room-host';
+import type { ClientId, RoomRejection } from '../room/room-host';
 import type { ClientPolicy } from './client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
 import { RoomSession } from './room-session';
 
 export interface LoopbackOptions<Game extends HostedGame> extends Partial<RoomOptions> {
-  refused?(refusal: RoomRefusal): void;
+  rejected?(rejection: RoomRejection): void;
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }
 
@@ -27,7 +27,7 @@ export class LoopbackHost<Game extends HostedGame> {
   constructor(
     match: MatchPolicy<Game>,
     client: ClientPolicy<Game>,
-    { refused, stepped, ...options }: LoopbackOptions<Game> = {},
+    { rejected, stepped, ...options }: LoopbackOptions<Game> = {},
   ) {
     this.policy = client;
     this.room = new Room<Game>(
@@ -46,7 +46,7 @@ export class LoopbackHost<Game extends HostedGame> {
           this.#connections.get(client)?.end(reason);
           this.#connections.delete(client);
         },
-        refused: (refusal) => refused?.(refusal),
+        rejected: (rejection) => rejected?.(rejection),
         ...(stepped && { stepped }),
       },
     );

@@ -30,7 +30,7 @@ const timeoutMs = 4000;
 /** After `leave` the page closes the connection itself after this time [ms], if the server has not. */
 const closingMs = 1000;
 /** After this many refusals of renewed passes the connection ends. */
-const maxRefusals = 3;
+const maxRejections = 3;
 
 /** A connection to a room on a relay, which is opened again whenever it is lost, until it has ended. */
 export class SocketConnection<Game extends HostedGame> extends RoomSession<Game> {
@@ -44,7 +44,7 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
   #reason: ConnectionStatus['reason'] = null;
   /** Time of the next attempt by the page's clock [s]; null: one is under way, or none will be made. */
   #retryAt: number | null = null;
-  #refusals = 0;
+  #rejections = 0;
   #waiting: ReturnType<typeof setTimeout> | null = null;
   #joinedOnce = false;
   #leftOut: number;
@@ -120,7 +120,7 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
     socket.on('connect', () => {
       socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...this.joinRequest() });
     });
-    socket.on('connect_error', (error) => this.#onRefusal(error.message));
+    socket.on('connect_error', (error) => this.#onRejection(error.message));
     socket.on('disconnect', () => this.#retryLater(this.#reason));
     socket.on(frameEvent, (bytes: unknown) => {
       if (this.#isJoined && bytes instanceof Uint8Array) this.onFrame(bytes, this.#clock.now());
@@ -128,13 +128,13 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
     socket.on(messageEvent, (value: unknown) => this.#onValue(value));
   }
 
-  #onRefusal(text: string): void {
+  #onRejection(text: string): void {
     if (text !== 'refused') {
       this.#retryLater('unreachable');
       return;
     }
-    this.#refusals += 1;
-    if (this.#refusals >= maxRefusals) this.#end('refused');
+    this.#rejections += 1;
+    if (this.#rejections >= maxRejections) this.#end('refused');
     else this.#retryLater('refused');
   }
 
@@ -156,14 +156,14 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
     this.#phase = 'joined';
     this.#reason = null;
     this.#joinedOnce = true;
-    this.#refusals = 0;
+    this.#rejections = 0;
     this.#backOff.reset();
   }
 
   #attempt(): void {
     this.#retryAt = null;
     this.#wait(timeoutMs, () => this.#retryLater('unreachable'));
-    this.#pass.token(this.#refusals > 0).then(
+    this.#pass.token(this.#rejections > 0).then(
       (token) => {
         if (!this.#takesAnswers) return;
         this.#socket.auth = { token };

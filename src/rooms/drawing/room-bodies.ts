@@ -43,7 +43,7 @@ export class RoomBodies {
     this.#options = options;
     this.#seen = new RoomAvatarLoader(options);
     const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
-    const onRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRefused(avatar, reason);
+    const onRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRejected(avatar, reason);
     this.#drawn = new RemoteAvatars({ load, plain: defaultAvatar, onlyPlain: plain, mouthOf, onRefused, shadows });
     this.#shared = new SharedAvatar({ exchange, wear, send, notify });
   }
@@ -78,7 +78,7 @@ export class RoomBodies {
     this.#drawn.dispose();
   }
 
-  #notifyRefused(avatar: AvatarRef, reason: unknown): void {
+  #notifyRejected(avatar: AvatarRef, reason: unknown): void {
     const room = this.#options.room();
     const names = (room?.seats ?? []).flatMap((seat, index) =>
       seat?.avatar === avatar && index !== room?.mySeat ? [seat.name] : [],

@@ -80,16 +80,16 @@ export class RemotePoses {
   receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
     const known = this.#peers.get(peer);
     if (!known && this.#peers.size >= this.#maxPeers) {
-      return this.#refuse(peer, `there are ${this.#maxPeers} peers, as many as may be`);
+      return this.#reject(peer, `there are ${this.#maxPeers} peers, as many as may be`);
     }
     const person = known ?? new Peer(peer, timeMs / 1000);
     // Added even if its first packet is refused, so that invalid packets count towards the limit.
     this.#peers.set(peer, person);
-    if (!person.acceptsPacket(timeMs / 1000)) return this.#refuse(peer, 'it sends too many packets');
+    if (!person.acceptsPacket(timeMs / 1000)) return this.#reject(peer, 'it sends too many packets');
     const packet = readPeerPacket(bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes));
-    if (typeof packet === 'string') return this.#refuse(peer, packet);
-    const refusal = person.receive(packet, timeMs / 1000);
-    return refusal === null || this.#refuse(peer, refusal);
+    if (typeof packet === 'string') return this.#reject(peer, packet);
+    const rejection = person.receive(packet, timeMs / 1000);
+    return rejection === null || this.#reject(peer, rejection);
   }
 
   /**
@@ -119,7 +119,7 @@ export class RemotePoses {
     return this.#peers.get(peer)?.report() ?? null;
   }
 
-  #refuse(peer: string, reason: string): false {
+  #reject(peer: string, reason: string): false {
     this.#onRefused(peer, reason);
     return false;
   }

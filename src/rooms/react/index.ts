@@ -31,7 +31,7 @@ export function RoomAvatars(props: RoomAvatarsProps): ReactElement | null {
   const { room, name, body } = props;
   const url = String(props.url);
   const [joined, setJoined] = useState<JoinedRoom | null>(null);
-  const [fault, setFault] = useState<unknown>(null);
+  const [error, setError] = useState<unknown>(null);
   const live = useRef<JoinedRoom | null>(null);
   const newest = useRef(props);
   /** Resolves when the room before was left: two connections of one page would compete for its place. */
@@ -54,7 +54,7 @@ export function RoomAvatars(props: RoomAvatarsProps): ReactElement | null {
       setJoined(entered);
     };
     before.current = before.current.then(join).catch((error: unknown) => {
-      if (mounted) setFault(error);
+      if (mounted) setError(error);
     });
     return () => {
       mounted = false;
@@ -63,7 +63,7 @@ export function RoomAvatars(props: RoomAvatarsProps): ReactElement | null {
       setJoined(null);
     };
   }, [url, room, name, body]);
-  if (fault !== null) throw fault;
+  if (error !== null) throw error;
   useImperativeHandle(props.ref, () => joined as JoinedRoom, [joined]);
   useFrame(() => live.current?.update(performance.now()));
   return joined && createElement('primitive', { object: joined.others.object });

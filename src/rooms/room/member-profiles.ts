@@ -2,7 +2,7 @@ import { defaultAvatar } from 'threepoint/core';
 import type { ClientMessage, JoinRequest } from '../protocol/messages';
 import { maxVoiceSeats, type Voice } from '../protocol/voice-messages';
 import type { HostedGame } from './match-policy';
-import type { RefusalReason, RoomHost } from './room-host';
+import type { RejectionReason, RoomHost } from './room-host';
 import { allowedMoves, type Member, type Seats } from './seats';
 
 export type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
@@ -50,7 +50,7 @@ export class MemberProfiles {
     index: number | null,
     member: Member,
     message: Received<'calibration' | 'wear' | 'voice' | 'signal'>,
-  ): RefusalReason | null {
+  ): RejectionReason | null {
     switch (message.type) {
       case 'calibration':
         member.calibration = message.calibration;
@@ -61,8 +61,8 @@ export class MemberProfiles {
         member.avatar = message.avatar;
         break;
       case 'voice': {
-        const refusal = this.#voiceRefusal(index, message.voice);
-        if (refusal) return refusal;
+        const rejection = this.#voiceRejection(index, message.voice);
+        if (rejection) return rejection;
         member.voice = message.voice;
         break;
       }
@@ -81,7 +81,7 @@ export class MemberProfiles {
     return taken !== null && this.#seats.at(taken)?.member.identity !== identity ? null : voice;
   }
 
-  #voiceRefusal(index: number | null, voice: Voice | null): RefusalReason | null {
+  #voiceRejection(index: number | null, voice: Voice | null): RejectionReason | null {
     if (!this.#hasVoices) return 'no-voices';
     if (index === null && voice) return 'no-seat';
     const taken = voice && this.#seats.withVoice(voice.session);
@@ -89,7 +89,7 @@ export class MemberProfiles {
   }
 
   /** Forwards a signal to the page that it names, with the sender's own session. */
-  #forwardSignal(index: number | null, { to, body }: Received<'signal'>): RefusalReason | null {
+  #forwardSignal(index: number | null, { to, body }: Received<'signal'>): RejectionReason | null {
     if (!this.#hasVoices) return 'no-voices';
     const sender = index === null ? null : this.#seats.at(index);
     if (!sender) return 'no-seat';

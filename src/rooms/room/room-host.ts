@@ -6,7 +6,7 @@ import type { HostedGame, MatchAction } from './match-policy';
 export type ClientId = string;
 
 /** Why a Room refuses a request; actions that the rules refuse have reasons of the game. */
-export type RefusalReason =
+export type RejectionReason =
   | 'too-fast'
   | 'occupied'
   | 'too-often'
@@ -20,11 +20,11 @@ export type RefusalReason =
   | 'no-receiver';
 
 /** A request that the Room has refused. */
-export interface RoomRefusal {
+export interface RoomRejection {
   readonly client: ClientId;
   readonly seat: number | null;
   readonly what: 'pose' | 'action' | 'sit' | 'message';
-  /** A RefusalReason, or a reason of the game's rules. */
+  /** A RejectionReason, or a reason of the game's rules. */
   readonly reason: string;
 }
 
@@ -46,7 +46,7 @@ export interface RoomHost<Game extends HostedGame> {
   sendPoses(poses: readonly FreshPose[]): void;
   /** Disconnects a client that the Room has removed. */
   disconnect(client: ClientId, reason: DisconnectReason): void;
-  refused(refusal: RoomRefusal): void;
+  rejected(rejection: RoomRejection): void;
   /** Called with the actions of every tick before it is stepped; they suffice to replay a match. */
   stepped?(actions: readonly MatchAction<Game>[]): void;
 }

@@ -191,11 +191,11 @@ export class RoomMatch<Game extends HostedGame> {
     const shared = events.filter((event) => !this.#policy.refusalOf(event));
     if (shared.length > 0) this.#host.broadcast({ type: 'events', events: shared });
     for (const event of events) {
-      const refusal = this.#policy.refusalOf(event);
-      const client = refusal && this.#seats.at(refusal.player)?.client;
-      if (!refusal || !client) continue;
+      const rejection = this.#policy.refusalOf(event);
+      const client = rejection && this.#seats.at(rejection.player)?.client;
+      if (!rejection || !client) continue;
       this.#host.send(client, { type: 'events', events: [event] });
-      this.#host.refused({ client, seat: refusal.player, what: 'action', reason: refusal.reason });
+      this.#host.rejected({ client, seat: rejection.player, what: 'action', reason: rejection.reason });
     }
   }
 }

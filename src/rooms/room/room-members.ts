@@ -1,6 +1,6 @@
 import type { JoinRequest } from '../protocol/messages';
 import type { HostedGame } from './match-policy';
-import type { ClientId, RefusalReason, RoomHost } from './room-host';
+import type { ClientId, RejectionReason, RoomHost } from './room-host';
 import type { Member, Seats } from './seats';
 
 /** The clients of a room: who has joined, who takes which seat, and who has to yield. */
@@ -76,9 +76,9 @@ export class RoomMembers {
   }
 
   /** Moves a client to another seat; null: it becomes a spectator, or is one. Returns why that is refused, or null. */
-  changeSeat(client: ClientId, member: Member, to: number | null, time: number): RefusalReason | null {
-    const refusal = this.#assigned ? 'assigned' : this.#seats.refusalOf(to, member, time);
-    if (refusal) return refusal;
+  changeSeat(client: ClientId, member: Member, to: number | null, time: number): RejectionReason | null {
+    const rejection = this.#assigned ? 'assigned' : this.#seats.refusalOf(to, member, time);
+    if (rejection) return rejection;
     const from = this.#seats.indexOf(client);
     if (from !== null) this.#seats.vacate(from);
     member.voice = null;

@@ -3,7 +3,7 @@ import { type ClientMessage, type JoinRequest, packSeatInfo, protocolVersion } f
 import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { HostedGame, MatchPolicy } from './match-policy';
 import { MemberProfiles, type Received } from './member-profiles';
-import type { ClientId, RefusalReason, RoomHost, RoomRefusal } from './room-host';
+import type { ClientId, RejectionReason, RoomHost, RoomRejection } from './room-host';
 import { RoomMatch } from './room-match';
 import { RoomMembers } from './room-members';
 import { SeatUpdates } from './seat-updates';
@@ -100,7 +100,7 @@ export class Room<Game extends HostedGame> {
     this.#time = time;
     this.#match.begin(time);
     if (this.#members.of(client)) {
-      this.#refuse(client, 'message', 'joined-already');
+      this.#reject(client, 'message', 'joined-already');
       return;
     }
     this.#members.replaceOlder(identity, time);
@@ -122,13 +122,13 @@ export class Room<Game extends HostedGame> {
     this.#time = time;
     const member = this.#members.of(client);
     if (!member) {
-      this.#refuse(client, 'message', 'not-joined');
+      this.#reject(client, 'message', 'not-joined');
       return 'taken';
     }
     const index = this.#seats.indexOf(client);
     if (message.type === 'action') {
       const result = this.#match.act(index, message.action);
-      if (result === 'no-seat') this.#refuse(client, 'action', 'no-seat');
+      if (result === 'no-seat') this.#reject(client, 'action', 'no-seat');
       return result === 'bad' ? 'bad' : 'taken';
     }
     this.#onControl(client, member, index, message);
@@ -146,7 +146,7 @@ export class Room<Game extends HostedGame> {
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) return 'ignored';
     const result = seat.poses.accept(packet, bytes, time);
-    if (result === 'too-fast') this.#refuse(client, 'pose', 'too-fast');
+    if (result === 'too-fast') this.#reject(client, 'pose', 'too-fast');
     if (result !== 'accepted') return 'ignored';
     this.#match.addPose(index, packet, seat.poses.packetTime);
     return 'taken';
@@ -204,8 +204,8 @@ export class Room<Game extends HostedGame> {
         this.#onPlayerRequest(client, index, message);
         return;
       default: {
-        const refusal = this.#profiles.onMessage(index, member, message);
-        if (refusal) this.#refuse(client, 'message', refusal);
+        const rejection = this.#profiles.onMessage(index, member, message);
+        if (rejection) this.#reject(client, 'message', rejection);
       }
     }
   }
@@ -214,7 +214,7 @@ export class Room<Game extends HostedGame> {
   #onPlayerRequest(client: ClientId, index: number | null, message: Received<'ready' | 'pause'>): void {
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) {
-      this.#refuse(client, 'message', 'no-seat');
+      this.#reject(client, 'message', 'no-seat');
       return;
     }
     switch (message.type) {
@@ -224,7 +224,7 @@ export class Room<Game extends HostedGame> {
         return;
       case 'pause':
         if (this.options.pausable) seat.requestsPause = message.pause;
-        else this.#refuse(client, 'message', 'not-pausable');
+        else this.#reject(client, 'message', 'not-pausable');
     }
   }
 
@@ -238,9 +238,9 @@ export class Room<Game extends HostedGame> {
 
   #changeSeat(client: ClientId, member: Member, from: number | null, to: number | null): void {
     if (to === from) return;
-    const refusal = this.#members.changeSeat(client, member, to, this.#time);
-    if (refusal) {
-      this.#refuse(client, 'sit', refusal);
+    const rejection = this.#members.changeSeat(client, member, to, this.#time);
+    if (rejection) {
+      this.#reject(client, 'sit', rejection);
       return;
     }
     this.#host.send(client, { type: 'seated', seat: to });
@@ -273,7 +273,7 @@ export class Room<Game extends HostedGame> {
     this.#host.broadcast({ type: 'seat', seat, info: packSeatInfo(this.#seats.infoOf(seat)) });
   }
 
-  #refuse(client: ClientId, what: RoomRefusal['what'], reason: RefusalReason): void {
-    this.#host.refused({ client, seat: this.#seats.indexOf(client), what, reason });
+  #reject(client: ClientId, what: RoomRejection['what'], reason: RejectionReason): void {
+    this.#host.rejected({ client, seat: this.#seats.indexOf(client), what, reason });
   }
 }

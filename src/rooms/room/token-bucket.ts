@@ -7,7 +7,7 @@ export class TokenBucket {
   readonly #burst: number;
   #tokens: number;
   #filledAt: number | null = null;
-  #refusedInARow = 0;
+  #rejectedInARow = 0;
 
   constructor(perSecond: number, burst = perSecond) {
     this.#perSecond = perSecond;
@@ -16,8 +16,8 @@ export class TokenBucket {
   }
 
   /** The number of failed calls of `take` since the last success. */
-  get refusedInARow(): number {
-    return this.#refusedInARow;
+  get rejectedInARow(): number {
+    return this.#rejectedInARow;
   }
 
   /** Takes a token at this time; returns false if none is left. */
@@ -26,11 +26,11 @@ export class TokenBucket {
     this.#tokens = Math.min(this.#burst, this.#tokens + this.#perSecond * passed);
     this.#filledAt = time;
     if (this.#tokens < 1) {
-      this.#refusedInARow += 1;
+      this.#rejectedInARow += 1;
       return false;
     }
     this.#tokens -= 1;
-    this.#refusedInARow = 0;
+    this.#rejectedInARow = 0;
     return true;
   }
 }

@@ -1,5 +1,5 @@
 /** The messages to a user whose microphone does not work, by the name of the error. */
-const refusals: Readonly<Record<string, string>> = {
+const rejections: Readonly<Record<string, string>> = {
   NotAllowedError: 'The browser blocks the microphone. Allow it next to the address, then join again.',
   NotFoundError: 'No microphone was found.',
   OverconstrainedError: 'No microphone was found.',
@@ -11,7 +11,7 @@ const refusals: Readonly<Record<string, string>> = {
 function microphoneErrorOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : '';
   return (
-    refusals[name] ?? `The microphone could not be used (${error instanceof Error ? error.message : String(error)}).`
+    rejections[name] ?? `The microphone could not be used (${error instanceof Error ? error.message : String(error)}).`
   );
 }
 

@@ -1,6 +1,6 @@
 import { reasonOf } from 'threepoint/core';
 import type { Progress } from '../model/progress/progress';
-import { Refusal } from '../model/progress/refusal';
+import { Rejection } from '../model/progress/rejection';
 import type {
   Claim,
   NumberedCommand,
@@ -64,12 +64,12 @@ async function request(
   if (response.ok) return response;
   const answer: unknown = await response.json().catch(() => null);
   const isStudyServer = typeof answer === 'object' && answer !== null && 'error' in answer;
-  if (!isStudyServer && response.status === 404) throw new Refusal('elsewhere', noStudiesHere);
+  if (!isStudyServer && response.status === 404) throw new Rejection('elsewhere', noStudiesHere);
   const sentence = isStudyServer ? String(answer.error) : `the server answered ${response.status}`;
   // Proxies send these while the server is away. The server itself sends 5xx if nothing was acknowledged.
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
   const field = typeof answer === 'object' && answer !== null && 'field' in answer ? answer.field : null;
-  throw Refusal.from(response.status, sentence, typeof field === 'string' ? field : null);
+  throw Rejection.from(response.status, sentence, typeof field === 'string' ? field : null);
 }
 
 /** Resolves with the body of an answer; rejects if it is incomplete. */
@@ -106,7 +106,7 @@ export interface TakenPlace extends StudyPlace {
 
 export type ParticipantClient = ReturnType<typeof createParticipantClient>;
 
-/** Returns the requests of a participant's page. Every call rejects with Refusal or ServerUnreachable. */
+/** Returns the requests of a participant's page. Every call rejects with Rejection or ServerUnreachable. */
 export function createParticipantClient(server: string) {
   const answer = answersOf(server);
   const ownPath = ({ study, participant }: StudyPlace, name: string) => `${pathOf(study, participant)}/${name}`;
@@ -146,7 +146,7 @@ export function createParticipantClient(server: string) {
   };
 }
 
-/** Returns the requests of the withdrawal page. Every call rejects with Refusal or ServerUnreachable. */
+/** Returns the requests of the withdrawal page. Every call rejects with Rejection or ServerUnreachable. */
 export function createWithdrawalClient(server: string) {
   const answer = answersOf(server);
   return {
@@ -163,7 +163,7 @@ const recordsAtOnce = 50;
 
 export type ExperimenterClient = ReturnType<typeof createExperimenterClient>;
 
-/** Returns the requests of the experimenter's pages. Every call rejects with Refusal or ServerUnreachable. */
+/** Returns the requests of the experimenter's pages. Every call rejects with Rejection or ServerUnreachable. */
 export function createExperimenterClient(token: string, server: string) {
   const answer = answersOf(server);
   const post = <T>(path: string, body?: unknown) => answer<T>(path, { method: 'POST', token, body });

@@ -87,13 +87,13 @@ export function SignIn() {
 
 function TokenForm() {
   const input = useRef<HTMLInputElement>(null);
-  const complaint = useSignal<string | null>(null);
+  const problem = useSignal<string | null>(null);
   const pending = useSignal(false);
   async function open(): Promise<void> {
     const token = input.current?.value.trim();
     if (!token) return;
     pending.value = true;
-    complaint.value = await signIn(token);
+    problem.value = await signIn(token);
     pending.value = false;
   }
   return (
@@ -111,7 +111,7 @@ function TokenForm() {
       </Labelled>
       <Button label="Open" class="primary" disabled={pending} onClick={open} />
       <p class="soft">The server generates it at its first start and prints the path of its file.</p>
-      <Complaint text={complaint.value} />
+      <Complaint text={problem.value} />
     </div>
   );
 }

@@ -1,6 +1,6 @@
 import type { TrackingFrame } from 'threepoint/core';
 import { type CalibrationGuide, type CalibrationStep, createCalibrationGuide } from 'threepoint-ui';
-import { setupFaults } from '../model/plan/remote-setup';
+import { setupProblems } from '../model/plan/remote-setup';
 import type { ParticipantSession } from './session/participant-session';
 import type { StudyHost } from './trial/study-host';
 
@@ -8,14 +8,14 @@ import type { StudyHost } from './trial/study-host';
  * Returns what prevents a participant who takes part alone from beginning on this device; `eyeHeight` [m], null: not
  * measured yet.
  */
-function remoteFaults(
+function remoteProblems(
   { plan: { remote }, phrases }: Pick<ParticipantSession, 'plan' | 'phrases'>,
-  host: Pick<StudyHost, 'inSession' | 'deviceFault' | 'room'>,
+  host: Pick<StudyHost, 'inSession' | 'deviceProblem' | 'room'>,
   eyeHeight: number | null,
 ): readonly string[] {
   if (!remote) return [];
-  const deviceFault = host.inSession() ? null : host.deviceFault();
-  return setupFaults(remote, { deviceFault, room: host.room(), eyeHeight }, phrases);
+  const deviceProblem = host.inSession() ? null : host.deviceProblem();
+  return setupProblems(remote, { deviceProblem: deviceProblem, room: host.room(), eyeHeight }, phrases);
 }
 
 /**
@@ -27,7 +27,7 @@ export class BodyMeasurement {
   readonly #guide: CalibrationGuide;
   #step: CalibrationStep | null = null;
   /** The faults that the last measurement found. */
-  #measuredFaults: readonly string[] = [];
+  #measuredProblems: readonly string[] = [];
   /** The height of the eyes in the newest frame [m]; null: no frame came yet. */
   #eyeHeight: number | null = null;
 
@@ -41,10 +41,10 @@ export class BodyMeasurement {
       },
       onMeasured: (calibration) => {
         // The calibration of a seated person is that of a standing one, so the newest eye height is checked instead.
-        const faults = remoteFaults(session, host, this.#eyeHeight);
+        const problems = remoteProblems(session, host, this.#eyeHeight);
         this.#guide.cancel();
-        this.#measuredFaults = faults;
-        if (faults.length > 0) return;
+        this.#measuredProblems = problems;
+        if (problems.length > 0) return;
         host.setCalibration(calibration);
         session.apply({ type: 'calibrated', calibration });
       },
@@ -59,12 +59,12 @@ export class BodyMeasurement {
   }
 
   /** What is wrong with device, room or height, in the participant's language; empty: nothing. */
-  get faults(): readonly string[] {
-    return this.#measuredFaults.length > 0 ? this.#measuredFaults : remoteFaults(this.#session, this.#host, null);
+  get problems(): readonly string[] {
+    return this.#measuredProblems.length > 0 ? this.#measuredProblems : remoteProblems(this.#session, this.#host, null);
   }
 
   start(): void {
-    this.#measuredFaults = [];
+    this.#measuredProblems = [];
     this.#guide.start();
   }
 
@@ -81,7 +81,7 @@ export class BodyMeasurement {
 
   /** Cancels a measurement and clears its result. */
   reset(): void {
-    this.#measuredFaults = [];
+    this.#measuredProblems = [];
     this.#guide.cancel();
     this.#step = null;
   }

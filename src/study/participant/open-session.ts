@@ -2,7 +2,7 @@ import { type ParticipantClient, ServerUnreachable, type StudyPlace } from '../c
 import { PhrasedError } from '../model/phrases/phrases';
 import { scheduleFor } from '../model/plan/schedule';
 import { isLater, type Progress } from '../model/progress/progress';
-import { Refusal } from '../model/progress/refusal';
+import { Rejection } from '../model/progress/rejection';
 import type { PublicStudy } from '../model/progress/study-api';
 import type { ConsentChoices } from './forms/study-form';
 import { ParticipantSession, type ParticipantSessionOptions, startSession } from './session/participant-session';
@@ -92,8 +92,8 @@ async function reportedProgress(
   try {
     return await client.progress(session);
   } catch (error) {
-    if (session.simulated && error instanceof Refusal && error.reason === 'unauthorised') return 'replaced';
-    if (error instanceof ServerUnreachable || error instanceof Refusal) return null;
+    if (session.simulated && error instanceof Rejection && error.reason === 'unauthorised') return 'replaced';
+    if (error instanceof ServerUnreachable || error instanceof Rejection) return null;
     throw error;
   }
 }
@@ -134,12 +134,12 @@ export async function openSession(place: StudyPlace, opening: OpeningOptions): P
           if (claimed.progress.motion && !motion) session.apply({ type: 'remark', text: noMotionHere });
           return session;
         }
-        const refusal = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
-        return refusal === null ? session : { why: refusal };
+        const rejection = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
+        return rejection === null ? session : { why: rejection };
       } catch (error) {
-        if (error instanceof Refusal && error.field === 'invitation') return 'uninvited';
-        if (error instanceof Refusal && error.field === 'consent') return 'changed';
-        if (error instanceof Refusal && error.reason === 'conflict')
+        if (error instanceof Rejection && error.field === 'invitation') return 'uninvited';
+        if (error instanceof Rejection && error.field === 'consent') return 'changed';
+        if (error instanceof Rejection && error.reason === 'conflict')
           return { why: new PhrasedError('entrance.taken', { participant }) };
         return { why: error };
       }

@@ -1,4 +1,4 @@
-import type { Refusal } from '../model/progress/refusal';
+import type { Rejection } from '../model/progress/rejection';
 import type { Answer } from '../model/questionnaires/question-kind';
 import type { Question } from '../model/questionnaires/questionnaire-schema';
 import { typedAnswer, unanswered } from '../model/questionnaires/questionnaires';
@@ -36,7 +36,7 @@ export class QuestionnaireState {
   }
 
   /** Answers a question; returns why the answer is refused, or null if it is taken. */
-  choose(question: string, value: Answer): Refusal | null {
+  choose(question: string, value: Answer): Rejection | null {
     return this.#session.apply({ type: 'answer', question, value });
   }
 
@@ -44,7 +44,7 @@ export class QuestionnaireState {
    * Takes typed text as the answer if it is valid, and otherwise removes the answer; returns why that is refused, or
    * null.
    */
-  type(question: Question, typed: string): Refusal | null {
+  type(question: Question, typed: string): Rejection | null {
     this.typed = typed;
     const value = typedAnswer(question.answer, typed);
     return this.#session.apply({ type: 'answer', question: question.id, value });

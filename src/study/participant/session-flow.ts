@@ -1,7 +1,7 @@
 import type { TrackingFrame } from 'threepoint/core';
 import { otherSide } from 'threepoint/math';
 import type { ProgressEvent } from '../model/progress/apply-event';
-import type { Refusal } from '../model/progress/refusal';
+import type { Rejection } from '../model/progress/rejection';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
@@ -42,7 +42,7 @@ export class SessionFlow {
   readonly #actions: ScreenActions;
   readonly #pauseGesture = new PauseGesture();
   /** Why the last action changed nothing; null: it did. */
-  #refusal: string | null = null;
+  #rejection: string | null = null;
   /** Whether the participant wants to stop and has not confirmed it yet. */
   #stopping = false;
   #shownStep = '';
@@ -130,13 +130,13 @@ export class SessionFlow {
       apply: (event) => this.#apply(event),
       goTo: (index) => {
         this.#questionnaire.goTo(index);
-        this.#showRefusal(null);
+        this.#showRejection(null);
       },
-      choose: (question, value) => this.#showRefusal(this.#questionnaire.choose(question, value)),
-      type: (question, typed) => this.#showRefusal(this.#questionnaire.type(question, typed)),
+      choose: (question, value) => this.#showRejection(this.#questionnaire.choose(question, value)),
+      type: (question, typed) => this.#showRejection(this.#questionnaire.type(question, typed)),
       submit: () => {
         if (this.#questionnaire.readyToSubmit()) this.#apply({ type: 'submit' });
-        else this.#showRefusal(null);
+        else this.#showRejection(null);
       },
       calibrate: () => this.#measurement.start(),
       enterVr: () => void this.#host.enterVr(),
@@ -160,9 +160,9 @@ export class SessionFlow {
         questionnaire: this.#questionnaire,
         calibration: this.#measurement.step,
         withdrawalPage: this.#page.address.withdrawalPage(),
-        setupFaults: this.#measurement.faults,
+        setupProblems: this.#measurement.problems,
         prepared,
-        refusal: this.#refusal,
+        rejection: this.#rejection,
         stopping: this.#stopping,
         playing: current !== null,
         waitingFor: current?.waitingFor ?? null,
@@ -221,7 +221,7 @@ export class SessionFlow {
 
   #enterStep(): void {
     this.#shownStep = this.session.step.id;
-    this.#refusal = null;
+    this.#rejection = null;
     this.#stopping = false;
     this.#measurement.reset();
     this.#questionnaire.enterStep();
@@ -234,7 +234,7 @@ export class SessionFlow {
       await this.#trials.restoreBody();
     } catch (error) {
       if (this.session.step !== step) return;
-      this.#refusal = localizedReason(error, this.session.phrases);
+      this.#rejection = localizedReason(error, this.session.phrases);
       this.show();
     }
   }
@@ -244,38 +244,38 @@ export class SessionFlow {
     const { outcome, recording } = finished;
     const { session } = this;
     const { attempt } = this.#trials;
-    const refusal = session.apply({ type: 'trial-finished', outcome });
-    this.#refusal = this.#inWords(refusal);
-    if (recording !== null && refusal === null) session.keepMotion(`${attempt}:trial`, recording);
+    const rejection = session.apply({ type: 'trial-finished', outcome });
+    this.#rejection = this.#inWords(rejection);
+    if (recording !== null && rejection === null) session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 
   #apply(event: ProgressEvent): void {
     this.conclude();
-    this.#refusal = this.#inWords(this.session.apply(event));
+    this.#rejection = this.#inWords(this.session.apply(event));
     void this.exchange();
     this.show();
   }
 
   /** Shows why an action changed nothing; null: it did. */
-  #showRefusal(refusal: Refusal | null): void {
-    this.#refusal = this.#inWords(refusal);
+  #showRejection(rejection: Rejection | null): void {
+    this.#rejection = this.#inWords(rejection);
     this.show();
   }
 
-  #inWords(refusal: Refusal | null): string | null {
-    return refusal && localizedReason(refusal, this.session.phrases);
+  #inWords(rejection: Rejection | null): string | null {
+    return rejection && localizedReason(rejection, this.session.phrases);
   }
 
   /** Returns why the answers are refused, or null if they are stored. */
   #submitDemographics(answers: Record<string, unknown>): string | null {
-    const complaint = this.session.apply({ type: 'demographics', demographics: answers });
-    if (complaint === null) {
+    const problem = this.session.apply({ type: 'demographics', demographics: answers });
+    if (problem === null) {
       void this.exchange();
       this.#setBowSide();
     }
     this.show();
-    return this.#inWords(complaint);
+    return this.#inWords(problem);
   }
 
   /** Puts the bow into the hand that does not draw it. */

@@ -2,7 +2,7 @@ import { formatSentence } from 'threepoint-ui';
 import type { ParticipantClient } from '../client/study-client';
 import { inLanguage } from '../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../model/phrases/phrases';
-import { Refusal } from '../model/progress/refusal';
+import { Rejection } from '../model/progress/rejection';
 import type { PublicStudy } from '../model/progress/study-api';
 import { localizedReason } from './localized-reasons';
 import { forgetSession, type OpenedSession, openSession } from './open-session';
@@ -59,7 +59,7 @@ export class StudyVisit {
       else if (invitation === null) this.#askForParticipant(opened.study);
       else this.#askForConsent(opened, participant, invitation);
     } catch (error) {
-      this.#page.display.ask({ kind: 'fault', ...this.#fault(error) });
+      this.#page.display.ask({ kind: 'fault', ...this.#problem(error) });
     }
   }
 
@@ -117,9 +117,9 @@ export class StudyVisit {
     return phrasesOf(study ?? {}, this.#languageOf(study));
   }
 
-  #fault(error: unknown): { readonly phrases: Phrases; readonly text: string } {
+  #problem(error: unknown): { readonly phrases: Phrases; readonly text: string } {
     const phrases = this.#phrasesOf(null);
-    const unknown = error instanceof Refusal && error.reason === 'unknown';
+    const unknown = error instanceof Rejection && error.reason === 'unknown';
     const text = unknown
       ? phrases.text('entrance.noStudy', { study: this.#requested.study })
       : localizedReason(error, phrases);
@@ -130,18 +130,14 @@ export class StudyVisit {
    * Asks for participant and invitation if the address lacks them. `complaint` is what was wrong with the address, in
    * the language of `phrases`.
    */
-  #askForParticipant(
-    study: PublicStudy | null,
-    phrases = this.#phrasesOf(study),
-    complaint: string | null = null,
-  ): void {
+  #askForParticipant(study: PublicStudy | null, phrases = this.#phrasesOf(study), problem: string | null = null): void {
     const { display, address } = this.#page;
     // A link that is pasted into the address of this tab may change its fragment only.
     address.reloadWhenChanged();
     display.ask({
       kind: 'participant',
       phrases,
-      complaint,
+      problem,
       known: { participant: this.#requested.participant, invitation: address.invitation() },
       go: (invited) => address.goTo(invited),
       decline: () => display.ask({ kind: 'declined', phrases, title: phrases.text('study') }),
@@ -161,11 +157,11 @@ export class StudyVisit {
         const phrases = phrasesOf(study, choices.language ?? study.languages[0]);
         const taken = await agree(choices, invitation);
         if (taken === 'uninvited') {
-          const complaint =
+          const problem =
             contact === null
               ? phrases.text('entrance.wrongInvitation', { participant })
               : phrases.text('entrance.wrongInvitationRemote', { participant, contact });
-          this.#askForParticipant(study, phrases, complaint);
+          this.#askForParticipant(study, phrases, problem);
           return null;
         }
         if (taken === 'changed') {

@@ -181,7 +181,7 @@ export function createStudyService({ routes, dispatcher, now, trustProxy, log }:
     // Without a body, admission and handling are one call to the thread.
     admit: ({ head }: Route<RouteAccess> & { readonly head: RouteHead }, call) =>
       head.bodyLimit === 0 ? undefined : dispatcher.admit(requestOf(head, call)),
-    onFault: (error) => log(`study: ${errorLine(error)}`),
+    onError: (error) => log(`study: ${errorLine(error)}`),
   };
 }
 

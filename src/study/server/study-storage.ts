@@ -17,7 +17,7 @@ export interface AddOptions {
 }
 
 export interface PlanStorage {
-  /** Returns a study with this version of its plan or with the newest; throws a Refusal if it is unknown. */
+  /** Returns a study with this version of its plan or with the newest; throws a Rejection if it is unknown. */
   get(id: string, version?: number): Awaitable<StudyInfo>;
   /** Returns the plan that a participant follows: that of their beginning, or the newest. */
   planFor(id: string, participant: string): Awaitable<StudyPlan>;
@@ -31,7 +31,7 @@ export interface PlanStorage {
   add(plan: unknown, options: AddOptions): Awaitable<StudyInfo>;
 }
 
-/** The places of a study's participants. Every call throws a Refusal for an unknown participant. */
+/** The places of a study's participants. Every call throws a Rejection for an unknown participant. */
 export interface PlaceStorage {
   get(study: string, participant: string): Awaitable<object>;
   acceptsInvitation(study: string, participant: string, code: string): Awaitable<boolean>;
@@ -46,7 +46,7 @@ export interface PlaceStorage {
   release(study: string, participant: string): Awaitable<void>;
   /** Returns whether this is the token of the device that has taken the place; false for an unknown participant. */
   holds(study: string, participant: string, token: string): Awaitable<boolean>;
-  /** Stores the progress of a participant unless a later report is stored; throws a Refusal before consent. */
+  /** Stores the progress of a participant unless a later report is stored; throws a Rejection before consent. */
   saveProgress(study: string, participant: string, progress: unknown, at: number): Awaitable<void>;
   /** Returns the progress as it was reported; with `now`, its clock has run on since the report. */
   progress(study: string, participant: string, now?: number): Awaitable<Progress | null>;
@@ -105,20 +105,20 @@ export interface CommandStorage {
 }
 
 /** Called with a participant who could not be deleted, and with the error. */
-export type DeletionFault = (place: { readonly study: string; readonly participant: string }, error: unknown) => void;
+export type DeletionError = (place: { readonly study: string; readonly participant: string }, error: unknown) => void;
 
 /** Deletes everything that is stored of a participant, and keeps a receipt. */
 export interface DeletionStorage {
   delete(study: string, participant: string, reason: Receipt['reason'], at: number): Awaitable<Receipt>;
-  /** Deletes a simulated study with its receipts; throws a Refusal for one of people. */
+  /** Deletes a simulated study with its receipts; throws a Rejection for one of people. */
   deleteSimulated(study: string): Awaitable<void>;
   /** Deletes everything of the participant with this code; returns null if there is none. */
   withdraw(study: string, code: string, at: number): Awaitable<Receipt | null>;
   /**
-   * Deletes what is past its retention date, each participant separately; `onFault` is called with each failed
+   * Deletes what is past its retention date, each participant separately; `onError` is called with each failed
    * deletion.
    */
-  deleteExpired(now: number, onFault: DeletionFault): Awaitable<readonly Receipt[]>;
+  deleteExpired(now: number, onError: DeletionError): Awaitable<readonly Receipt[]>;
   receipts(study: string): Awaitable<readonly Receipt[]>;
 }
 
@@ -139,7 +139,7 @@ export interface StoredStudy extends Pick<StudyInfo, 'simulated' | 'retentionUnt
   readonly plan: StudyPlan;
   /** The version of the study's plan, if that has several. */
   readonly planVersion?: number;
-  /** Those of all participants who follow this version, or of the one participant. */
+  /** The records and recordings of all participants who follow this version, or of the one participant. */
   readonly records: readonly StoredRecord[];
   readonly motion: readonly PackedMotion[];
   /** The software that has served the study since its creation. */
@@ -149,7 +149,7 @@ export interface StoredStudy extends Pick<StudyInfo, 'simulated' | 'retentionUnt
 /**
  * The studies and their records, for routes. Results are stored when a call returns and survive the end of the process.
  * They survive a power cut when `flushed` has resolved, and nothing is acknowledged before. Calls that change something
- * are made one after the other. A call throws a Refusal, "locked" only before it changes anything. Times are seconds
+ * are made one after the other. A call throws a Rejection, "locked" only before it changes anything. Times are seconds
  * since 1970 of the caller's clock.
  */
 export interface StudyStorage {

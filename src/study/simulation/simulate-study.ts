@@ -232,7 +232,8 @@ class SimulatedSession {
 
   #apply(event: ProgressEvent): void {
     const next = applyEvent(this.#schedule, this.#progress, event, this.#now);
-    if (next.refusal) throw new Error(`${this.#schedule.participant}, ${this.#progress.step}: ${next.refusal.message}`);
+    if (next.rejection)
+      throw new Error(`${this.#schedule.participant}, ${this.#progress.step}: ${next.rejection.message}`);
     this.#progress = next.progress;
     this.#records.push(...next.records);
   }

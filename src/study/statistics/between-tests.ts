@@ -2,7 +2,7 @@ import { noncentralityOfT } from './noncentral';
 import { approximateP, cubesOf, exactBelow, type RankTest, rankBiserialInterval, ranksOf } from './ranks';
 import { confidence, criticalT, deviationOf, meanOf, roundingOf, sumOf, type TTest, twoSidedP } from './summaries';
 
-function refuseEmpty(first: readonly number[], second: readonly number[]): void {
+function rejectEmpty(first: readonly number[], second: readonly number[]): void {
   if (first.length === 0 || second.length === 0) throw new Error('two groups: one of them is empty');
 }
 
@@ -21,7 +21,7 @@ export function standardError(
  * standard deviations. Throws if a list is empty.
  */
 export function welchTest(first: readonly number[], second: readonly number[]): TTest {
-  refuseEmpty(first, second);
+  rejectEmpty(first, second);
   const n = [first.length, second.length] as const;
   const means = [meanOf(first), meanOf(second)] as const;
   const meanDifference = means[0] - means[1];
@@ -85,7 +85,7 @@ function exactPs(first: number, second: number): (w: number) => number {
  * equal. Throws if a list is empty.
  */
 export function rankSumTest(first: readonly number[], second: readonly number[]): RankTest {
-  refuseEmpty(first, second);
+  rejectEmpty(first, second);
   const [m, n] = [first.length, second.length];
   const { ranks, ties } = ranksOf([...first, ...second]);
   const w = sumOf(ranks.slice(0, m)) - (m * (m + 1)) / 2;

@@ -3,7 +3,7 @@ import { noncentralityOfT } from './noncentral';
 import { approximateP, cubesOf, exactBelow, type RankTest, rankBiserialInterval, ranksOf } from './ranks';
 import { meanSummary, roundingOf, type TTest, twoSidedP } from './summaries';
 
-function refuseUnpaired(first: readonly number[], second: readonly number[]): void {
+function rejectUnpaired(first: readonly number[], second: readonly number[]): void {
   if (first.length !== second.length) {
     throw new Error(`paired values: ${first.length} of the first kind, ${second.length} of the second`);
   }
@@ -15,7 +15,7 @@ function refuseUnpaired(first: readonly number[], second: readonly number[]): vo
  * differences. Throws if the lists differ in length or are empty.
  */
 export function pairedTTest(first: readonly number[], second: readonly number[]): TTest {
-  refuseUnpaired(first, second);
+  rejectUnpaired(first, second);
   const differences = first.map((value, index) => value - (second[index] as number));
   const { n, mean, standardDeviation, interval } = meanSummary(differences);
   const df = n - 1;
@@ -45,7 +45,7 @@ export interface SignedRankTest extends RankTest {
  * the lists differ in length or are empty.
  */
 export function signedRankTest(first: readonly number[], second: readonly number[]): SignedRankTest {
-  refuseUnpaired(first, second);
+  rejectUnpaired(first, second);
   const all = first.map((value, index) => value - (second[index] as number));
   // The rounding error of large values shows in their small differences.
   const rounding = roundingOf([...first, ...second]);

@@ -23,7 +23,7 @@ class SlowClient extends RoomSession<BallGame> {
       {
         send: (_to, message) => this.#waiting.push(message),
         broadcast: (message) => this.#waiting.push(message),
-        ...{ sendPoses: () => undefined, disconnect: () => undefined, refused: () => undefined },
+        ...{ sendPoses: () => undefined, disconnect: () => undefined, rejected: () => undefined },
       },
     );
   }

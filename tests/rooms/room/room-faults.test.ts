@@ -230,7 +230,7 @@ describe('a page that comes at t = 60 s', () => {
         broadcast: () => undefined,
         sendPoses: () => undefined,
         disconnect: () => undefined,
-        refused: () => undefined,
+        rejected: () => undefined,
       },
     );
     for (let i = 0; i < maxSeats; i++)

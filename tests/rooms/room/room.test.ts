@@ -411,7 +411,7 @@ test('an empty room that ticks stays as it is', () => {
       broadcast: (message) => sent.push(message),
       sendPoses: (poses) => sent.push(poses),
       disconnect: (client) => sent.push(client),
-      refused: (refusal) => sent.push(refusal),
+      rejected: (refusal) => sent.push(refusal),
     },
   );
   for (let i = 0; i < 600; i++) {

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { RoomMessage } from '../../../src/rooms/protocol/messages';
 import { Room } from '../../../src/rooms/room/room';
-import type { FreshPose, RoomRefusal } from '../../../src/rooms/room/room-host';
+import type { FreshPose, RoomRejection } from '../../../src/rooms/room/room-host';
 import { fists, opening } from '../client/people';
 import { type CountingGame, countingPolicy } from './counting-game';
 import { joinRequest, packetAt } from './test-room';
@@ -9,7 +9,7 @@ import { joinRequest, packetAt } from './test-room';
 /** Two players who count to three in a room that may be paused. */
 function countingRoom() {
   const sent: { readonly to: string; readonly message: RoomMessage<CountingGame> }[] = [];
-  const refusals: RoomRefusal[] = [];
+  const refusals: RoomRejection[] = [];
   const frames: (readonly FreshPose[])[] = [];
   const room = new Room(
     countingPolicy(2),
@@ -19,7 +19,7 @@ function countingRoom() {
       broadcast: (message) => sent.push({ to: 'all', message }),
       sendPoses: (poses) => frames.push(poses),
       disconnect: () => undefined,
-      refused: (refusal) => refusals.push(refusal),
+      rejected: (refusal) => refusals.push(refusal),
     },
   );
   let time = 50;

@@ -17,7 +17,7 @@ import { packetMs } from '../../../src/rooms/protocol/packet-time';
 import { encodePose } from '../../../src/rooms/protocol/pose-codec';
 import { encodeFrame } from '../../../src/rooms/protocol/pose-frame';
 import { Room, type RoomOptions } from '../../../src/rooms/room/room';
-import type { RoomRefusal } from '../../../src/rooms/room/room-host';
+import type { RoomRejection } from '../../../src/rooms/room/room-host';
 import { atRack, fists, holding, opening, releaseOf, shownAt, velocityTo } from '../client/people';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
@@ -65,7 +65,7 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
   const sent: { readonly to: string; readonly message: RoomMessage<BallGame> }[] = [];
   const frames: Uint8Array[] = [];
   const dropped: { readonly client: string; readonly reason: string }[] = [];
-  const refusals: RoomRefusal[] = [];
+  const refusals: RoomRejection[] = [];
   const log: (readonly BallInput[])[] = [];
   let time = 1000;
   const hear = (to: string, message: RoomMessage<BallGame>) => {
@@ -81,7 +81,7 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
       broadcast: (message) => hear('all', message),
       sendPoses: (poses) => frames.push(encodeFrame(poses)),
       disconnect: (client, reason) => dropped.push({ client, reason }),
-      refused: (refusal) => refusals.push(refusal),
+      rejected: (refusal) => refusals.push(refusal),
       stepped: (actions) => log.push(actions),
     },
   );

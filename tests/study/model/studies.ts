@@ -113,7 +113,7 @@ export function session(schedule: Schedule, simulated = false) {
       const next = applyEvent(schedule, progress, event, now);
       progress = next.progress;
       records.push(...next.records);
-      return next.refusal?.message ?? null;
+      return next.rejection?.message ?? null;
     },
     /** Completes the present step; every question gets the same answer. */
     doStep(answer = 4, score = 40): void {
@@ -156,5 +156,5 @@ export function session(schedule: Schedule, simulated = false) {
 /** Returns the faults in the text of a plan's file, each with file, field and reason. */
 export function planComplaints(json: string, file: string): readonly string[] {
   const read = readPlan(json, file);
-  return 'faults' in read ? read.faults.map(({ message }) => message) : [];
+  return 'problems' in read ? read.problems.map(({ message }) => message) : [];
 }

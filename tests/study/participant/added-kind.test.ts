@@ -84,7 +84,7 @@ function shown(answer: Answer | undefined, choose: (value: Answer) => void) {
     {
       session: session as ShownSession,
       questionnaire: { question: 0, typed: null, triedToSubmit: false },
-      refusal: null,
+      rejection: null,
     },
     { goTo: () => undefined, choose: (_, value) => choose(value), type: () => undefined },
   ).question;

@@ -15,7 +15,7 @@ function timed() {
       motionSent: () => motion.sent,
       get uploadStatus() {
         const { online } = server;
-        return { unsent: 0, unsaved: 0, storageFault: null, online, refusal: null, lockedOut: false };
+        return { unsent: 0, unsaved: 0, storageFault: null, online, rejection: null, lockedOut: false };
       },
     },
     (delayMs, act) => {

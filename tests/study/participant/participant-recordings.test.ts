@@ -49,7 +49,7 @@ test('a recording that the server refuses is reported and kept, and blocks nothi
   expect(first.uploadStatus).toMatchObject({
     unsent: 1,
     online: true,
-    refusal: expect.stringContaining('not valid JSON'),
+    rejection: expect.stringContaining('not valid JSON'),
     lockedOut: false,
   });
 });
@@ -85,5 +85,5 @@ test('while a recording is on its way, progress is reported and commands are fol
   await first.exchange();
   expect(first.progress.paused).toBe(true);
   expect(way.stopped.count).toBe(1);
-  expect(first.uploadStatus).toMatchObject({ unsent: 1, online: true, refusal: null });
+  expect(first.uploadStatus).toMatchObject({ unsent: 1, online: true, rejection: null });
 });

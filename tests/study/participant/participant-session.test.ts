@@ -23,7 +23,7 @@ test('an acknowledged record leaves the device, and no other does', async () => 
     unsaved: 0,
     storageFault: null,
     online: true,
-    refusal: null,
+    rejection: null,
     lockedOut: false,
   });
   expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
@@ -52,7 +52,7 @@ test('a reload in a questionnaire without network resumes the same question, and
   await server.restart();
   const third = await reload();
   await third.exchange();
-  expect(third.uploadStatus).toMatchObject({ unsent: 0, online: true, refusal: null });
+  expect(third.uploadStatus).toMatchObject({ unsent: 0, online: true, rejection: null });
   expect(server.bodies('answers')[0]).toMatchObject({ answers: { Q1: 4, Q2: 5, Q3: 3, Q4: 3, Q5: 3, Q6: 3, Q7: 3 } });
 });
 
@@ -202,6 +202,6 @@ test('a record that the server refuses is reported and kept, and does not block 
   expect(again.uploadStatus).toMatchObject({
     unsent: 1,
     online: true,
-    refusal: expect.stringContaining('something else'),
+    rejection: expect.stringContaining('something else'),
   });
 });

@@ -35,7 +35,7 @@ function reader(asked: readonly Question[], language = 'en') {
     return questionPart(
       asked,
       at,
-      { session, questionnaire: { question: at, typed, triedToSubmit: false }, refusal: null },
+      { session, questionnaire: { question: at, typed, triedToSubmit: false }, rejection: null },
       {
         choose,
         goTo: () => undefined,

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { Phrases } from '../../../src/study/model/phrases/phrases';
-import { setupFaults } from '../../../src/study/model/plan/remote-setup';
+import { setupProblems } from '../../../src/study/model/plan/remote-setup';
 import { uploadStatusText } from '../../../src/study/participant/screens/study-screens';
 import { aWomanOf26 } from '../model/studies';
 import { agree, canStart } from './participant-steps';
@@ -9,7 +9,7 @@ import { studyServer } from './study-server';
 
 const english = new Phrases('en');
 const remote = { contact: 'Write to lab@example.org', freeSpace: 2 };
-const sound = { deviceFault: null, room: { width: 2.4, depth: 2.1 }, eyeHeight: 1.6 };
+const sound = { deviceProblem: null, room: { width: 2.4, depth: 2.1 }, eyeHeight: 1.6 };
 
 async function alone(): Promise<Tab> {
   const tab = await browser(await studyServer({ remote })).open();
@@ -22,17 +22,17 @@ const textOf = ({ display }: Tab) => display.screen?.text.join(' ') ?? '';
 
 describe('the set-up of a participant who takes part alone', () => {
   test('is accepted with a headset, enough room and a standing eye height', () => {
-    expect(setupFaults(remote, sound, english)).toEqual([]);
-    expect(setupFaults(remote, { ...sound, room: null, eyeHeight: null }, english)).toEqual([]);
+    expect(setupProblems(remote, sound, english)).toEqual([]);
+    expect(setupProblems(remote, { ...sound, room: null, eyeHeight: null }, english)).toEqual([]);
   });
 
   test.each([
-    [{ deviceFault: { kind: 'no-webxr' } as const }, /no WebXR\. Open this link in the browser of your headset/],
+    [{ deviceProblem: { kind: 'no-webxr' } as const }, /no WebXR\. Open this link in the browser of your headset/],
     [{ room: { width: 3, depth: 1.2 } }, /leaves 3\.0 m by 1\.2 m, the games need 2\.0 m/],
     [{ eyeHeight: 0.8 }, /0\.8 m above the floor\. Stand up/],
     [{ eyeHeight: 2.3 }, /2\.3 m above the floor: the floor of the headset is too low/],
   ])('is reported if it is unsuitable: %j', (change, words) => {
-    const faults = setupFaults(remote, { ...sound, ...change }, english);
+    const faults = setupProblems(remote, { ...sound, ...change }, english);
     expect(faults).toHaveLength(1);
     expect(faults[0]).toMatch(words);
   });
@@ -55,7 +55,7 @@ describe('a study without an experimenter present', () => {
     const device = browser(server);
     const stranger = await device.open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
     await stranger.display.asked('consent').agree({ motion: false, language: null });
-    const complaint = stranger.display.asked('participant').complaint;
+    const complaint = stranger.display.asked('participant').problem;
     expect(complaint).toContain(remote.contact);
     const tab = await browser(server).open();
     await agree(tab);
@@ -75,7 +75,7 @@ describe('a study without an experimenter present', () => {
   });
 
   test('reports what the server refuses, and that the participant can go on', () => {
-    const refused = { unsent: 2, unsaved: 0, storageFault: null, online: true, refusal: 'no', lockedOut: false };
+    const refused = { unsent: 2, unsaved: 0, storageFault: null, online: true, rejection: 'no', lockedOut: false };
     expect(uploadStatusText(refused, english, remote)).toEqual([
       'They stay on this device: the server refuses 2 records (no). You can go on. Write to lab@example.org',
       true,

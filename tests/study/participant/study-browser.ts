@@ -11,7 +11,7 @@ import type { Side } from 'threepoint/math';
 import { expect, vi } from 'vitest';
 import { createParticipantClient } from '../../../src/study/client/study-client';
 import type { Embodiment } from '../../../src/study/model/plan/embodiment';
-import type { DeviceFault } from '../../../src/study/model/plan/remote-setup';
+import type { DeviceProblem } from '../../../src/study/model/plan/remote-setup';
 import type { FrameListener } from '../../../src/study/model/records/trial-log';
 import type { Invited, StudyForm } from '../../../src/study/participant/forms/study-form';
 import type { StudyScreen } from '../../../src/study/participant/questions/study-screen';
@@ -192,9 +192,9 @@ class TestHost implements StudyHost {
   inSession = (): boolean => this.worn;
   /** The tracked height of the eyes [m]. */
   eyes = 1.6;
-  fault: DeviceFault | null = null;
+  fault: DeviceProblem | null = null;
   free: { readonly width: number; readonly depth: number } | null = null;
-  deviceFault = (): DeviceFault | null => this.fault;
+  deviceProblem = (): DeviceProblem | null => this.fault;
   room = () => this.free;
   calibration = (): Calibration => this.measures ?? defaultCalibration;
   setCalibration(calibration: Calibration | null): void {

@@ -42,9 +42,9 @@ function participant(...events: readonly ProgressEvent[]) {
             inSession: true,
             questionnaire: { question: 0, typed: null, triedToSubmit: false },
             calibration: null,
-            refusal: null,
+            rejection: null,
             stopping: false,
-            setupFaults: [],
+            setupProblems: [],
             withdrawalPage: 'https://lab.example.org/withdraw?study=paper',
           },
           ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
@@ -128,7 +128,7 @@ describe('a participant with a questionnaire', () => {
 });
 
 describe('the upload status', () => {
-  const safe = { unsent: 0, unsaved: 0, storageFault: null, online: true, refusal: null, lockedOut: false };
+  const safe = { unsent: 0, unsaved: 0, storageFault: null, online: true, rejection: null, lockedOut: false };
   test.each([
     [{}, 'Everything is saved.', false],
     [{ unsent: 2 }, 'Sending …', false],
@@ -140,7 +140,7 @@ describe('the upload status', () => {
       true,
     ],
     [
-      { unsent: 2, refusal: 'no such study' },
+      { unsent: 2, rejection: 'no such study' },
       'Call the experimenter: the server refuses 2 records (no such study). They stay here.',
       true,
     ],

@@ -19,7 +19,7 @@ describe('the entrance', () => {
   test('an address without a participant asks for the code, and leads to the entered place', async () => {
     const tab = await browser(await studyServer()).open({ participant: null, invitation: null });
     const form = tab.display.asked('participant');
-    expect(form).toMatchObject({ complaint: null, known: { participant: null, invitation: null } });
+    expect(form).toMatchObject({ problem: null, known: { participant: null, invitation: null } });
     form.go({ participant: 'P02', invitation: 'AAAA-BBBB-CCCC-DDDD' });
     expect(await tab.wentTo).toEqual({ participant: 'P02', invitation: 'AAAA-BBBB-CCCC-DDDD' });
     expect(tab.visit.state()).toMatchObject({ screen: 'participant', step: null, running: false });
@@ -29,7 +29,7 @@ describe('the entrance', () => {
     const server = await studyServer();
     const tab = await browser(server).open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
     expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
-    expect(tab.display.asked('participant').complaint).toContain('not the invitation of P01');
+    expect(tab.display.asked('participant').problem).toContain('not the invitation of P01');
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
 

@@ -235,7 +235,7 @@ describe.each(adapters)('a storage in $adapter', ({ open }) => {
       expect([one.plan, one.records, planVersion]).toEqual([before.plan, before.records, undefined]);
     });
 
-    test('has no number of a version while the plan has one version, and refuses an unknown study', async () => {
+    test('has no number while the plan has one version, and refuses an unknown study', async () => {
       const store = await withPaperStudy(true);
       const { planVersion, simulated } = await store.storedStudy('paper', 1);
       expect([planVersion, simulated]).toEqual([undefined, true]);

@@ -53,7 +53,7 @@ export async function joinStudy(parts: StageParts, asked: NonNullable<Switches['
     runners: study.runners,
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
-    deviceFault: () => headset.fault,
+    deviceProblem: () => headset.fault,
     room: () => headset.room,
     calibration: () => body.userCalibration,
     setCalibration(calibration) {

@@ -50,9 +50,9 @@ function summary(plan: StudyPlan): readonly string[] {
 function check(): void {
   if (!existsSync(file)) throw new ValidationError('', `there is no file ${file}`);
   const read = readPlan(readFileSync(file, 'utf8'), file);
-  if ('faults' in read) {
-    for (const { message } of read.faults) console.error(message);
-    console.error(`${read.faults.length === 1 ? 'One mistake' : `${read.faults.length} mistakes`} in ${file}.`);
+  if ('problems' in read) {
+    for (const { message } of read.problems) console.error(message);
+    console.error(`${read.problems.length === 1 ? 'One mistake' : `${read.problems.length} mistakes`} in ${file}.`);
     process.exitCode = 1;
     return;
   }

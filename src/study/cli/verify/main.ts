@@ -16,17 +16,17 @@ try {
     fileURLToPath(new URL('../../../../public', import.meta.url)),
     new URL('../../../../package.json', import.meta.url),
   );
-  const { complaints, files, records, exportedBy } = verifyExport(readFileSync(path));
+  const { problems, files, records, exportedBy } = verifyExport(readFileSync(path));
   if (exportedBy.version !== here.version) {
     console.log(
       `${file} was exported by version ${exportedBy.version}; this is ${here.version}, which may write other columns.`,
     );
   }
-  for (const complaint of complaints.slice(0, maxShown)) console.log(`${file}: ${complaint}`);
-  if (complaints.length > maxShown) console.log(`… and ${complaints.length - maxShown} more.`);
+  for (const problem of problems.slice(0, maxShown)) console.log(`${file}: ${problem}`);
+  if (problems.length > maxShown) console.log(`… and ${problems.length - maxShown} more.`);
   const what = `${files} files, recomputed from ${records} records`;
-  console.log(complaints.length === 0 ? `${file}: sound: ${what}.` : `${file}: ${complaints.length} faults; ${what}.`);
-  process.exitCode = complaints.length === 0 ? 0 : 1;
+  console.log(problems.length === 0 ? `${file}: sound: ${what}.` : `${file}: ${problems.length} faults; ${what}.`);
+  process.exitCode = problems.length === 0 ? 0 : 1;
 } catch (error) {
   console.error(`${file}: ${reasonOf(error)}`);
   process.exitCode = 1;

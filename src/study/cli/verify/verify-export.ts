@@ -8,7 +8,7 @@ import { csvRows } from './csv-rows';
 
 export interface Verdict {
   /** The differences, each in a sentence; empty: none. */
-  readonly complaints: readonly string[];
+  readonly problems: readonly string[];
   readonly files: number;
   readonly records: number;
   readonly exportedBy: Software;
@@ -66,7 +66,7 @@ function rawOf(zip: Uint8Array, files: Files): { readonly content: ExportContent
 }
 
 /** Returns complaints about files whose hash differs from that in the export. */
-function checksumComplaints(files: Files): readonly string[] {
+function checksumProblems(files: Files): readonly string[] {
   const listed = strFromU8(files[checksumsFile] ?? new Uint8Array())
     .split('\n')
     .filter(Boolean)
@@ -82,23 +82,23 @@ function checksumComplaints(files: Files): readonly string[] {
 const quoted = (cell: string | undefined): string => (cell === undefined ? 'nothing' : `"${cell}"`);
 
 /** Compares two tables cell by cell. */
-function cellComplaints(path: string, found: string, computed: string): readonly string[] {
+function cellProblems(path: string, found: string, computed: string): readonly string[] {
   const [theirs, ours] = [csvRows(found), csvRows(computed)];
   const [heads = []] = ours;
-  const complaints =
+  const problems =
     theirs.length === ours.length ? [] : [`${path}: ${theirs.length - 1} rows, the records give ${ours.length - 1}.`];
   for (let line = 0; line < Math.min(theirs.length, ours.length); line++) {
     const [there = [], here = []] = [theirs[line], ours[line]];
     for (let at = 0; at < Math.max(there.length, here.length); at++) {
       if (there[at] === here[at]) continue;
       const column = heads[at] ?? `column ${at + 1}`;
-      complaints.push(`${path}, row ${line}, ${column}: ${quoted(there[at])}, the records give ${quoted(here[at])}.`);
+      problems.push(`${path}, row ${line}, ${column}: ${quoted(there[at])}, the records give ${quoted(here[at])}.`);
     }
   }
-  return complaints;
+  return problems;
 }
 
-function lineComplaint(path: string, found: string, computed: string): string {
+function lineProblem(path: string, found: string, computed: string): string {
   const [theirs, ours] = [found.split('\n'), computed.split('\n')];
   const line = Math.max(
     0,
@@ -109,25 +109,25 @@ function lineComplaint(path: string, found: string, computed: string): string {
 }
 
 /** Returns complaints about files that differ from those computed from the raw part. */
-function contentComplaints(files: Files, computed: Readonly<Record<string, string>>): readonly string[] {
-  const complaints: string[] = [];
+function contentProblems(files: Files, computed: Readonly<Record<string, string>>): readonly string[] {
+  const problems: string[] = [];
   for (const [path, text] of Object.entries(computed)) {
     const bytes = files[path];
     // The raw part cannot be recomputed; only its hashes are checked.
     if (bytes && (rawFiles.includes(path) || path === checksumsFile)) continue;
     if (!bytes) {
-      complaints.push(`${path} is missing.`);
+      problems.push(`${path} is missing.`);
       continue;
     }
     const found = strFromU8(bytes);
     if (found === text) continue;
-    const cells = path.endsWith('.csv') ? cellComplaints(path, found, text) : [];
-    complaints.push(...(cells.length > 0 ? cells : [lineComplaint(path, found, text)]));
+    const cells = path.endsWith('.csv') ? cellProblems(path, found, text) : [];
+    problems.push(...(cells.length > 0 ? cells : [lineProblem(path, found, text)]));
   }
   for (const path of Object.keys(files)) {
-    if (!(path in computed)) complaints.push(`${path} does not follow from the records.`);
+    if (!(path in computed)) problems.push(`${path} does not follow from the records.`);
   }
-  return complaints;
+  return problems;
 }
 
 /**
@@ -139,7 +139,7 @@ export function verifyExport(zip: Uint8Array): Verdict {
   const { content, envelope } = rawOf(zip, files);
   const computed = exportFiles(content, envelope.participant ?? undefined);
   return {
-    complaints: [...new Set([...checksumComplaints(files), ...contentComplaints(files, computed)])],
+    problems: [...new Set([...checksumProblems(files), ...contentProblems(files, computed)])],
     files: Object.keys(computed).length,
     records: content.records.length,
     exportedBy: content.software.exportedBy,

@@ -40,14 +40,14 @@ const braced = (names: Iterable<string>) => [...names].map((name) => `{${name}}`
 /** The letters of a keyboard, limited to the rows and keys that fit the sheet. */
 const maxKeys = { rows: 4, inRow: 12 };
 
-function refuseRows(rows: string, field: string): void {
+function rejectRows(rows: string, field: string): void {
   const found = rows.split(' ');
   if (found.length <= maxKeys.rows && found.every((row) => [...row].length <= maxKeys.inRow)) return;
   throw new ValidationError(field, `expected at most ${maxKeys.rows} rows of at most ${maxKeys.inRow} letters`);
 }
 
 /** A plural form may leave the number out, as in "one record"; other texts need all their placeholders. */
-function refusePlaceholders(key: PhraseKey, phraseText: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
+function rejectPlaceholders(key: PhraseKey, phraseText: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
   const wanted = placeholdersIn(inEnglish(english[key]));
   const found = placeholdersIn(phraseText);
   const missing = [...wanted].filter((name) => !found.has(name) && !mayLeaveOut.has(name));
@@ -60,7 +60,7 @@ function refusePlaceholders(key: PhraseKey, phraseText: string, field: string, m
 }
 
 /** Throws a ValidationError for phrases in a language that the study does not have, and for missing placeholders. */
-export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, languages: readonly string[]): void {
+export function rejectPhrases(phrases: Readonly<Record<string, GivenPhrases>>, languages: readonly string[]): void {
   const whole = new Set<string>();
   const number = new Set(['count']);
   for (const [language, given] of Object.entries(phrases)) {
@@ -72,12 +72,12 @@ export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, l
     }
     for (const [key, phrase] of Object.entries(given) as [PhraseKey, Phrase][]) {
       if (typeof phrase === 'string') {
-        refusePlaceholders(key, phrase, fieldOf(language, key, null), whole);
-        if (key === 'keys.rows') refuseRows(phrase, fieldOf(language, key, null));
+        rejectPlaceholders(key, phrase, fieldOf(language, key, null), whole);
+        if (key === 'keys.rows') rejectRows(phrase, fieldOf(language, key, null));
         continue;
       }
       for (const [name, phraseText] of Object.entries(phrase) as [string, string][]) {
-        refusePlaceholders(key, phraseText, fieldOf(language, key, name), name === 'other' ? whole : number);
+        rejectPlaceholders(key, phraseText, fieldOf(language, key, name), name === 'other' ? whole : number);
       }
     }
   }

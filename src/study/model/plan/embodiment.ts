@@ -12,7 +12,7 @@ export const embodimentFields = {
   estimator: v.exactOptional(estimatorSchema),
   /** The avatar, one of those of this project. */
   avatar: v.exactOptional(v.picklist(builtInBodies, `expected one of ${builtInBodies.join(', ')}`)),
-  /** Whether there is a mirror; the ball game has none. */
+  /** Whether there is a mirror; a game may have none. */
   mirror: v.exactOptional(trueOrFalse),
   /** Whether the body ends at the hips. */
   upperBodyOnly: v.exactOptional(trueOrFalse),

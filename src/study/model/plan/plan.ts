@@ -2,11 +2,11 @@ import { checked, complaintsAbout, ValidationError } from 'threepoint/core';
 import { games } from 'threepoint-games/all';
 import type * as v from 'valibot';
 import { inLanguage, type LocalizedText, missingLanguage } from '../phrases/localized-text';
-import { refusePhrases } from '../phrases/phrase-schema';
+import { rejectPhrases } from '../phrases/phrase-schema';
 import {
   type Questionnaire,
   questionnaireNamed,
-  refuseMissingLanguages,
+  rejectMissingLanguages,
   resolvedQuestionnaire,
   shippedQuestionnaires,
 } from '../questionnaires/questionnaires';
@@ -28,13 +28,13 @@ const setByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as con
 export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
   Math.max(...tasks.map(({ groupSize }) => groupSize));
 
-const refuseRepeatedIds = (list: readonly { readonly id: string }[], name: string): void =>
-  refuseRepeated(
+const rejectRepeatedIds = (list: readonly { readonly id: string }[], name: string): void =>
+  rejectRepeated(
     list.map(({ id }) => id),
     (index) => `${name}[${index}].id`,
   );
 
-function refuseRepeated(names: readonly string[], fieldOf: (index: number) => string): void {
+function rejectRepeated(names: readonly string[], fieldOf: (index: number) => string): void {
   names.forEach((name, index) => {
     const first = names.indexOf(name);
     if (first !== index) throw new ValidationError(fieldOf(index), `"${name}" is the name of ${fieldOf(first)} too`);
@@ -65,11 +65,11 @@ export const questionnairesAfter = ({ questionnaire }: Pick<StudyTask, 'question
 export const questionnairesOf = (plan: StudyPlan): readonly Questionnaire[] =>
   [...new Set(plan.tasks.flatMap(questionnairesAfter))].map((id) => questionnaireNamed(plan, id) as Questionnaire);
 
-function refuseQuestionnaires(plan: StudyPlan): void {
+function rejectQuestionnaires(plan: StudyPlan): void {
   const own = plan.questionnaires ?? [];
   const languages = languagesOf(plan);
-  refuseRepeated(languages, (index) => `languages[${index}]`);
-  refuseRepeatedIds(own, 'questionnaires');
+  rejectRepeated(languages, (index) => `languages[${index}]`);
+  rejectRepeatedIds(own, 'questionnaires');
   own.forEach((file, index) => {
     const field = `questionnaires[${index}]`;
     if (Object.hasOwn(shippedQuestionnaires, file.id)) {
@@ -79,13 +79,13 @@ function refuseQuestionnaires(plan: StudyPlan): void {
       );
     }
     resolvedQuestionnaire(file, field);
-    refuseMissingLanguages(file, languages, field);
+    rejectMissingLanguages(file, languages, field);
   });
   plan.tasks.forEach((task, index) => {
     const named = questionnairesAfter(task);
     const fieldOf = (at: number) =>
       `tasks[${index}].questionnaire${typeof task.questionnaire === 'string' ? '' : `[${at}]`}`;
-    refuseRepeated(named, fieldOf);
+    rejectRepeated(named, fieldOf);
     named.forEach((id, at) => {
       if (questionnaireNamed(plan, id)) return;
       const known = [...own.map((one) => one.id), ...Object.keys(shippedQuestionnaires)];
@@ -98,7 +98,7 @@ function refuseQuestionnaires(plan: StudyPlan): void {
  * Throws a ValidationError if only some conditions set a property, if conditions and cohorts both do, or if no one sets
  * the estimator.
  */
-function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
+function rejectUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
   const lists = { conditions, cohorts };
   for (const [list, entries] of Object.entries(lists)) {
     for (const field of setByAllOrNone) {
@@ -119,7 +119,7 @@ function refuseUnclearBodies({ conditions, cohorts = [] }: StudyPlan): void {
   });
 }
 
-function refuseUnfilledCohorts(plan: StudyPlan): void {
+function rejectUnfilledCohorts(plan: StudyPlan): void {
   const { cohorts, conditions, participants } = plan;
   if (!cohorts) {
     if (conditions.length < 2) {
@@ -127,7 +127,7 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
     }
     return;
   }
-  refuseRepeatedIds(cohorts, 'cohorts');
+  rejectRepeatedIds(cohorts, 'cohorts');
   const together = largestGroup(plan);
   if (participants / together < cohorts.length) {
     const units = together === 1 ? 'participants' : `groups of ${together}`;
@@ -135,7 +135,7 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
   }
 }
 
-function refuseUntranslated(plan: StudyPlan): void {
+function rejectUntranslated(plan: StudyPlan): void {
   const { title, paragraphs, motion } = plan.consent;
   const texts: (readonly [string, LocalizedText])[] = [
     ['title', plan.title],
@@ -166,10 +166,10 @@ export function measuresOf(plan: StudyPlan): readonly string[] {
   });
 }
 
-function refuseUnknownMeasures(plan: StudyPlan): void {
+function rejectUnknownMeasures(plan: StudyPlan): void {
   const { planned = [] } = plan;
   const known = measuresOf(plan);
-  refuseRepeated(planned, (index) => `planned[${index}]`);
+  rejectRepeated(planned, (index) => `planned[${index}]`);
   planned.forEach((measure, index) => {
     if (known.includes(measure)) return;
     throw new ValidationError(
@@ -188,20 +188,20 @@ export const storedPlan = (value: unknown): StudyPlan => checked(planSchema, val
 /** Returns a new study from parsed JSON; throws a ValidationError that names the field. */
 export function checkedPlan(value: unknown): StudyPlan {
   const plan = checked(planSchema, value);
-  refuseRepeatedIds(plan.conditions, 'conditions');
-  refuseRepeatedIds(plan.tasks, 'tasks');
+  rejectRepeatedIds(plan.conditions, 'conditions');
+  rejectRepeatedIds(plan.tasks, 'tasks');
   if (plan.orders === 'all' && plan.conditions.length > maxOrdersListed) {
     throw new ValidationError(
       'orders',
       `all orders of ${plan.conditions.length} conditions are more than a study can run: expected williams`,
     );
   }
-  refuseUnclearBodies(plan);
-  refuseQuestionnaires(plan);
+  rejectUnclearBodies(plan);
+  rejectQuestionnaires(plan);
   checkStoppingRules(plan.askToStop ?? [], questionnairesOf(plan));
-  refuseUntranslated(plan);
-  refusePhrases(plan.phrases ?? {}, languagesOf(plan));
-  refuseUnknownMeasures(plan);
+  rejectUntranslated(plan);
+  rejectPhrases(plan.phrases ?? {}, languagesOf(plan));
+  rejectUnknownMeasures(plan);
   plan.tasks.forEach(({ game, groupSize }, index) => {
     const { players, because } = games[game];
     if (groupSize !== players) {
@@ -214,24 +214,24 @@ export function checkedPlan(value: unknown): StudyPlan {
       );
     }
   });
-  refuseUnfilledCohorts(plan);
+  rejectUnfilledCohorts(plan);
   return plan;
 }
 
 /** A plan, or everything that is wrong with the text of its file, each with file, field and reason. */
-export type ReadPlan = { readonly plan: StudyPlan } | { readonly faults: readonly ValidationError[] };
+export type ReadPlan = { readonly plan: StudyPlan } | { readonly problems: readonly ValidationError[] };
 
 /** Returns the plan in the text of a file, or what is wrong with it. */
 export function readPlan(json: string, file: string): ReadPlan {
-  const fault = (field: string, complaint: string) => new ValidationError(field, complaint, file);
+  const errorAt = (field: string, problem: string) => new ValidationError(field, problem, file);
   try {
     const value: unknown = JSON.parse(json);
-    const complaints = complaintsAbout(planSchema, value);
-    if (complaints.length === 0) return { plan: checkedPlan(value) };
-    return { faults: complaints.map(({ field, complaint }) => fault(field, complaint)) };
+    const problems = complaintsAbout(planSchema, value);
+    if (problems.length === 0) return { plan: checkedPlan(value) };
+    return { problems: problems.map(({ field, complaint }) => errorAt(field, complaint)) };
   } catch (error) {
-    if (error instanceof ValidationError) return { faults: [fault(error.field, error.complaint)] };
-    if (error instanceof SyntaxError) return { faults: [fault('', `this is not JSON: ${error.message}`)] };
+    if (error instanceof ValidationError) return { problems: [errorAt(error.field, error.complaint)] };
+    if (error instanceof SyntaxError) return { problems: [errorAt('', `this is not JSON: ${error.message}`)] };
     throw error;
   }
 }
@@ -240,7 +240,7 @@ export function readPlan(json: string, file: string): ReadPlan {
 export function parsePlan(json: string, file: string): StudyPlan {
   const read = readPlan(json, file);
   if ('plan' in read) return read.plan;
-  throw read.faults[0];
+  throw read.problems[0];
 }
 
 /** Returns the codes P01, P02 … of a plan. */

@@ -13,14 +13,14 @@ export const remoteSchema = v.strictObject({
 export type RemoteTerms = v.InferOutput<typeof remoteSchema>;
 
 /** Why nothing can be played on a device; `reason` is the message of the browser. */
-export type DeviceFault =
+export type DeviceProblem =
   | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
   | { readonly kind: 'refused'; readonly reason: string };
 
 /** The set-up of a participant who is about to begin. */
 export interface RemoteSetup {
   /** null: the device can be used. */
-  readonly deviceFault: DeviceFault | null;
+  readonly deviceProblem: DeviceProblem | null;
   /** The room within the headset's boundary [m]; null: it is not reported. */
   readonly room: { readonly width: number; readonly depth: number } | null;
   /** The measured height of the eyes above the floor [m]; null: not measured yet. */
@@ -34,29 +34,29 @@ const standing = { least: 1.1, most: 2.05 };
  * Returns what is wrong with a set-up and how to repair it, each in a sentence in the participant's language; empty:
  * nothing.
  */
-export function setupFaults(
+export function setupProblems(
   { freeSpace }: RemoteTerms,
-  { deviceFault, room, eyeHeight }: RemoteSetup,
+  { deviceProblem, room, eyeHeight }: RemoteSetup,
   phrases: Phrases,
 ): readonly string[] {
   const { text } = phrases;
-  if (deviceFault !== null) return [text('setup.openThere', { fault: deviceFaultText(deviceFault, phrases) })];
-  const faults: string[] = [];
+  if (deviceProblem !== null) return [text('setup.openThere', { fault: deviceProblemText(deviceProblem, phrases) })];
+  const problems: string[] = [];
   if (room && Math.min(room.width, room.depth) < freeSpace) {
     const [width, depth] = [phrases.metres(room.width), phrases.metres(room.depth)];
-    faults.push(text('setup.room', { width, depth, needed: phrases.metres(freeSpace) }));
+    problems.push(text('setup.room', { width, depth, needed: phrases.metres(freeSpace) }));
   }
   if (eyeHeight !== null && eyeHeight < standing.least) {
-    faults.push(text('setup.low', { height: phrases.metres(eyeHeight) }));
+    problems.push(text('setup.low', { height: phrases.metres(eyeHeight) }));
   }
   if (eyeHeight !== null && eyeHeight > standing.most) {
-    faults.push(text('setup.high', { height: phrases.metres(eyeHeight) }));
+    problems.push(text('setup.high', { height: phrases.metres(eyeHeight) }));
   }
-  return faults;
+  return problems;
 }
 
-function deviceFaultText(fault: DeviceFault, { text }: Phrases): string {
-  switch (fault.kind) {
+function deviceProblemText(problem: DeviceProblem, { text }: Phrases): string {
+  switch (problem.kind) {
     case 'insecure':
       return text('setup.insecure');
     case 'no-webxr':
@@ -64,6 +64,6 @@ function deviceFaultText(fault: DeviceFault, { text }: Phrases): string {
     case 'no-headset':
       return text('setup.noHeadset');
     case 'refused':
-      return text('setup.refused', { reason: fault.reason });
+      return text('setup.refused', { reason: problem.reason });
   }
 }

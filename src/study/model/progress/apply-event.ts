@@ -8,7 +8,7 @@ import { checkedDemographics } from '../records/demographics';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from '../records/study-record';
 import { checkedOutcome, type TrialOutcome } from '../records/trial-log';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
-import { Refusal } from './refusal';
+import { Rejection } from './rejection';
 import type { TargetBlock } from './study-api';
 
 /** An event from participant, experimenter, game or clock. */
@@ -47,7 +47,7 @@ export interface EventResult {
   /** The records to store and send, in this order. */
   readonly records: readonly StudyRecord[];
   /** Why nothing changed; null: the event was accepted. */
-  readonly refusal: Refusal | null;
+  readonly rejection: Rejection | null;
 }
 
 type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type: Type }>;
@@ -65,7 +65,7 @@ const acceptedInPause: readonly ProgressEvent['type'][] = [
 ];
 
 /** The events that are refused until a participant who may be unwell has decided whether to stop. */
-const refusedWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
+const rejectedWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
 
 /**
  * Applies an event to a session at `now` [s since 1970]. An event that does not fit the step changes nothing and is
@@ -74,19 +74,19 @@ const refusedWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrate
 export function applyEvent(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): EventResult {
   const session = new SessionAtEvent(schedule, progress, now);
   if (progress.paused && !acceptedInPause.includes(event.type))
-    return session.refuse('the session is paused', 'refused.paused');
-  if (progress.unwell && refusedWhileAsked.includes(event.type)) {
-    return session.refuse('the participant is asked whether to stop', 'refused.asked');
+    return session.reject('the session is paused', 'refused.paused');
+  if (progress.unwell && rejectedWhileAsked.includes(event.type)) {
+    return session.reject('the participant is asked whether to stop', 'refused.asked');
   }
   try {
     const next =
       (handlers[event.type] as Handler)(session, event) ??
-      session.refuse(`"${event.type}" does not fit the step "${session.step.id}"`);
+      session.reject(`"${event.type}" does not fit the step "${session.step.id}"`);
     if (next.progress === progress) return next;
     return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
-    return session.refuse(error.message);
+    return session.reject(error.message);
   }
 }
 
@@ -120,12 +120,12 @@ class SessionAtEvent {
     return `${this.step.id}${suffix}:${kind}`;
   }
 
-  refuse(message: string, phrase: PlainKey | null = null): EventResult {
-    return { progress: this.progress, records: [], refusal: new Refusal('conflict', message, { phrase }) };
+  reject(message: string, phrase: PlainKey | null = null): EventResult {
+    return { progress: this.progress, records: [], rejection: new Rejection('conflict', message, { phrase }) };
   }
 
   accept(progress: Progress, records: readonly StudyRecord[] = []): EventResult {
-    return { progress, records, refusal: null };
+    return { progress, records, rejection: null };
   }
 
   /** Returns the session with a record of what happened; nothing is recorded before consent, not even a pause. */
@@ -265,7 +265,7 @@ function pause(session: SessionAtEvent): EventResult | null {
 function stop(session: SessionAtEvent, { by, reason }: EventOf<'stop'>): EventResult | null {
   const { step, place, progress, schedule } = session;
   if (step.kind === 'end') return null;
-  if (progress.motion === null) return session.refuse('nothing is recorded before consent');
+  if (progress.motion === null) return session.reject('nothing is recorded before consent');
   const { unwell: _, ...decided } = progress;
   const stated = reason === undefined ? {} : { reason: checked(text(500), reason) };
   const recorded = session.withEvent(
@@ -300,7 +300,7 @@ function voidBlock(session: SessionAtEvent, event: EventOf<'void-block'>): Event
   const { repeat, of } = event;
   const { task, block, run } = session.place;
   if (of && (of.task !== task || of.block !== block)) {
-    return session.refuse(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
+    return session.reject(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
   }
   const { steps } = session.schedule;
   const { runs } = session.progress;
@@ -317,7 +317,7 @@ function voidBlock(session: SessionAtEvent, event: EventOf<'void-block'>): Event
 }
 
 function remark(session: SessionAtEvent, event: EventOf<'remark'>): EventResult {
-  if (session.progress.motion === null) return session.refuse('nothing is recorded before consent');
+  if (session.progress.motion === null) return session.reject('nothing is recorded before consent');
   return session.withEvent(session.progress, { type: 'remark', text: checked(text(2000), event.text) });
 }
 

@@ -1,12 +1,11 @@
 import { checked, ValidationError } from 'threepoint/core';
+import { games } from 'threepoint-games/all';
 import * as v from 'valibot';
 import { type LocalizedText, missingLanguage } from '../phrases/localized-text';
 import type { Answer, AnswerForm } from './question-kind';
 import { questionKind } from './question-kinds';
 import type { Question, QuestionnaireFile, Scale } from './questionnaire-schema';
 import { questionnaireSchema } from './questionnaire-schema';
-import archery from './shipped/archery.json' with { type: 'json' };
-import ball from './shipped/ball.json' with { type: 'json' };
 import nasaTlx from './shipped/nasa-tlx.json' with { type: 'json' };
 import nasaTlxRaw from './shipped/nasa-tlx-raw.json' with { type: 'json' };
 import ssq from './shipped/ssq.json' with { type: 'json' };
@@ -24,7 +23,7 @@ export interface Questionnaire {
 /** The answers by the id of the question, as given: reversed questions are not converted. */
 export type Answers = Readonly<Record<string, Answer>>;
 
-function refuseScale(scale: Scale, questions: readonly Question[], field: string): void {
+function rejectScale(scale: Scale, questions: readonly Question[], field: string): void {
   const named = (list: 'questions' | 'choices') =>
     (scale[list] ?? []).forEach((id, index) => {
       const found = questions.find((question) => question.id === id);
@@ -70,7 +69,7 @@ export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Ques
   });
   const scales = file.scales ?? [];
   scales.forEach((scale, index) => {
-    refuseScale(scale, questions, at(`scales[${index}]`));
+    rejectScale(scale, questions, at(`scales[${index}]`));
     if (scales.findIndex(({ id }) => id === scale.id) !== index || questions.some(({ id }) => id === scale.id)) {
       throw new ValidationError(at(`scales[${index}].id`), `"${scale.id}" is the name of another scale or a question`);
     }
@@ -100,7 +99,7 @@ function textsOf(
 }
 
 /** Throws a ValidationError for the first text that one of the languages lacks. */
-export function refuseMissingLanguages(file: QuestionnaireFile, languages: readonly string[], field: string): void {
+export function rejectMissingLanguages(file: QuestionnaireFile, languages: readonly string[], field: string): void {
   for (const [at, text] of textsOf(file, field)) {
     const missing = missingLanguage(text, languages);
     if (missing !== null)
@@ -113,9 +112,12 @@ const shipped = (file: unknown): readonly [string, Questionnaire] => {
   return [questionnaire.id, questionnaire];
 };
 
-/** The questionnaires of this package by id; plans use them by name. */
+/** The questionnaires of the games and of this package by id; plans use them by name. */
 export const shippedQuestionnaires: Readonly<Record<string, Questionnaire>> = Object.fromEntries(
-  [archery, ball, nasaTlx, nasaTlxRaw, ssq, systemUsability].map(shipped),
+  [
+    ...Object.values(games).flatMap(({ questionnaire }) => questionnaire ?? []),
+    ...[nasaTlx, nasaTlxRaw, ssq, systemUsability],
+  ].map(shipped),
 );
 
 /** Returns the questionnaire of this id, of the plan or shipped, or null. */

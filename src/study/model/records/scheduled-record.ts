@@ -13,7 +13,7 @@ function blockOf({ steps, participant }: Schedule, { task, block }: Pick<Place, 
 }
 
 /** Throws a ValidationError that names the first field whose value differs from that of the schedule. */
-function refuseOthers(body: object, scheduled: Readonly<Record<string, unknown>>): void {
+function rejectOthers(body: object, scheduled: Readonly<Record<string, unknown>>): void {
   for (const [field, expected] of Object.entries(scheduled)) {
     const found = (body as Readonly<Record<string, unknown>>)[field];
     if (found !== expected)
@@ -21,13 +21,13 @@ function refuseOthers(body: object, scheduled: Readonly<Record<string, unknown>>
   }
 }
 
-function refuseTrial({ body }: RecordOf<'trial'>, schedule: Schedule): void {
+function rejectTrial({ body }: RecordOf<'trial'>, schedule: Schedule): void {
   const { place, condition, repetition, outcome } = body;
   const played = blockOf(schedule, place).filter(isPlayed);
   const kind = condition === null ? 'tutorial' : 'trial';
   const step = played.find((one) => one.kind === kind && (one.kind === 'tutorial' || one.repetition === repetition));
   if (!step) throw new ValidationError('body.repetition', `the block has no ${kind} ${repetition}`);
-  refuseOthers(body, {
+  rejectOthers(body, {
     condition: step.kind === 'trial' ? step.condition : null,
     estimator: step.embodiment.estimator,
     repetition: step.kind === 'trial' ? step.repetition : 1,
@@ -38,17 +38,17 @@ function refuseTrial({ body }: RecordOf<'trial'>, schedule: Schedule): void {
   }
 }
 
-function refuseAnswers({ body }: RecordOf<'answers'>, schedule: Schedule): void {
+function rejectAnswers({ body }: RecordOf<'answers'>, schedule: Schedule): void {
   const { place, questionnaire } = body;
   const asked = blockOf(schedule, place).find(
     (step) => step.kind === 'questionnaire' && step.questionnaire.id === questionnaire,
   );
   if (!asked) throw new ValidationError('body.questionnaire', `the block does not ask "${questionnaire}"`);
   const trial = trialOf(schedule, asked);
-  refuseOthers(body, { condition: trial?.condition, estimator: trial?.embodiment.estimator });
+  rejectOthers(body, { condition: trial?.condition, estimator: trial?.embodiment.estimator });
 }
 
-function refuseEvent({ body }: RecordOf<'event'>, schedule: Schedule): void {
+function rejectEvent({ body }: RecordOf<'event'>, schedule: Schedule): void {
   if (body.type === 'void-block') blockOf(schedule, body);
   if ('place' in body && body.place) blockOf(schedule, body.place);
   if ('step' in body && !schedule.steps.some(({ id }) => id === body.step)) {
@@ -60,15 +60,15 @@ function refuseEvent({ body }: RecordOf<'event'>, schedule: Schedule): void {
  * Throws a ValidationError that names the field of a record that no page makes under this schedule: a place, condition,
  * estimator, group, questionnaire or step that the participant does not have, or a score above the maximum.
  */
-export function refuseUnscheduled(record: StudyRecord, schedule: Schedule): void {
-  if (record.kind === 'trial') refuseTrial(record, schedule);
-  else if (record.kind === 'answers') refuseAnswers(record, schedule);
+export function rejectUnscheduled(record: StudyRecord, schedule: Schedule): void {
+  if (record.kind === 'trial') rejectTrial(record, schedule);
+  else if (record.kind === 'answers') rejectAnswers(record, schedule);
   else if (record.kind === 'calibration') blockOf(schedule, record.body.place);
-  else if (record.kind === 'event') refuseEvent(record, schedule);
+  else if (record.kind === 'event') rejectEvent(record, schedule);
 }
 
 /** Throws a ValidationError if this is not the id of the record of a round or practice in this schedule. */
-export function refuseUnscheduledTrial(id: string, { steps, participant }: Schedule): void {
+export function rejectUnscheduledTrial(id: string, { steps, participant }: Schedule): void {
   const [step] = id.split('@');
   if (steps.some((one) => isPlayed(one) && one.id === step)) return;
   throw new ValidationError('trial', `${participant} does not play "${step}"`);

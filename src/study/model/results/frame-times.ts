@@ -1,5 +1,5 @@
 import type { StudyRecord, TrialRecord } from '../records/study-record';
-import { refuseMixture, trialsIn } from '../tables/study-tables';
+import { rejectMixture, trialsIn } from '../tables/study-tables';
 import type { CohortOf } from './measures';
 
 /**
@@ -30,7 +30,7 @@ export interface FrameTimeRow {
  * mixed.
  */
 export function frameTimes(records: readonly StudyRecord[], cohortOf: CohortOf = () => ''): readonly FrameTimeRow[] {
-  refuseMixture(records);
+  rejectMixture(records);
   type Group = Pick<FrameTimeRow, 'task' | 'condition' | 'cohort' | 'stage'> & { readonly trials: TrialRecord[] };
   const groups = new Map<string, Group>();
   for (const { record, participant, task, condition, excluded } of trialsIn(records)) {

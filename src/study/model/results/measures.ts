@@ -1,7 +1,7 @@
 import { meanOf } from '../../statistics/summaries';
 import type { StudyPlan } from '../plan/plan';
 import { questionnaireNamed } from '../questionnaires/questionnaires';
-import { type AnswerRow, refuseMixture, type TrialRow } from '../tables/study-tables';
+import { type AnswerRow, rejectMixture, type TrialRow } from '../tables/study-tables';
 
 /** A participant or an answer that is left out of the results, and the reason. */
 export interface Exclusion {
@@ -112,7 +112,7 @@ const isOf = (row: AnswerRow, { task, questionnaire, question }: QuestionPlace) 
  * people are mixed.
  */
 export function answerMeasures(rows: readonly AnswerRow[], cohortOf: CohortOf = noCohorts): readonly Measure[] {
-  refuseMixture(rows);
+  rejectMixture(rows);
   return askedIn(rows).map(({ of, asked }) => {
     const own = rows.filter((row) => isOf(row, asked));
     const observations = own.map(({ participant, condition, answer, excluded }) => ({
@@ -135,7 +135,7 @@ export function scoreMeasures(
   unit: 'points' | 'percent',
   cohortOf: CohortOf = noCohorts,
 ): readonly Measure[] {
-  refuseMixture(rows);
+  rejectMixture(rows);
   // Practice has no condition.
   const played = rows.filter(({ condition }) => condition);
   return [...new Set(played.map(({ task }) => task))].map((task) => {

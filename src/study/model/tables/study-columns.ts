@@ -184,7 +184,7 @@ export const trialColumns = [
   number('score', 'points', positive, outcome('score'), 'Points; for a group, those of the group.'),
   number('maximum', 'points', '1 and more', outcome('maximum'), 'Highest possible score.'),
   number('percent', '%', positive, 'computed: 100 score / maximum', 'Share of the highest possible score.'),
-  number('shots', '', counts, outcome('shots'), 'Arrows shot or balls thrown by this participant.'),
+  number('shots', '', counts, outcome('shots'), 'Shots or throws of this participant.'),
   number('hits', '', counts, outcome('hits'), 'Number of them that scored.'),
   number('seconds', 's', positive, outcome('seconds'), 'From the start signal to the end, pauses left out.'),
   number('frames', '', counts, outcome('frames.count'), 'Frames drawn.'),

@@ -144,7 +144,7 @@ const eventRows = (records: readonly StoredRecord[], flagOf: FlagOf) =>
   });
 
 /** Throws if simulated records and records of people are mixed, because no table may contain both. */
-export function refuseMixture(records: readonly { readonly simulated: boolean }[]): void {
+export function rejectMixture(records: readonly { readonly simulated: boolean }[]): void {
   if (records.some(({ simulated }) => simulated) && records.some(({ simulated }) => !simulated)) {
     throw new Error('simulated records and records of people must not be mixed');
   }
@@ -152,7 +152,7 @@ export function refuseMixture(records: readonly { readonly simulated: boolean }[
 
 /** Returns the tables of an export. Throws if simulated records and records of people are mixed. */
 export function studyTables(records: readonly StoredRecord[], plan: StudyPlan): readonly Table[] {
-  refuseMixture(records);
+  rejectMixture(records);
   const flagOf = recordFlags(records);
   const trials = trialsIn(records);
   return [

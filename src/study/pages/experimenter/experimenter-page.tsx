@@ -1,7 +1,7 @@
 import { render } from 'preact';
 import { pageElement } from 'threepoint-ui';
 import { client, resume, SignIn, SignOutButton, StudyChooser } from '../experimenter-access';
-import { complaint, notice, online, openStudy, refresh, study } from './experimenter-state';
+import { notice, online, openStudy, problem, refresh, study } from './experimenter-state';
 import { NewStudy, Study } from './experimenter-view';
 
 /** The interval at which states are requested [ms]. */
@@ -27,7 +27,7 @@ function ExperimenterPage() {
         {notice}
       </p>
       <p role="alert" class="complaint">
-        {complaint.value}
+        {problem.value}
       </p>
       {study.value ? <Study study={study.value} /> : <NewStudy />}
     </>

@@ -1,7 +1,7 @@
 import { signal } from '@preact/signals';
 import { reasonOf } from 'threepoint/core';
 import type { ExperimenterClient } from '../../client/study-client';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';
 import { client, requestStudy } from '../experimenter-access';
 
@@ -22,7 +22,7 @@ export const study = signal<OpenStudy | null>(null);
 /** The result of the last action. */
 export const notice = signal('');
 /** Why the last action failed. */
-export const complaint = signal('');
+export const problem = signal('');
 export const online = signal(true);
 /** The time of the last refresh, by the clock of this page [s since 1970]. */
 export const refreshedAt = signal(0);
@@ -38,12 +38,12 @@ async function requestState(server: ExperimenterClient, id: string) {
 export async function openStudy(id: string): Promise<void> {
   const server = client.value;
   if (!server || !id) return;
-  complaint.value = '';
+  problem.value = '';
   try {
     const { records: _, ...info } = await requestStudy(server, id);
     study.value = { ...info, ...(await requestState(server, id)) };
   } catch (error) {
-    complaint.value = reasonOf(error);
+    problem.value = reasonOf(error);
   }
 }
 
@@ -59,7 +59,7 @@ export async function refresh(): Promise<void> {
     online.value = true;
   } catch (error) {
     online.value = false;
-    if (error instanceof Refusal) complaint.value = error.message;
+    if (error instanceof Rejection) problem.value = error.message;
   }
   refreshedAt.value = Date.now() / 1000;
 }
@@ -74,9 +74,9 @@ export async function attempt(
   if (!client.value) return;
   try {
     notice.value = (await action(client.value, study.value?.plan.id ?? '')) ?? '';
-    complaint.value = '';
+    problem.value = '';
   } catch (error) {
-    complaint.value = reasonOf(error);
+    problem.value = reasonOf(error);
   }
   await refresh();
 }

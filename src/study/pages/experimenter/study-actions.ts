@@ -1,7 +1,7 @@
 import { formatSentence } from 'threepoint-ui';
 import type { ExperimenterClient } from '../../client/study-client';
 import { readPlan, type StudyPlan } from '../../model/plan/plan';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { StudyInfo } from '../../model/progress/study-api';
 import { effectsInWords } from '../../simulation/simulate-study';
 import { listStudies, putIntoAddress } from '../experimenter-access';
@@ -20,7 +20,7 @@ interface NewStudy {
 export const addStudy = ({ name, simulated, json }: NewStudy) =>
   attempt(async (server) => {
     const read = readPlan(await json(), name);
-    if ('faults' in read) throw new Error(read.faults.map(({ message }) => message).join('\n'));
+    if ('problems' in read) throw new Error(read.problems.map(({ message }) => message).join('\n'));
     const { plan } = read;
     if (simulated) return openCopy(server, plan);
     const info = await addOrChange(server, plan);
@@ -38,7 +38,7 @@ async function addOrChange(server: ExperimenterClient, plan: StudyPlan): Promise
   try {
     return await server.addStudy(plan, false);
   } catch (error) {
-    if (!(error instanceof Refusal) || error.field !== 'newVersion') throw error;
+    if (!(error instanceof Rejection) || error.field !== 'newVersion') throw error;
     if (!confirm(`${formatSentence(error.message)}\n\nMake it a new version? Results keep the versions apart.`))
       return null;
     return server.addStudy(plan, false, true);

@@ -1,4 +1,4 @@
-import { games } from 'threepoint-games/all';
+import { type GameDescription, type GameName, games } from 'threepoint-games/all';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { languagesOf } from '../../model/plan/plan';
 import type { AnswerForm } from '../../model/questionnaires/question-kind';
@@ -29,11 +29,12 @@ function axisOf(form: AnswerForm, [from, to]: readonly [number, number], languag
   return `answer, ${from} ${label(low)} to ${to} ${label(high)}`;
 }
 
-/** The figure of the paper that shows these answers, for captions. */
-const paperFigures: Readonly<Record<string, string>> = {
-  archery: ' (the paper’s figure 11)',
-  ball: ' (the paper’s figure 13)',
-};
+/** Returns what captions add about the figure of the paper that shows the same of a game. */
+function paperNote(game: string | undefined, shown: 'answers' | 'scores'): string {
+  const description: GameDescription | undefined = game === undefined ? undefined : games[game as GameName];
+  const figure = description?.paperFigures?.[shown];
+  return figure === undefined ? '' : ` (the paper’s figure ${figure})`;
+}
 
 /** Returns a chart for the questions of a task and questionnaire that share a scale. */
 export function questionCharts({ results, answers }: ShownComparison): readonly Chart[] {
@@ -59,7 +60,7 @@ export function questionCharts({ results, answers }: ShownComparison): readonly 
       axis,
       domain: range,
       nameOf: ({ asked: of }) => of?.question ?? '',
-      note: paperFigures[questionnaire.id] ?? '',
+      note: paperNote(questionnaire.id, 'answers'),
       each: 'participant',
       ...before,
       comparisons: [...(before?.comparisons ?? []), one],
@@ -95,7 +96,6 @@ export const scoreCharts = ({ results, percent }: ShownComparison): readonly Cha
   percent.map((comparison) => {
     const name = results.titleOf(comparison.of);
     const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);
-    const figure = task && games[task.game].paperFigure;
     return {
       comparisons: [comparison],
       title: `${name}: scores`,
@@ -103,7 +103,7 @@ export const scoreCharts = ({ results, percent }: ShownComparison): readonly Cha
       axis: 'score in per cent of the maximum',
       domain: [0, 100],
       nameOf: () => name,
-      note: figure ? ` (the paper’s figure ${figure})` : '',
+      note: paperNote(task?.game, 'scores'),
       each: (task?.groupSize ?? 1) === 1 ? 'participant' : 'group',
     };
   });

@@ -1,3 +1,4 @@
+import { gameNames, games } from 'threepoint-games/all';
 import { offerDownload } from 'threepoint-ui';
 import { Button } from 'threepoint-ui/controls';
 import { shippedQuestionnaires } from '../../model/questionnaires/questionnaires';
@@ -38,8 +39,8 @@ export const measureCell = ({ nameOf, study }: ShownResults, measure: MeasureNam
 
 /** Returns the subject of a question of the paper, or an empty text for other questions. */
 export const paperAboutOf = (id: string): string =>
-  [shippedQuestionnaires.archery, shippedQuestionnaires.ball]
-    .flatMap((asked) => asked?.questions ?? [])
+  gameNames
+    .flatMap((name) => (games[name].paperFigures ? (shippedQuestionnaires[name]?.questions ?? []) : []))
     .find((question) => question.id === id)?.about ?? '';
 
 /** Returns a button that saves a table as `file`.csv. */

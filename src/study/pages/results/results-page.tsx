@@ -15,15 +15,15 @@ import type { ShownStudy } from './shown-results';
 type SourcedStudy = ShownStudy & { readonly source: string };
 
 const shown = signal<SourcedStudy | null>(null);
-const complaint = signal('');
+const problem = signal('');
 
 /** Shows a study, or the reason why it cannot be read. */
 async function show(read: () => Promise<SourcedStudy>): Promise<void> {
-  complaint.value = '';
+  problem.value = '';
   try {
     shown.value = await read();
   } catch (error) {
-    complaint.value = reasonOf(error);
+    problem.value = reasonOf(error);
   }
 }
 
@@ -74,7 +74,7 @@ function SourceBar() {
   );
 }
 
-const Fault = () => <Complaint text={complaint.value} />;
+const Problem = () => <Complaint text={problem.value} />;
 
 function Results() {
   const study = shown.value;
@@ -92,8 +92,8 @@ function Results() {
 }
 
 function ComputedResults({ study }: { readonly study: ShownStudy }) {
-  const [fault] = useErrorBoundary();
-  if (fault) return <Complaint text={reasonOf(fault)} />;
+  const [problem] = useErrorBoundary();
+  if (problem) return <Complaint text={reasonOf(problem)} />;
   return (
     <>
       <VersionBar {...study} />
@@ -135,7 +135,7 @@ function VersionBar({ plan, planVersion, versions = [] }: ShownStudy) {
 render(
   <>
     <SourceBar />
-    <Fault />
+    <Problem />
     <Results />
     <PaperCheck />
   </>,

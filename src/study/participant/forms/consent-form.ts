@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { complaintLine, type FormOf, languageChoice, paragraphs, row } from './form-parts';
+import { type FormOf, languageChoice, paragraphs, problemLine, row } from './form-parts';
 
 function box() {
   const input = element('input', { type: 'checkbox' });
@@ -16,7 +16,7 @@ export function consentForm(
 ): readonly Node[] {
   const { consent, simulated, languages } = study;
   let phrases = phrasesOf(study, first);
-  const complaint = complaintLine();
+  const problem = problemLine();
   const agreed = box();
   const motion = consent.motion === null ? null : box();
   const title = element('h1', {});
@@ -28,7 +28,7 @@ export function consentForm(
   const decline = button('', () => actions.decline(phrases));
   const choice = languageChoice(languages, first, (language) => {
     phrases = phrasesOf(study, language);
-    complaint.hide();
+    problem.hide();
     onLanguage(phrases);
     showTexts();
   });
@@ -51,9 +51,9 @@ export function consentForm(
   async function agree(): Promise<void> {
     go.disabled = true;
     const chosen = languages.length > 1 ? phrases.language : null;
-    const refusal = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
-    if (refusal === null) return;
-    complaint.show(refusal);
+    const rejection = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
+    if (rejection === null) return;
+    problem.show(rejection);
     go.disabled = false;
   }
 
@@ -69,7 +69,7 @@ export function consentForm(
     texts,
     element('div', { class: 'checks' }, agreed.node, ...(motion ? [motion.node] : [])),
     note,
-    complaint.node,
+    problem.node,
     row(go, decline),
   ];
 }

@@ -1,7 +1,7 @@
 import { button, element } from 'threepoint-ui';
 import type { Phrases } from '../../model/phrases/phrases';
 import { type DemographicField, demographicFields } from '../../model/records/demographics';
-import { complaintLine, type FormOf, heading, row } from './form-parts';
+import { type FormOf, heading, problemLine, row } from './form-parts';
 
 type Given = string | number | undefined;
 
@@ -44,7 +44,7 @@ function fieldNode(field: DemographicField, { text }: Phrases): FieldNode {
 }
 
 /** Returns what is wrong with an answer, or null. */
-function complaintAbout(field: DemographicField, given: Given, { text }: Phrases): string | null {
+function problemAbout(field: DemographicField, given: Given, { text }: Phrases): string | null {
   if (given === undefined || given === '') return mayStayOpen(field) ? null : text('about.missing');
   if (field.kind !== 'age' || typeof given !== 'number') return null;
   const { min: from, max: to } = field;
@@ -54,31 +54,31 @@ function complaintAbout(field: DemographicField, given: Given, { text }: Phrases
 /** Returns the form with the questions that the paper asked its participants before they played. */
 export function demographicsForm({ phrases, done, stop }: FormOf<'demographics'>): readonly Node[] {
   const { text } = phrases;
-  const complaint = complaintLine();
+  const problem = problemLine();
   const fields = demographicFields.map((field) => ({ field, ...fieldNode(field, phrases) }));
   for (const { node } of fields) {
     node.addEventListener('input', () => {
       node.classList.remove('missing');
-      if (!fields.some((other) => other.node.classList.contains('missing'))) complaint.hide();
+      if (!fields.some((other) => other.node.classList.contains('missing'))) problem.hide();
     });
   }
   function handIn(): void {
-    const found = fields.map(({ field, node, value }) => ({ node, wrong: complaintAbout(field, value(), phrases) }));
+    const found = fields.map(({ field, node, value }) => ({ node, wrong: problemAbout(field, value(), phrases) }));
     for (const { node, wrong } of found) node.classList.toggle('missing', wrong !== null);
     const first = found.find(({ wrong }) => wrong !== null);
     if (first) {
-      complaint.show(first.wrong ?? '');
+      problem.show(first.wrong ?? '');
       first.node.scrollIntoView({ block: 'center' });
       return;
     }
-    const refusal = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
-    if (refusal !== null) complaint.show(refusal);
+    const rejection = done(Object.fromEntries(fields.map(({ field, value }) => [field.id, value()])));
+    if (rejection !== null) problem.show(rejection);
   }
   return [
     ...heading(text('about.kicker'), text('about.title')),
     element('p', { class: 'soft' }, text('question.neededNote')),
     ...fields.map(({ node }) => node),
-    complaint.node,
+    problem.node,
     row(button(text('continue'), handIn, { class: 'primary' }), button(text('stopStudy'), stop)),
   ];
 }

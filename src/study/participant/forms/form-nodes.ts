@@ -3,18 +3,12 @@ import { inLanguage } from '../../model/phrases/localized-text';
 import type { Phrases } from '../../model/phrases/phrases';
 import { consentForm } from './consent-form';
 import { demographicsForm } from './demographics-form';
-import { complaintLine, type FormOf, heading, paragraphs, row } from './form-parts';
+import { type FormOf, heading, paragraphs, problemLine, row } from './form-parts';
 import type { Invited, StudyForm } from './study-form';
 
-function participantForm({
-  phrases: { text },
-  complaint: fault,
-  known,
-  go,
-  decline,
-}: FormOf<'participant'>): readonly Node[] {
-  const complaint = complaintLine();
-  if (fault !== null) complaint.show(fault);
+function participantForm({ phrases: { text }, problem, known, go, decline }: FormOf<'participant'>): readonly Node[] {
+  const line = problemLine();
+  if (problem !== null) line.show(problem);
   const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
     const attributes = { type: 'text', name, placeholder, maxlength, autocomplete: 'off' };
     const input = element('input', { ...attributes, value: known[name] ?? '' });
@@ -32,8 +26,8 @@ function participantForm({
     text('continue'),
     () => {
       const answer = { participant: participant.value(), invitation: invitation.value() };
-      if (!/^P\d{2,3}$/.test(answer.participant)) complaint.show(text('entrance.wrongCode'));
-      else if (answer.invitation === '') complaint.show(text('entrance.noInvitation'));
+      if (!/^P\d{2,3}$/.test(answer.participant)) line.show(text('entrance.wrongCode'));
+      else if (answer.invitation === '') line.show(text('entrance.noInvitation'));
       else go(answer);
     },
     { class: 'primary' },
@@ -42,7 +36,7 @@ function participantForm({
     ...heading(text('study'), text('entrance.title')),
     participant.node,
     invitation.node,
-    complaint.node,
+    line.node,
     element('p', { class: 'soft' }, text('consent.nothingRecorded')),
     row(submit, button(text('consent.decline'), decline)),
   ];

@@ -15,7 +15,7 @@ export const row = (...buttons: readonly Node[]) => element('div', { class: 'row
 export const paragraphs = (texts: readonly string[]) => texts.map((text) => element('p', {}, text));
 
 /** A line with the complaint about a form, which screen readers announce. */
-export function complaintLine(): { readonly node: HTMLElement; show(text: string): void; hide(): void } {
+export function problemLine(): { readonly node: HTMLElement; show(text: string): void; hide(): void } {
   const node = element('p', { class: 'hint', role: 'alert' });
   node.hidden = true;
   return {

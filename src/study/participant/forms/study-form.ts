@@ -26,7 +26,7 @@ type FormContent =
       /** Asks for a participant's code and invitation; known values are filled in. */
       readonly kind: 'participant';
       /** What was wrong with the address; null: nothing. */
-      readonly complaint: string | null;
+      readonly problem: string | null;
       readonly known: { readonly [Part in keyof Invited]: string | null };
       /** Receives both in capitals. */
       go(invited: Invited): void;

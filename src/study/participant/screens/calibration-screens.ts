@@ -8,13 +8,13 @@ import type { StudySituation } from './study-situation';
 /** Returns the screens before and during a measurement: putting the headset on, faults of the set-up, measuring. */
 export function calibrationScreen(
   parts: ScreenParts,
-  { session, inSession, calibration, setupFaults }: StudySituation,
+  { session, inSession, calibration, setupProblems }: StudySituation,
 ): StudyScreen {
   const { base, phrases } = parts;
   const { text } = phrases;
   const { remote } = session.plan;
-  if (remote && setupFaults.length > 0 && (!calibration || calibration.kind === 'done')) {
-    return setupScreen(parts, remote, { faults: setupFaults, inSession });
+  if (remote && setupProblems.length > 0 && (!calibration || calibration.kind === 'done')) {
+    return setupScreen(parts, remote, { problems: setupProblems, inSession });
   }
   if (!inSession) {
     return {
@@ -39,14 +39,14 @@ export function calibrationScreen(
 function setupScreen(
   parts: ScreenParts,
   { contact }: RemoteTerms,
-  { faults, inSession }: { readonly faults: readonly string[]; readonly inSession: boolean },
+  { problems, inSession }: { readonly problems: readonly string[]; readonly inSession: boolean },
 ): StudyScreen {
   const { text } = parts.phrases;
   return {
     ...parts.base,
     id: 'setup',
     title: inSession ? text('setup.title') : text('setup.device'),
-    text: [...faults, text('setup.contact', { contact })],
+    text: [...problems, text('setup.contact', { contact })],
     trouble: true,
     buttons: inSession ? [calibrateButton(parts, 'measureAgain'), pauseButton(parts)] : [askToStopButton(parts)],
   };

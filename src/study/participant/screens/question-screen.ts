@@ -15,8 +15,8 @@ export function questionPart(
   {
     session,
     questionnaire: { typed, triedToSubmit },
-    refusal,
-  }: Pick<StudySituation, 'session' | 'questionnaire' | 'refusal'>,
+    rejection,
+  }: Pick<StudySituation, 'session' | 'questionnaire' | 'rejection'>,
   actions: Pick<ScreenActions, 'choose' | 'goTo' | 'type'>,
 ): { readonly question: ScreenQuestion; readonly hint: string | null } {
   const shown = questions[at] as Question;
@@ -52,7 +52,7 @@ export function questionPart(
       goTo: actions.goTo,
     },
     hint:
-      refusal ??
+      rejection ??
       (misread
         ? (view.misread?.(form, phrases) ?? null)
         : triedToSubmit && open.includes(shown.id)

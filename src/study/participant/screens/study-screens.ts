@@ -15,9 +15,9 @@ import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 
 /** Why the device could not store, in the participant's language where the page knows the reason. */
-function storageReason(fault: string, text: Phrases['text']): string {
-  if (fault === noStorage) return text('kept.noStorage');
-  return fault === silentStorage ? text('kept.silentStorage') : fault;
+function storageReason(problem: string, text: Phrases['text']): string {
+  if (problem === noStorage) return text('kept.noStorage');
+  return problem === silentStorage ? text('kept.silentStorage') : problem;
 }
 
 /**
@@ -25,12 +25,12 @@ function storageReason(fault: string, text: Phrases['text']): string {
  * alone.
  */
 export function uploadStatusText(
-  { unsent, unsaved, storageFault, online, refusal }: UploadStatus,
+  { unsent, unsaved, storageFault, online, rejection }: UploadStatus,
   { text }: Phrases,
   remote?: RemoteTerms,
 ): readonly [string, boolean] {
-  if (refusal !== null && unsent > 0) {
-    const what = { count: unsent, reason: refusal };
+  if (rejection !== null && unsent > 0) {
+    const what = { count: unsent, reason: rejection };
     return [
       remote ? text('kept.refusedRemote', { ...what, contact: remote.contact }) : text('kept.refused', what),
       true,
@@ -71,7 +71,7 @@ export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen =>
 
 /** Returns the screen of the present step in the participant's language, or null while the participant plays. */
 export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
-  const { session, refusal } = situation;
+  const { session, rejection } = situation;
   const { step, progress, phrases } = session;
   const { remote } = session.plan;
   const [kept, worrying] = uploadStatusText(session.uploadStatus, phrases, remote);
@@ -81,7 +81,7 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     figure: null,
     part: null,
     question: null,
-    hint: refusal,
+    hint: rejection,
     footnote: session.simulated ? `${phrases.text('simulated')} · ${kept}` : kept,
     trouble: worrying,
   };

@@ -21,13 +21,13 @@ export interface StudySituation {
   /** The step of the measurement; null: there is no measurement. */
   readonly calibration: CalibrationStep | null;
   /** What is wrong with device, room or height of a participant who takes part alone; empty: nothing. */
-  readonly setupFaults: readonly string[];
+  readonly setupProblems: readonly string[];
   /** The address of the page where everything can be deleted with the withdrawal code. */
   readonly withdrawalPage: string;
   /** How far the trial of the present step is prepared; null: not at all. */
   readonly prepared: Prepared | null;
   /** Why the last action changed nothing; null: it did. */
-  readonly refusal: string | null;
+  readonly rejection: string | null;
   /** Whether a trial was started and goes on. */
   readonly playing: boolean;
   /** The participants that a started trial waits for, empty if unknown; null: none. */

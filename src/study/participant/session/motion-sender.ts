@@ -1,5 +1,5 @@
 import { ServerUnreachable } from '../../client/study-client';
-import { refusalOf } from './send-records';
+import { rejectionOf } from './send-records';
 import type { SessionStore } from './session-store';
 
 /** The most exchanges that pass before failed uploads are repeated. Each may be 16 MiB. */
@@ -8,7 +8,7 @@ const longestRest = 32;
 export interface MotionSenderOptions {
   readonly send: (trial: string, recording: string) => Promise<void>;
   /** Called with an error that is neither a refusal of one recording nor a missing answer. */
-  readonly onFault: (error: unknown) => void;
+  readonly onError: (error: unknown) => void;
   readonly onChange: () => void;
 }
 
@@ -20,7 +20,7 @@ export class MotionSender {
   readonly #store: SessionStore;
   readonly #options: MotionSenderOptions;
   #sending: Promise<void> | null = null;
-  #refusal: string | null = null;
+  #rejection: string | null = null;
   /** The number of exchanges to skip before the next attempt; it grows if that fails too. */
   #rest = 0;
   #nextRest = 1;
@@ -31,8 +31,8 @@ export class MotionSender {
   }
 
   /** Why the server refuses a recording permanently; null: it refuses none. */
-  get refusal(): string | null {
-    return this.#refusal;
+  get rejection(): string | null {
+    return this.#rejection;
   }
 
   /**
@@ -57,21 +57,21 @@ export class MotionSender {
 
   /** A refused recording is kept and does not delay the others. */
   async #sendAll(): Promise<void> {
-    let refusal: string | null = null;
+    let rejection: string | null = null;
     try {
       for (const { trial, recording } of this.#store.motion) {
-        const refused = await refusalOf(async () => {
+        const rejected = await rejectionOf(async () => {
           await this.#options.send(trial, recording);
           await this.#store.acknowledgeMotion(trial);
         });
-        refusal = refused ?? refusal;
+        rejection = rejected ?? rejection;
       }
-      this.#restAfter(refusal !== null);
+      this.#restAfter(rejection !== null);
     } catch (error) {
       this.#restAfter(true);
-      if (!(error instanceof ServerUnreachable)) this.#options.onFault(error);
+      if (!(error instanceof ServerUnreachable)) this.#options.onError(error);
     }
-    this.#refusal = refusal;
+    this.#rejection = rejection;
   }
 
   #restAfter(failed: boolean): void {

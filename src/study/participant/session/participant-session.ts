@@ -4,7 +4,7 @@ import { languagesOf } from '../../model/plan/plan';
 import { type Schedule, scheduleFor } from '../../model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../../model/progress/apply-event';
 import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../model/progress/progress';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 import { preferredHandOf } from '../../model/records/participant-profile';
 import { MotionSender } from './motion-sender';
@@ -23,7 +23,7 @@ export interface UploadStatus {
   /** Whether the server answered the last request. */
   readonly online: boolean;
   /** Why the server permanently refuses data; null: it refuses none. */
-  readonly refusal: string | null;
+  readonly rejection: string | null;
   /** Whether the place belongs to another device, because the experimenter released it or deleted its records. */
   readonly lockedOut: boolean;
 }
@@ -56,7 +56,7 @@ export class ParticipantSession {
   readonly #onChange: () => void;
   readonly #onCommand: () => void;
   #online = true;
-  #refusal: string | null = null;
+  #rejection: string | null = null;
   #lockedOut = false;
   /** The progress that was last reported to the server; null: none. */
   #reported: Progress | null = null;
@@ -70,7 +70,7 @@ export class ParticipantSession {
     this.#store = new SessionStore(kept, unsent, { vault, onChange });
     this.#motion = new MotionSender(this.#store, {
       send: (trial, recording) => client.sendMotion(kept, trial, recording),
-      onFault: (error) => this.#noteFault(error),
+      onError: (error) => this.#noteProblem(error),
       onChange,
     });
     this.#now = now;
@@ -107,13 +107,13 @@ export class ParticipantSession {
   }
 
   get uploadStatus(): UploadStatus {
-    const { unsent, unsaved, fault } = this.#store;
+    const { unsent, unsaved, problem } = this.#store;
     return {
       unsent,
       unsaved,
-      storageFault: fault,
+      storageFault: problem,
       online: this.#online,
-      refusal: this.#refusal ?? this.#motion.refusal,
+      rejection: this.#rejection ?? this.#motion.rejection,
       lockedOut: this.#lockedOut,
     };
   }
@@ -127,11 +127,11 @@ export class ParticipantSession {
    * Applies an event and stores its consequences; returns why it is refused, or null. `command` is the number of the
    * experimenter's command that caused the event, which counts as followed even if nothing changes.
    */
-  apply(event: ProgressEvent, command?: number): Refusal | null {
+  apply(event: ProgressEvent, command?: number): Rejection | null {
     const { kept } = this;
     const before = command === undefined ? kept.progress : { ...kept.progress, commandsSeen: command };
-    const { progress, records, refusal } = applyEvent(this.schedule, before, event, this.#now());
-    if (progress === kept.progress && records.length === 0) return refusal;
+    const { progress, records, rejection } = applyEvent(this.schedule, before, event, this.#now());
+    if (progress === kept.progress && records.length === 0) return rejection;
     const demographics = records.find((record) => record.kind === 'demographics')?.body;
     const next = {
       ...kept,
@@ -140,7 +140,7 @@ export class ParticipantSession {
       ...(event.type === 'calibrated' && { calibration: event.calibration }),
     };
     this.#store.change(next, records);
-    return refusal;
+    return rejection;
   }
 
   /** Removes the withdrawal code from the device, once the participant has noted it. */
@@ -195,7 +195,7 @@ export class ParticipantSession {
       this.#online = true;
       this.#motion.send();
     } catch (error) {
-      this.#noteFault(error);
+      this.#noteProblem(error);
     }
     this.#onChange();
   }
@@ -203,19 +203,19 @@ export class ParticipantSession {
   /** Sends the unsent records and then the progress, which is not reported before consent. */
   async #report(): Promise<void> {
     const { kept } = this;
-    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(kept, records));
+    this.#rejection = await sendRecords(this.#store, (records) => this.#client.send(kept, records));
     const { progress } = this;
     if (progress.motion === null) return;
     await this.#client.saveProgress(kept, reported(progress, this.#now()));
     this.#reported = progress;
   }
 
-  #noteFault(error: unknown): void {
+  #noteProblem(error: unknown): void {
     if (error instanceof ServerUnreachable) this.#online = false;
-    else if (error instanceof Refusal) {
-      this.#refusal = error.message;
+    else if (error instanceof Rejection) {
+      this.#rejection = error.message;
       this.#lockedOut = error.reason === 'unauthorised';
-    } else this.#store.noteFault(error);
+    } else this.#store.noteProblem(error);
   }
 
   /** Follows each command once, even across a reload or on another device. */
@@ -223,10 +223,10 @@ export class ParticipantSession {
     if (number <= (this.progress.commandsSeen ?? 0)) return;
     this.#onCommand();
     const { step, running, motion } = this.progress;
-    const refusal = this.apply(command, number);
+    const rejection = this.apply(command, number);
     // A record states why a command changed nothing.
-    if (refusal === null || motion === null) return;
-    const why = `${step}${running ? ', running' : ''}: ${refusal.message}`;
+    if (rejection === null || motion === null) return;
+    const why = `${step}${running ? ', running' : ''}: ${rejection.message}`;
     this.apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${why}` });
   }
 }

@@ -1,4 +1,4 @@
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { StudyRecord } from '../../model/records/study-record';
 import type { SessionStore } from './session-store';
 
@@ -10,18 +10,18 @@ type Send = (records: readonly StudyRecord[]) => Promise<readonly string[]>;
  * for this device.
  */
 export async function sendRecords(store: SessionStore, send: Send): Promise<string | null> {
-  const refusalOfAll = (records: readonly StudyRecord[]) =>
-    refusalOf(async () => store.acknowledge(await send(records)));
-  const refused = new Set<string>();
+  const rejectionOfAll = (records: readonly StudyRecord[]) =>
+    rejectionOf(async () => store.acknowledge(await send(records)));
+  const rejected = new Set<string>();
   let reason: string | null = null;
-  for (let batch = store.nextBatch(refused); batch.length > 0; batch = store.nextBatch(refused)) {
-    const refusal = await refusalOfAll(batch);
-    if (refusal === null) continue;
+  for (let batch = store.nextBatch(rejected); batch.length > 0; batch = store.nextBatch(rejected)) {
+    const rejection = await rejectionOfAll(batch);
+    if (rejection === null) continue;
     // One of them is at fault, so each is sent separately.
     for (const record of batch) {
-      const why = batch.length === 1 ? refusal : await refusalOfAll([record]);
+      const why = batch.length === 1 ? rejection : await rejectionOfAll([record]);
       if (why === null) continue;
-      refused.add(record.id);
+      rejected.add(record.id);
       reason = why;
     }
   }
@@ -29,12 +29,12 @@ export async function sendRecords(store: SessionStore, send: Send): Promise<stri
 }
 
 /** Sends something; resolves with why the server refuses it, or with null. Rejects if none serves this device. */
-export async function refusalOf(send: () => Promise<void>): Promise<string | null> {
+export async function rejectionOf(send: () => Promise<void>): Promise<string | null> {
   try {
     await send();
     return null;
   } catch (error) {
-    if (!(error instanceof Refusal) || error.reason === 'unauthorised') throw error;
+    if (!(error instanceof Rejection) || error.reason === 'unauthorised') throw error;
     return error.message;
   }
 }

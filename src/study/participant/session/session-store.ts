@@ -31,7 +31,7 @@ export class SessionStore {
   /** The records that are not in the vault yet. */
   #unsaved: readonly StudyRecord[] = [];
   readonly #unsavedMotion = new Map<string, KeptMotion>();
-  #fault: string | null;
+  #problem: string | null;
   /** Whether this page has stored the session. If another page has deleted it since, it is not stored again. */
   #stored = false;
   #forgotten = false;
@@ -51,7 +51,7 @@ export class SessionStore {
     this.#records = new Map(records.map((record) => [record.id, record]));
     this.#motion = new Map(motion.map((one) => [one.trial, one]));
     this.#vault = vault;
-    this.#fault = vault ? null : noStorage;
+    this.#problem = vault ? null : noStorage;
     this.#onChange = onChange;
   }
 
@@ -71,8 +71,8 @@ export class SessionStore {
   }
 
   /** Why the device could not store them; null: it could. */
-  get fault(): string | null {
-    return this.#fault;
+  get problem(): string | null {
+    return this.#problem;
   }
 
   /** The recordings that the server has not acknowledged. */
@@ -110,8 +110,8 @@ export class SessionStore {
   }
 
   /** Reports a fault of the device outside of a save. After an eviction, the next save stores everything once more. */
-  noteFault(error: unknown): void {
-    this.#fault = reasonOf(error);
+  noteProblem(error: unknown): void {
+    this.#problem = reasonOf(error);
     if (!(error instanceof StorageEvicted)) return;
     this.#stored = false;
     this.#unsaved = [...this.#records.values()];
@@ -149,7 +149,7 @@ export class SessionStore {
   async #remove(from: (vault: StudyVault, session: KeptSession) => Promise<void>): Promise<void> {
     // What the save under way still writes must be removed after it.
     await this.#saving;
-    if (this.#vault) await from(this.#vault, this.#session).catch((error: unknown) => this.noteFault(error));
+    if (this.#vault) await from(this.#vault, this.#session).catch((error: unknown) => this.noteProblem(error));
     this.#onChange();
   }
 
@@ -167,10 +167,10 @@ export class SessionStore {
         await vault.saveMotion(session, motion);
         this.#unsavedMotion.delete(motion.trial);
       }
-      this.#fault = null;
+      this.#problem = null;
     } catch (error) {
       if (error instanceof SessionForgotten) this.#forgotten = true;
-      else this.noteFault(error);
+      else this.noteProblem(error);
       if (error instanceof StorageEvicted && !isRepeated) await this.#saveOnce(true);
     }
     this.#onChange();

@@ -1,7 +1,7 @@
 import type { Calibration } from 'threepoint/core';
 import type { Side } from 'threepoint/math';
 import type { Embodiment } from '../../model/plan/embodiment';
-import type { DeviceFault } from '../../model/plan/remote-setup';
+import type { DeviceProblem } from '../../model/plan/remote-setup';
 import type { TrialHost } from './study-trial';
 import type { TaskRunner } from './task-runner';
 
@@ -11,7 +11,7 @@ export interface StudyHost extends TrialHost {
   readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
   enterVr(): Promise<void>;
   /** Returns why no headset can be worn on this device, or null. */
-  deviceFault(): DeviceFault | null;
+  deviceProblem(): DeviceProblem | null;
   /** Returns the room within the headset's boundary [m], or null if it is not reported or no headset is worn. */
   room(): { readonly width: number; readonly depth: number } | null;
   inSession(): boolean;

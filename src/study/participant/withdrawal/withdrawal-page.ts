@@ -4,7 +4,7 @@ import { button, element, labelled, offerDownload, pageElement, pageFolder } fro
 import { createWithdrawalClient, ServerUnreachable } from '../../client/study-client';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../model/phrases/phrases';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { PublicStudy, Receipt } from '../../model/progress/study-api';
 import { languageChoice } from '../forms/form-parts';
 import { localizedReason } from '../localized-reasons';
@@ -77,7 +77,7 @@ const unknownCode = 'nothing is recorded under this code';
 
 /** Returns why there is no receipt. Without an answer, the server may have deleted everything nevertheless. */
 function failure(error: unknown, phrases: Phrases): string {
-  if (error instanceof Refusal && error.message === unknownCode) return phrases.text('withdrawal.unknownCode');
+  if (error instanceof Rejection && error.message === unknownCode) return phrases.text('withdrawal.unknownCode');
   const reason = reasonOf(error);
   return phrases.text(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
 }
@@ -96,8 +96,8 @@ function withdrawalForm(about: PublicStudy | null, phrases: Phrases): HTMLElemen
     size: 30,
   });
   const sure = element('input', { type: 'checkbox' });
-  const complaint = paragraph('', { class: 'complaint', role: 'alert' });
-  complaint.hidden = true;
+  const problem = paragraph('', { class: 'complaint', role: 'alert' });
+  problem.hidden = true;
   const go = button(text('withdrawal.delete'), () => void withdraw(), { class: 'danger' });
   const changed = () => {
     go.disabled = !sure.checked || code.input.value.trim() === '' || study.input.value.trim() === '';
@@ -107,13 +107,13 @@ function withdrawalForm(about: PublicStudy | null, phrases: Phrases): HTMLElemen
 
   async function withdraw(): Promise<void> {
     go.disabled = true;
-    complaint.hidden = true;
+    problem.hidden = true;
     try {
       const receipt = await client.withdraw(study.input.value.trim(), code.input.value.trim());
       content.replaceChildren(receiptCard(receipt, about, phrases, await forgottenHere(receipt, phrases)));
     } catch (error) {
-      complaint.textContent = failure(error, phrases);
-      complaint.hidden = false;
+      problem.textContent = failure(error, phrases);
+      problem.hidden = false;
       changed();
     }
   }
@@ -125,7 +125,7 @@ function withdrawalForm(about: PublicStudy | null, phrases: Phrases): HTMLElemen
     paragraph(text('withdrawal.explained')),
     element('div', { class: 'bar', style: 'margin:14px 0' }, ...(about ? [] : [study.node]), code.node),
     element('label', { class: 'inline' }, sure, element('span', {}, text('withdrawal.sure'))),
-    complaint,
+    problem,
     element('div', { class: 'bar', style: 'margin-top:12px' }, go),
     element(
       'p',
@@ -139,30 +139,30 @@ function withdrawalForm(about: PublicStudy | null, phrases: Phrases): HTMLElemen
 interface Found {
   readonly about: PublicStudy | null;
   /** Why the study in the address was not found; null: it was, or the address names none. */
-  readonly fault: unknown;
+  readonly error: unknown;
 }
 
 async function findStudy(): Promise<Found> {
   try {
-    return { about: asked === null ? null : await client.study(asked), fault: null };
-  } catch (fault) {
-    return { about: null, fault };
+    return { about: asked === null ? null : await client.study(asked), error: null };
+  } catch (error) {
+    return { about: null, error };
   }
 }
 
 /** Shows the page in a language; another one can be chosen until everything is deleted. */
-function show({ about, fault }: Found, languages: readonly [string, ...string[]], language: string): void {
+function show({ about, error }: Found, languages: readonly [string, ...string[]], language: string): void {
   const phrases = phrasesOf(about ?? {}, language);
   const { text, locale } = phrases;
   document.documentElement.lang = locale;
   document.title = `${text('withdrawal.title')} · threepoint`;
   pageElement('title', HTMLElement).textContent = text('withdrawal.title');
-  const choice = languageChoice(languages, language, (chosen) => show({ about, fault }, languages, chosen));
+  const choice = languageChoice(languages, language, (chosen) => show({ about, error }, languages, chosen));
   choice.label(text('language'));
-  const complaint = fault === null ? null : `“${asked}”: ${localizedReason(fault, phrases)}.`;
+  const problem = error === null ? null : `“${asked}”: ${localizedReason(error, phrases)}.`;
   content.replaceChildren(
     ...(languages.length > 1 ? [element('div', { class: 'bar', style: 'margin-bottom:14px' }, choice.node)] : []),
-    ...(complaint === null ? [] : [paragraph(complaint, { class: 'complaint', role: 'alert' })]),
+    ...(problem === null ? [] : [paragraph(problem, { class: 'complaint', role: 'alert' })]),
     withdrawalForm(about, phrases),
   );
 }

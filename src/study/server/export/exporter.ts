@@ -1,7 +1,7 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { type Software, shortageOf } from 'threepoint-http';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 
 /** The parameters of an export, whose process reads the content from the database. */
 export interface ExportOrder {
@@ -16,7 +16,7 @@ export interface ExportOrder {
 }
 
 /**
- * Makes the zip file of an export; rejects with a Refusal if too many exports wait, or without enough memory or
+ * Makes the zip file of an export; rejects with a Rejection if too many exports wait, or without enough memory or
  * files.
  */
 export type Exporter = (order: ExportOrder) => Promise<Uint8Array>;
@@ -38,20 +38,20 @@ function started(file: string, order: ExportOrder): ChildProcess {
 function zipInProcess(file: string, order: ExportOrder): Promise<Uint8Array> {
   const child = started(file, order);
   const chunks: Buffer[] = [];
-  let complaint = '';
+  let problem = '';
   child.stdout?.on('data', (chunk: Buffer) => chunks.push(chunk));
   child.stderr?.on('data', (chunk: Buffer) => {
-    complaint = `${complaint}${chunk}`.slice(-maxErrorOutput);
+    problem = `${problem}${chunk}`.slice(-maxErrorOutput);
   });
   return new Promise((resolve, reject) => {
     const fail = (error: Error) => {
       const shortage = shortageOf(error);
-      reject(shortage === null ? error : new Refusal('full', `${shortage} Or export the participants one by one.`));
+      reject(shortage === null ? error : new Rejection('full', `${shortage} Or export the participants one by one.`));
     };
     child.once('error', fail);
     child.once('close', (code, signal) => {
       if (code === 0) resolve(new Uint8Array(Buffer.concat(chunks)));
-      else fail(new Error(`the process of an export ended with ${code ?? signal}: ${complaint}`));
+      else fail(new Error(`the process of an export ended with ${code ?? signal}: ${problem}`));
     });
   });
 }
@@ -62,7 +62,7 @@ export function createExporter(file: string): Exporter {
   let waiting = 0;
   return async (order) => {
     if (waiting >= maxWaiting) {
-      throw new Refusal('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
+      throw new Rejection('busy', `${waiting} exports are waiting already. Try again in a few minutes`);
     }
     waiting += 1;
     const zip = last.then(() => zipInProcess(file, order)).finally(() => (waiting -= 1));

@@ -1,6 +1,6 @@
 import { checked, identifier, participantId } from 'threepoint/core';
 import { errorLine, errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { StudyStorage } from '../study-storage';
 import { type Effect, failureSentence } from './effect';
 import { createStudyGuard, type Sender, type StudyGuard, type StudyGuardOptions } from './guard';
@@ -25,7 +25,7 @@ async function untilUnlocked<T>(until: number, run: () => T | Promise<T>): Promi
     try {
       return await run();
     } catch (error) {
-      const isLocked = error instanceof Refusal && error.reason === 'locked';
+      const isLocked = error instanceof Rejection && error.reason === 'locked';
       if (!isLocked || performance.now() > until) throw error;
       await wait(retryMs);
     }
@@ -44,7 +44,7 @@ export const retryAfterSeconds = 5;
 
 /** Returns the HTTP error for an error of a request with this effect, or null for a fault of the server. */
 function httpErrorOf(error: unknown, effect: Effect): HttpError | null {
-  if (!(error instanceof Refusal)) return refusalOf(error);
+  if (!(error instanceof Rejection)) return refusalOf(error);
   const { reason, field, failure } = error;
   const message = failure === null ? error.message : failureSentence(error.message, effect, failure === 'not done');
   // The page for withdrawals takes 507 for a sign that nothing was deleted.
@@ -125,13 +125,13 @@ export class StudyDispatcher {
 
   /** Returns the answer to a request that failed. */
   #answerTo(error: unknown, effect: Effect): HttpResponse {
-    if (error instanceof Refusal && error.reason === 'lost') this.#logLost(error);
+    if (error instanceof Rejection && error.reason === 'lost') this.#logLost(error);
     const known = httpErrorOf(error, effect);
     if (!known) this.#log(`study: ${errorLine(error)}`);
     return errorResponse(known ?? internalError());
   }
 
-  #logLost({ message, detail }: Refusal): void {
+  #logLost({ message, detail }: Rejection): void {
     if (performance.now() - this.#logged < logEveryMs) return;
     this.#logged = performance.now();
     this.#log(`study: ${message}${detail === null ? '' : ` (${detail})`}`);

@@ -9,7 +9,7 @@ import {
   requiredAddress,
   tooManyRequests,
 } from 'threepoint-http';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import { normalisedCode } from '../codes';
 import type { Awaitable, StudyStorage } from '../study-storage';
 
@@ -65,7 +65,7 @@ function createOpenPlaces(): <T>(network: string, claim: () => Awaitable<T>) => 
 
 export type StudyGuard = ReturnType<typeof createStudyGuard>;
 
-/** Returns the checks of tokens, invitations and withdrawal codes, which throw Refusals. */
+/** Returns the checks of tokens, invitations and withdrawal codes, which throw Rejections. */
 export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: StudyGuardOptions) {
   const experimenterDigest = digest(experimenterToken);
   const throttle = createAuthThrottle(onFailedAttempt);
@@ -95,7 +95,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       // Participants' tokens are 256 random bits, so they are checked regardless of failed attempts from their address.
       if (access === 'participant' && (await isParticipant(sender))) return;
       if (await isExperimenter(sender)) return;
-      throw new Refusal('unauthorised', 'this needs the token of the participant or of an experimenter');
+      throw new Rejection('unauthorised', 'this needs the token of the participant or of an experimenter');
     },
     /** Runs `claim` if the invitation to the place or the token of an experimenter is right; otherwise throws. */
     async claiming<T>(sender: Sender, invitation: string | undefined, claim: () => Awaitable<T>): Promise<T> {
@@ -104,14 +104,14 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
       if (await isExperimenter({ token, address })) return claim();
       if (invitation === undefined) {
         const why = `${participant} needs an invitation, which is in the participant’s link`;
-        throw new Refusal('forbidden', why, { field: 'invitation' });
+        throw new Rejection('forbidden', why, { field: 'invitation' });
       }
       const secret = `${participant} ${normalisedCode(invitation)}`;
       const right = await attempt({ what: 'invitation', address, of: study, secret }, () =>
         store.places.acceptsInvitation(study, participant, invitation),
       );
       if (!right)
-        throw new Refusal('forbidden', `this is not the invitation of ${participant}`, { field: 'invitation' });
+        throw new Rejection('forbidden', `this is not the invitation of ${participant}`, { field: 'invitation' });
       return plan.entry === 'open' ? spendingOpenPlace(requiredAddress(address).network, claim) : claim();
     },
     /** Runs `withdraw` with a withdrawal code; throws if the code is unknown. */
@@ -123,7 +123,7 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
         result = await withdraw();
         return result !== null;
       });
-      if (result === null) throw new Refusal('unknown', 'nothing is recorded under this code');
+      if (result === null) throw new Rejection('unknown', 'nothing is recorded under this code');
       return result;
     },
   };

@@ -3,10 +3,10 @@ import { jsonOf, jsonResponse, noContent, textOf } from 'threepoint-http';
 import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { scheduleFor } from '../../model/plan/schedule';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
-import { refuseUnscheduled, refuseUnscheduledTrial } from '../../model/records/scheduled-record';
+import { rejectUnscheduled, rejectUnscheduledTrial } from '../../model/records/scheduled-record';
 import { checkedRecord, type StudyRecord, within } from '../../model/records/study-record';
 import type { StudyStorage } from '../study-storage';
 import { bodyLimits, route, type StudyCall, type StudyParts, type StudyRoute } from './route';
@@ -40,12 +40,12 @@ const sessionOf = async (store: StudyStorage, { study, participant, at }: StudyC
 });
 
 /** Throws if a stored plan is no longer valid for a new study, because nothing can be recorded by its rules. */
-function refuseOutdated(plan: StudyPlan): void {
+function rejectOutdated(plan: StudyPlan): void {
   try {
     checkedPlan(plan);
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
-    throw new Refusal(
+    throw new Rejection(
       'conflict',
       `the plan of this study is of an older version of the program and no longer valid: ${error.message}. ` +
         'Its records can be exported and deleted. Give a study with another plan another id',
@@ -59,10 +59,10 @@ function refuseOutdated(plan: StudyPlan): void {
  */
 async function takePlace(store: StudyStorage, { study, participant, at }: StudyCall, read: string | undefined) {
   const plan = await store.plans.planFor(study, participant);
-  refuseOutdated(plan);
+  rejectOutdated(plan);
   const { version } = plan.consent;
   if (read !== undefined && read !== version) {
-    throw new Refusal('conflict', `consent was given to text ${read}, but the study shows ${version}`, {
+    throw new Rejection('conflict', `consent was given to text ${read}, but the study shows ${version}`, {
       field: 'consent',
     });
   }
@@ -75,20 +75,20 @@ function recordsIn(values: readonly unknown[], plan: StudyPlan, participant: str
   return values.map((value, index) =>
     within(`records[${index}]`, () => {
       const record = checkedRecord(value, plan);
-      if (record.participant === participant) refuseUnscheduled(record, schedule);
+      if (record.participant === participant) rejectUnscheduled(record, schedule);
       return record;
     }),
   );
 }
 
-/** Returns the text of a recording; throws a Refusal for another file. */
+/** Returns the text of a recording; throws a Rejection for another file. */
 function recordingIn(call: StudyCall): string {
   const recording = textOf(call);
   try {
     parseRecording(recording);
     return recording;
   } catch (error) {
-    throw new Refusal('invalid', (error as Error).message);
+    throw new Rejection('invalid', (error as Error).message);
   }
 }
 
@@ -160,7 +160,7 @@ function recordRoutes(parts: StudyParts): StudyRoute[] {
     route('PUT', `${own}/motion`, 'participant', bodyLimits.motion, async (call) => {
       const { study, participant, at, query } = call;
       const { trial } = checked(motionSchema, { trial: query.get('trial') });
-      refuseUnscheduledTrial(trial, scheduleFor(await store.plans.planFor(study, participant), participant));
+      rejectUnscheduledTrial(trial, scheduleFor(await store.plans.planFor(study, participant), participant));
       await store.motion.store(study, participant, trial, recordingIn(call), at);
       return noContent;
     }),

@@ -1,7 +1,7 @@
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { Receipt } from '../../model/progress/study-api';
 import { newCode } from '../codes';
-import type { DeletionFault, DeletionStorage } from '../study-storage';
+import type { DeletionError, DeletionStorage } from '../study-storage';
 import type { StudyCommands } from './study-commands';
 import type { StudyDatabase } from './study-database';
 import type { StudyMotion } from './study-motion';
@@ -52,7 +52,7 @@ export class StudyDeletion implements DeletionStorage {
   deleteSimulated(study: string): void {
     const { database, plans } = this.#parts;
     if (!plans.get(study).simulated) {
-      throw new Refusal('forbidden', `the study "${study}" has data of people: delete its participants one by one`);
+      throw new Rejection('forbidden', `the study "${study}" has data of people: delete its participants one by one`);
     }
     database.transaction(() => {
       for (const table of ['records', 'motion', 'receipts']) {
@@ -68,12 +68,12 @@ export class StudyDeletion implements DeletionStorage {
     return participant === null ? null : this.delete(study, participant, 'withdrawn', at);
   }
 
-  deleteExpired(now: number, onFault: DeletionFault): readonly Receipt[] {
+  deleteExpired(now: number, onError: DeletionError): readonly Receipt[] {
     return this.#parts.places.expired(now).flatMap((place) => {
       try {
         return [this.delete(place.study, place.participant, 'retention', now)];
       } catch (error) {
-        onFault(place, error);
+        onError(place, error);
         return [];
       }
     });

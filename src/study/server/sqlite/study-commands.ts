@@ -1,4 +1,4 @@
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { NumberedCommand, StudyCommand } from '../../model/progress/study-api';
 import type { CommandStorage } from '../study-storage';
 import type { StudyDatabase } from './study-database';
@@ -23,7 +23,7 @@ export class StudyCommands implements CommandStorage {
         ...[study, participant],
       );
       if (count >= maxCommandsPerParticipant) {
-        throw new Refusal('full', `${participant} was sent ${maxCommandsPerParticipant} commands already`);
+        throw new Rejection('full', `${participant} was sent ${maxCommandsPerParticipant} commands already`);
       }
       const { number } = this.#database.getOne<{ number: number }>(
         'INSERT INTO commands (study, participant, command, at) VALUES (?, ?, ?, ?) RETURNING number',

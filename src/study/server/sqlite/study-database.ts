@@ -4,9 +4,9 @@ import { promisify } from 'node:util';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core';
 import { GroupCommit } from 'threepoint-http';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import { migrate } from './schema';
-import { refusalOfSqlite } from './sqlite-refusal';
+import { rejectionOfSqlite } from './sqlite-rejection';
 
 type Statement = ReturnType<DatabaseSyncInstance['prepare']>;
 type Parameter = Parameters<Statement['run']>[number];
@@ -40,7 +40,7 @@ interface OpenedFile {
 /**
  * The SQLite file of the studies. A committed transaction survives a crash of the process; it survives a power cut once
  * `flushed` has resolved. Deleted data are overwritten. No call waits for the lock of another program: it throws a
- * Refusal and can be repeated.
+ * Rejection and can be repeated.
  */
 export class StudyDatabase {
   readonly #database: DatabaseSyncInstance;
@@ -76,7 +76,7 @@ export class StudyDatabase {
   }
 
   /**
-   * Runs `body` in a transaction; throws a Refusal if the disk is full, the database locked or its file unusable.
+   * Runs `body` in a transaction; throws a Rejection if the disk is full, the database locked or its file unusable.
    */
   transaction<T>(body: () => T): T {
     try {
@@ -87,7 +87,7 @@ export class StudyDatabase {
     } catch (error) {
       // SQLite has already rolled back on a full disk.
       if (this.#database.isTransaction) this.#database.exec('ROLLBACK');
-      throw refusalOfSqlite(error);
+      throw rejectionOfSqlite(error);
     }
   }
 
@@ -135,7 +135,7 @@ export class StudyDatabase {
   }
 
   /**
-   * Resolves when everything written before this call survives a power cut. Rejects with a Refusal after a failure
+   * Resolves when everything written before this call survives a power cut. Rejects with a Rejection after a failure
    * of the disk, until the server starts again, and if the files were moved or deleted.
    */
   async flushed(): Promise<void> {
@@ -143,11 +143,11 @@ export class StudyDatabase {
       await this.#commits.flush();
     } catch (error) {
       const text = 'the disk of the server failed, and the server must be restarted';
-      throw new Refusal('lost', text, { detail: reasonOf(error), failure: 'unknown' });
+      throw new Rejection('lost', text, { detail: reasonOf(error), failure: 'unknown' });
     }
     if (this.#misplaced !== null) {
       const text = 'the folder of the studies was deleted or replaced. Put it back, or restart the server';
-      throw new Refusal('lost', text, { detail: this.#misplaced });
+      throw new Rejection('lost', text, { detail: this.#misplaced });
     }
   }
 
@@ -161,7 +161,7 @@ export class StudyDatabase {
       const [row] = this.all<{ busy: number }>('PRAGMA wal_checkpoint(TRUNCATE)');
       this.#mustPurge = row?.busy !== 0;
     } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
+      if (!(error instanceof Rejection)) throw error;
     }
     return !this.#mustPurge;
   }
@@ -204,7 +204,7 @@ export class StudyDatabase {
       return body();
     } catch (error) {
       // In a transaction the caller rolls back, which needs the original error.
-      throw this.#database.isTransaction ? error : refusalOfSqlite(error);
+      throw this.#database.isTransaction ? error : rejectionOfSqlite(error);
     }
   }
 

@@ -4,9 +4,9 @@ import { join } from 'node:path';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { reasonOf } from 'threepoint/core';
 import { ConfigurationError, type Software, secretWeakness } from 'threepoint-http';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import { DatabaseProblem } from './schema';
-import { sqliteBusy, sqliteCodeOf } from './sqlite-refusal';
+import { sqliteBusy, sqliteCodeOf } from './sqlite-rejection';
 import { createPrivateFile } from './study-database';
 import { openStudyStore, type StudyStore } from './study-store';
 
@@ -77,7 +77,7 @@ function remedyOf(error: unknown, directory: string): string | null {
   const file = join(directory, 'studies.db');
   const reason = reasonOf(error);
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
-  if (error instanceof Refusal)
+  if (error instanceof Rejection)
     return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
   const { code } = (error ?? {}) as NodeJS.ErrnoException;
   if (code === 'ENOSPC' || code === 'EDQUOT') {

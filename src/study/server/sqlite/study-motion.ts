@@ -1,5 +1,5 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { MotionStorage, PackedMotion } from '../study-storage';
 import type { StudyDatabase } from './study-database';
 import type { StudyPlaces } from './study-places';
@@ -20,7 +20,7 @@ export class StudyMotion implements MotionStorage {
     const gzipped = gzipSync(text);
     this.#database.transaction(() => {
       if (this.#places.getPresent(study, participant).motion_consent !== 1) {
-        throw new Refusal('forbidden', `${participant} has not consented to motion recording`);
+        throw new Rejection('forbidden', `${participant} has not consented to motion recording`);
       }
       const stored = this.#database.get<PackedMotion>(
         'SELECT gzipped FROM motion WHERE study = ? AND participant = ? AND trial = ?',
@@ -28,14 +28,14 @@ export class StudyMotion implements MotionStorage {
       );
       if (stored) {
         if (gunzipSync(stored.gzipped).toString() === text) return;
-        throw new Refusal('conflict', `${participant} has stored another recording of "${trial}" already`);
+        throw new Rejection('conflict', `${participant} has stored another recording of "${trial}" already`);
       }
       const { bytes } = this.#database.getOne<{ bytes: number }>(
         'SELECT coalesce(sum(length(gzipped)), 0) AS bytes FROM motion WHERE study = ? AND participant = ?',
         ...[study, participant],
       );
       if (bytes + gzipped.length > maxMotionPerParticipant) {
-        throw new Refusal('full', `${participant} has ${bytes} bytes of motion already`);
+        throw new Rejection('full', `${participant} has ${bytes} bytes of motion already`);
       }
       this.#database.run(
         'INSERT INTO motion (study, participant, trial, gzipped, received_at) VALUES (?, ?, ?, ?, ?)',

@@ -1,7 +1,7 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import { scheduleFor } from '../../model/plan/schedule';
 import { isLater, type Progress, resumed, sinceReport } from '../../model/progress/progress';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import { newCode, normalisedCode } from '../codes';
 import type { PlaceStorage } from '../study-storage';
 import type { StudyDatabase } from './study-database';
@@ -21,8 +21,8 @@ export interface PlaceRow {
   readonly progress_at: number | null;
 }
 
-export const notConsented = (participant: string): Refusal =>
-  new Refusal('forbidden', `${participant} has not consented: nothing is recorded`);
+export const notConsented = (participant: string): Rejection =>
+  new Rejection('forbidden', `${participant} has not consented: nothing is recorded`);
 
 const hashOf = (secret: string): Buffer => createHash('sha256').update(secret).digest();
 const newToken = (): string => randomBytes(32).toString('base64url');
@@ -39,14 +39,14 @@ export class StudyPlaces implements PlaceStorage {
 
   get(study: string, participant: string): PlaceRow {
     const row = this.#row(study, participant);
-    if (!row) throw new Refusal('unknown', `the study "${study}" has no participant ${participant}`);
+    if (!row) throw new Rejection('unknown', `the study "${study}" has no participant ${participant}`);
     return row;
   }
 
-  /** Returns the place of a participant; throws a Refusal for an unknown one and for one who has withdrawn. */
+  /** Returns the place of a participant; throws a Rejection for an unknown one and for one who has withdrawn. */
   getPresent(study: string, participant: string): PlaceRow {
     const row = this.get(study, participant);
-    if (row.withdrawn) throw new Refusal('forbidden', `${participant} has withdrawn`);
+    if (row.withdrawn) throw new Rejection('forbidden', `${participant} has withdrawn`);
     return row;
   }
 
@@ -80,11 +80,11 @@ export class StudyPlaces implements PlaceStorage {
     at: number,
   ): { readonly token: string; readonly withdrawalCode: string | null } {
     const { retentionUntil } = this.#plans.get(study);
-    if (at > retentionUntil) throw new Refusal('forbidden', `the study "${study}" is past its retention date`);
+    if (at > retentionUntil) throw new Rejection('forbidden', `the study "${study}" is past its retention date`);
     return this.#database.transaction(() => {
       const row = this.getPresent(study, participant);
       if (row.token_hash) {
-        throw new Refusal(
+        throw new Rejection(
           'conflict',
           `${participant} is taken by another device: go on there, or ask for the place to be released`,
         );
@@ -138,7 +138,7 @@ export class StudyPlaces implements PlaceStorage {
     const schedule = scheduleFor(this.#plans.planFor(study, participant), participant);
     const checked = resumed(schedule, JSON.stringify(progress));
     if (checked.simulated !== simulated) {
-      throw new Refusal(
+      throw new Rejection(
         'forbidden',
         `the study "${study}" is ${simulated ? 'simulated' : 'of people'}, the session is not`,
       );

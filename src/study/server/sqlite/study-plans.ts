@@ -1,7 +1,7 @@
 import { ValidationError } from 'threepoint/core';
 import { togetherWith } from '../../model/plan/allocation';
 import { checkedPlan, participantsOf, type StudyPlan, storedPlan } from '../../model/plan/plan';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { PlanVersion, StudyInfo } from '../../model/progress/study-api';
 import { newCode } from '../codes';
 import type { AddOptions, PlanStorage } from '../study-storage';
@@ -42,12 +42,12 @@ export class StudyPlans implements PlanStorage {
 
   get(id: string, version?: number): StudyInfo {
     const row = this.#row(id);
-    if (!row) throw new Refusal('unknown', `there is no study "${id}"`);
+    if (!row) throw new Rejection('unknown', `there is no study "${id}"`);
     return this.#infoOf(row, version);
   }
 
   planFor(id: string, participant: string): StudyPlan {
-    this.#refuseUnknown(id);
+    this.#rejectUnknown(id);
     const { plan } = this.#database.getOne<VersionRow>(
       `SELECT * FROM plan_versions WHERE study = ? AND version = coalesce(
          (SELECT plan_version FROM participants WHERE study = ? AND participant = ?),
@@ -72,7 +72,7 @@ export class StudyPlans implements PlanStorage {
         return this.get(plan.id);
       }
       if (stored.simulated !== Number(simulated)) {
-        throw new Refusal(
+        throw new Rejection(
           'conflict',
           `the study "${plan.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
         );
@@ -88,7 +88,7 @@ export class StudyPlans implements PlanStorage {
         const text =
           `the study "${plan.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
           `Add the plan as version ${known.version + 1} for later participants, or give it another id`;
-        throw new Refusal('begun', text, { field: 'newVersion' });
+        throw new Rejection('begun', text, { field: 'newVersion' });
       }
       return this.get(plan.id);
     });
@@ -146,8 +146,8 @@ export class StudyPlans implements PlanStorage {
     return this.#database.get<StudyRow>('SELECT * FROM studies WHERE id = ?', id);
   }
 
-  #refuseUnknown(id: string): void {
-    if (!this.#row(id)) throw new Refusal('unknown', `there is no study "${id}"`);
+  #rejectUnknown(id: string): void {
+    if (!this.#row(id)) throw new Rejection('unknown', `there is no study "${id}"`);
   }
 
   #infoOf(row: StudyRow, asked?: number): StudyInfo {
@@ -166,7 +166,7 @@ export class StudyPlans implements PlanStorage {
         }),
       );
     const shown = asked === undefined ? versions.at(-1) : versions.find(({ version }) => version === asked);
-    if (!shown) throw new Refusal('unknown', `the plan of "${row.id}" has no version ${asked}`);
+    if (!shown) throw new Rejection('unknown', `the plan of "${row.id}" has no version ${asked}`);
     return {
       plan: shown.plan,
       version: shown.version,
@@ -200,7 +200,7 @@ export class StudyPlans implements PlanStorage {
         ? undefined
         : [...togetherWith(plan, participant)].find((one) => kept.has(one));
       if (mixed === undefined) continue;
-      throw new Refusal(
+      throw new Rejection(
         'conflict',
         `${participant} would play with ${mixed}, who stays with version ${kept.get(mixed)}: leave seed, participants and ` +
           'group sizes as they are, or give the plan another id',

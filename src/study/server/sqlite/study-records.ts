@@ -1,4 +1,4 @@
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 import type { StudyCommand } from '../../model/progress/study-api';
 import {
   type RecordAuthor,
@@ -57,12 +57,12 @@ export class StudyRecords implements RecordStorage {
     return this.#database.transaction(() => {
       let { motion_consent: consented } = this.#places.getPresent(study, participant);
       for (const record of records) {
-        refuseForeign(record, study, participant, simulated);
-        if (record.kind === 'consent') refuseOtherText(record.body.version, plan.consent.version);
+        rejectForeign(record, study, participant, simulated);
+        if (record.kind === 'consent') rejectOtherText(record.body.version, plan.consent.version);
         else if (consented === null) throw notConsented(participant);
         // A repeated record changes nothing, because the consent to motion may have been withdrawn since.
         if (!this.#insert(record, author, at)) continue;
-        if (author === 'participant') this.#refuseUncommanded(record);
+        if (author === 'participant') this.#rejectUncommanded(record);
         if (record.kind !== 'consent') continue;
         consented = Number(record.body.motion && plan.consent.motion !== null);
         this.#places.setMotionConsent(study, participant, consented);
@@ -132,10 +132,10 @@ export class StudyRecords implements RecordStorage {
     );
     if (stored) {
       if (stored.record === text) return false;
-      throw new Refusal('conflict', `${participant} has stored something else as "${id}" already`);
+      throw new Rejection('conflict', `${participant} has stored something else as "${id}" already`);
     }
     if (this.count(study, participant) >= maxRecordsPerParticipant) {
-      throw new Refusal('full', `${participant} has ${maxRecordsPerParticipant} records already`);
+      throw new Rejection('full', `${participant} has ${maxRecordsPerParticipant} records already`);
     }
     this.#database.run(
       'INSERT INTO records (study, participant, id, record, received_at, author) VALUES (?, ?, ?, ?, ?, ?)',
@@ -148,13 +148,13 @@ export class StudyRecords implements RecordStorage {
    * Refuses, in the transaction that has stored it, an event that only the experimenter causes: a participant's page
    * records one for each command.
    */
-  #refuseUncommanded({ id, study, participant, ...record }: StudyRecord): void {
+  #rejectUncommanded({ id, study, participant, ...record }: StudyRecord): void {
     if (record.kind !== 'event' || !isCommanded(record.body)) return;
     const { body } = record;
     const given = this.#commands.after(study, participant, 0).filter(({ command }) => hasCaused(command, body));
     const events = this.all(study, participant).filter((one) => one.kind === 'event' && isSameEvent(one.body, body));
     if (events.length <= given.length) return;
-    throw new Refusal('forbidden', `"${id}" follows from no command of the experimenter`);
+    throw new Rejection('forbidden', `"${id}" follows from no command of the experimenter`);
   }
 }
 
@@ -173,24 +173,24 @@ function hasCaused(command: StudyCommand, event: CommandedEvent): boolean {
   return event.reason === reason && event.repeat === repeat && event.task === of.task && event.block === of.block;
 }
 
-function refuseOtherText(read: unknown, shown: string): void {
+function rejectOtherText(read: unknown, shown: string): void {
   if (read === shown) return;
-  throw new Refusal('conflict', `consent is to text ${read}, the study shows ${shown}`);
+  throw new Rejection('conflict', `consent is to text ${read}, the study shows ${shown}`);
 }
 
 /**
  * Refuses a record of another place, with the id of an experimenter's remark, or of a person in a simulated study and
  * the reverse.
  */
-function refuseForeign(record: StudyRecord, study: string, participant: string, simulated: boolean): void {
+function rejectForeign(record: StudyRecord, study: string, participant: string, simulated: boolean): void {
   if (record.study !== study || record.participant !== participant) {
-    throw new Refusal('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
+    throw new Rejection('forbidden', `"${record.id}" is of ${record.participant} in "${record.study}"`);
   }
   if (record.id.startsWith(remarkPrefix)) {
-    throw new Refusal('forbidden', `"${record.id}" is the name of an experimenter's remark`);
+    throw new Rejection('forbidden', `"${record.id}" is the name of an experimenter's remark`);
   }
   if (record.simulated !== simulated) {
-    throw new Refusal(
+    throw new Rejection(
       'forbidden',
       `the study "${study}" is ${simulated ? 'simulated' : 'of people'}, "${record.id}" is not`,
     );

@@ -5,7 +5,14 @@ export const touch = {
   players: 2,
   because: 'targets are touched by two',
   unmirrored: 'the targets have no mirror',
-  paperFigure: null,
+  questionnaire: {
+    id: 'touch',
+    title: 'Targets',
+    source: 'Written for the tests: it asks about a game that no study has.',
+    answer: { kind: 'likert', from: 1, to: 7 },
+    questions: [{ id: 'reach', text: 'I could reach the targets.' }],
+  },
+  paperFigures: null,
   ends: ['all-touched'],
   phrases: {
     en: { ready: 'Touch the lit targets with your hands.', round: 'The targets could not be opened.' },

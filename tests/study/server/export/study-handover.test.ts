@@ -35,7 +35,7 @@ const zipOf = (of: Readonly<Record<string, string>>): Uint8Array =>
 
 const complaintsOf = (changes: Readonly<Record<string, string | null>>): readonly string[] => {
   const changed = Object.entries({ ...files, ...changes }).filter(([, text]) => text !== null);
-  return verifyExport(zipOf(Object.fromEntries(changed) as Record<string, string>)).complaints;
+  return verifyExport(zipOf(Object.fromEntries(changed) as Record<string, string>)).problems;
 };
 
 describe('the codebook of an export', () => {
@@ -88,9 +88,9 @@ describe('an export', () => {
 
 describe('verifying an export', () => {
   test('finds nothing in what was exported, of a study and of a participant', () => {
-    expect(verifyExport(exportZip(content))).toMatchObject({ complaints: [], records: content.records.length });
+    expect(verifyExport(exportZip(content))).toMatchObject({ problems: [], records: content.records.length });
     const records = content.records.filter(({ participant }) => participant === 'P02');
-    expect(verifyExport(exportZip({ ...content, records, motion: [] }, 'P02')).complaints).toEqual([]);
+    expect(verifyExport(exportZip({ ...content, records, motion: [] }, 'P02')).problems).toEqual([]);
   });
 
   test('names file, row, column and both values of a cell that was changed', () => {
@@ -164,7 +164,7 @@ describe('verifying an export', () => {
     broken.fill(0, Math.floor(zip.length / 2), Math.floor(zip.length / 2) + 64);
     const said = () => {
       try {
-        return verifyExport(broken).complaints;
+        return verifyExport(broken).problems;
       } catch (error) {
         return [(error as Error).message];
       }

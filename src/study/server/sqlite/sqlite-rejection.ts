@@ -1,5 +1,5 @@
 import { reasonOf } from 'threepoint/core';
-import { Refusal } from '../../model/progress/refusal';
+import { Rejection } from '../../model/progress/rejection';
 
 /** SQLite's primary code BUSY: another connection holds the lock. */
 export const sqliteBusy = 5;
@@ -14,17 +14,17 @@ export function sqliteCodeOf(error: unknown): number | null {
   return typeof sqliteExtendedCode === 'number' ? sqliteExtendedCode : null;
 }
 
-/** Returns the Refusal with the cause for an error of SQLite; other errors unchanged. */
-export function refusalOfSqlite(error: unknown): unknown {
+/** Returns the Rejection with the cause for an error of SQLite; other errors unchanged. */
+export function rejectionOfSqlite(error: unknown): unknown {
   const code = sqliteCodeOf(error);
   if (code === null) return error;
   if (diskIsFull.has(code)) {
-    return new Refusal('full', 'the disk of the server is full', { failure: 'not done' });
+    return new Rejection('full', 'the disk of the server is full', { failure: 'not done' });
   }
   const primary = code & 0xff;
   if (primary === sqliteBusy) {
-    return new Refusal('locked', 'another program holds the lock of the database', { failure: 'not done' });
+    return new Rejection('locked', 'another program holds the lock of the database', { failure: 'not done' });
   }
   if (!fileIsBad.has(primary)) return error;
-  return new Refusal('lost', 'the database cannot be used', { detail: reasonOf(error), failure: 'not done' });
+  return new Rejection('lost', 'the database cannot be used', { detail: reasonOf(error), failure: 'not done' });
 }

@@ -16,7 +16,7 @@ const statuses = {
 } as const;
 
 /** What a study refuses, in the page, in the store and over HTTP; the message is for the person who asked for it. */
-export class Refusal extends Error {
+export class Rejection extends Error {
   readonly reason: keyof typeof statuses;
   /** The invalid field of the request, as `records[1].body.age`; null: no single field is at fault. */
   readonly field: string | null = null;
@@ -28,9 +28,9 @@ export class Refusal extends Error {
   readonly phrase: PlainKey | null = null;
 
   constructor(
-    reason: Refusal['reason'],
+    reason: Rejection['reason'],
     message: string,
-    about: Partial<Pick<Refusal, 'field' | 'detail' | 'failure' | 'phrase'>> = {},
+    about: Partial<Pick<Rejection, 'field' | 'detail' | 'failure' | 'phrase'>> = {},
   ) {
     super(message);
     this.reason = reason;
@@ -42,8 +42,8 @@ export class Refusal extends Error {
   }
 
   /** Returns the refusal in an answer of the server. */
-  static from(status: number, message: string, field: string | null): Refusal {
-    const reasons = Object.keys(statuses) as Refusal['reason'][];
-    return new Refusal(reasons.find((reason) => statuses[reason] === status) ?? 'invalid', message, { field });
+  static from(status: number, message: string, field: string | null): Rejection {
+    const reasons = Object.keys(statuses) as Rejection['reason'][];
+    return new Rejection(reasons.find((reason) => statuses[reason] === status) ?? 'invalid', message, { field });
   }
 }
