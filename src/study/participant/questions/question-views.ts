@@ -21,7 +21,10 @@ const views = new Map<string, QuestionView>();
  *     answer: given ?? null,
  *     choose,
  *   }),
- *   card: ({ options, choose }) => options.map(([value, label]) => button(label, () => choose(value))),
+ *   card: ({ options, answer, choose }) =>
+ *     options.map(([value, label]) => (
+ *       <Button label={label} aria-pressed={answer === value} onClick={() => choose(value)} />
+ *     )),
  *   sheet: {
  *     targets: ({ options, answer, choose }) =>
  *       options.map(([value, label], index) => ({
