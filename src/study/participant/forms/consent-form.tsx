@@ -1,14 +1,21 @@
 import { useState } from 'preact/hooks';
-import { Button } from 'threepoint-ui/controls';
+import { Button, Complaint } from 'threepoint-ui/controls';
 import { inLanguage } from '../../model/phrases/localized-text';
 import { type Phrases, phrasesOf } from '../../model/phrases/phrases';
-import { Check, FormComplaint, type FormOf, LanguageChoice } from './form-parts';
+import { type FormOf, LanguageChoice } from './form-parts';
 
 interface ConsentFormProps {
   readonly form: FormOf<'consent'>;
   /** Receives the phrases of another language that is chosen. */
   readonly onLanguage: (phrases: Phrases) => void;
 }
+
+const box = (text: string, set: (checked: boolean) => void, lang?: string) => (
+  <label class="check">
+    <input type="checkbox" onChange={({ currentTarget }) => set(currentTarget.checked)} />
+    <span lang={lang}>{text}</span>
+  </label>
+);
 
 /** The form of consent in the chosen language. */
 export function ConsentForm({ form, onLanguage }: ConsentFormProps) {
@@ -47,13 +54,11 @@ export function ConsentForm({ form, onLanguage }: ConsentFormProps) {
         ))}
       </div>
       <div class="checks">
-        <Check text={text('consent.understood')} onChange={setAgreed} />
-        {consent.motion !== null && (
-          <Check text={inLanguage(consent.motion, language)} lang={language} onChange={setMotion} />
-        )}
+        {box(text('consent.understood'), setAgreed)}
+        {consent.motion !== null && box(inLanguage(consent.motion, language), setMotion, language)}
       </div>
       <p class="soft">{text('consent.nothingRecorded')}</p>
-      <FormComplaint text={complaint} />
+      <Complaint text={complaint} />
       <div class="row">
         <Button
           label={text('consent.agree')}

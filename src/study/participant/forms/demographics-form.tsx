@@ -1,8 +1,8 @@
 import { useState } from 'preact/hooks';
-import { Button } from 'threepoint-ui/controls';
+import { Button, Complaint } from 'threepoint-ui/controls';
 import type { Phrases } from '../../model/phrases/phrases';
 import { type DemographicField, demographicFields } from '../../model/records/demographics';
-import { FormComplaint, type FormOf, Heading } from './form-parts';
+import { type FormOf, Heading } from './form-parts';
 
 type Given = string | number | undefined;
 
@@ -11,18 +11,19 @@ const mayStayOpen = ({ id }: DemographicField) => id === 'vrSystems';
 /** The control of a field with its label. `isMissing`: the answer is missing or wrong. */
 function fieldContent(field: DemographicField, { text }: Phrases, isMissing: boolean) {
   const { id } = field;
-  const must = !mayStayOpen(field) && (
-    <span class="must" title={text('question.needed')}>
-      {' *'}
-    </span>
-  );
+  const label = [
+    text(field.phrase),
+    !mayStayOpen(field) && (
+      <span class="must" title={text('question.needed')}>
+        {' '}
+        *
+      </span>
+    ),
+  ];
   if (field.kind === 'choice') {
     return (
       <fieldset key={id} data-field={id} class={isMissing ? 'missing' : ''}>
-        <legend>
-          {text(field.phrase)}
-          {must}
-        </legend>
+        <legend>{label}</legend>
         <div class="options">
           {field.options.map(({ value, phrase }) => (
             <label class="check">
@@ -40,10 +41,7 @@ function fieldContent(field: DemographicField, { text }: Phrases, isMissing: boo
       : ({ type: 'text', maxLength: field.maxLength, autocomplete: 'off' } as const);
   return (
     <label key={id} data-field={id} class={isMissing ? 'field missing' : 'field'}>
-      <span>
-        {text(field.phrase)}
-        {must}
-      </span>
+      <span>{label}</span>
       <input name={id} {...attributes} />
     </label>
   );
@@ -51,10 +49,8 @@ function fieldContent(field: DemographicField, { text }: Phrases, isMissing: boo
 
 /** Returns the answer in a field; undefined: none. */
 function answerIn({ id, kind }: DemographicField, given: FormData): Given {
-  const value = given.get(id);
-  if (typeof value !== 'string') return undefined;
-  if (kind === 'age') return value === '' ? undefined : Number(value);
-  return value.trim();
+  const value = (given.get(id) as string | null)?.trim();
+  return kind === 'age' ? (value ? Number(value) : undefined) : value;
 }
 
 /** Returns what is wrong with an answer, or null. */
@@ -91,11 +87,11 @@ export function DemographicsForm({ phrases, done, stop }: FormOf<'demographics'>
   }
 
   return (
-    <form onInput={onInput} onSubmit={(event) => event.preventDefault()}>
+    <form class="content" onInput={onInput} onSubmit={(event) => event.preventDefault()}>
       <Heading kicker={text('about.kicker')} title={text('about.title')} />
       <p class="soft">{text('question.neededNote')}</p>
       {demographicFields.map((field) => fieldContent(field, phrases, missing.includes(field.id)))}
-      <FormComplaint text={complaint} />
+      <Complaint text={complaint} />
       <div class="row">
         <Button label={text('continue')} class="primary" onClick={handIn} />
         <Button label={text('stopStudy')} onClick={stop} />

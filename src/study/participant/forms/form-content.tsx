@@ -1,11 +1,11 @@
 import type { ComponentProps } from 'preact';
 import { useState } from 'preact/hooks';
 import { offerDownload } from 'threepoint-ui';
-import { Button } from 'threepoint-ui/controls';
+import { Button, Complaint } from 'threepoint-ui/controls';
 import type { Phrases } from '../../model/phrases/phrases';
 import { ConsentForm } from './consent-form';
 import { DemographicsForm } from './demographics-form';
-import { FormComplaint, type FormOf, Heading } from './form-parts';
+import { type FormOf, Heading } from './form-parts';
 import type { Invited, StudyForm } from './study-form';
 
 function ParticipantForm({ phrases: { text }, complaint: fault, known, go, decline }: FormOf<'participant'>) {
@@ -40,7 +40,7 @@ function ParticipantForm({ phrases: { text }, complaint: fault, known, go, decli
         <span>{text('entrance.invitation')}</span>
         <input name="invitation" placeholder="XXXX-XXXX-XXXX-XXXX" maxLength={30} value={invitation} {...shared} />
       </label>
-      <FormComplaint text={complaint} />
+      <Complaint text={complaint} />
       <p class="soft">{text('consent.nothingRecorded')}</p>
       <div class="row">
         <Button label={text('continue')} class="primary" onClick={submit} />
@@ -89,11 +89,7 @@ function LockedOutForm({ phrases: { text }, participant, unsent, contact, restar
   );
 }
 
-interface MessageProps extends ComponentProps<typeof Heading> {
-  readonly text: string;
-}
-
-const Message = ({ text, ...heading }: MessageProps) => (
+const Message = ({ text, ...heading }: ComponentProps<typeof Heading> & { readonly text: string }) => (
   <>
     <Heading {...heading} />
     <p>{text}</p>

@@ -17,27 +17,6 @@ export const Heading = ({ kicker, title, trouble = false }: HeadingProps) => (
   </>
 );
 
-/** The complaint about a form, which screen readers announce; nothing without a text. */
-export const FormComplaint = ({ text }: { readonly text: string | null }) => (
-  <p class="hint" role="alert" hidden={text === null}>
-    {text}
-  </p>
-);
-
-interface CheckProps {
-  readonly text: string;
-  readonly lang?: string;
-  readonly onChange: (checked: boolean) => void;
-}
-
-/** A box to check, before its text. */
-export const Check = ({ text, lang, onChange }: CheckProps) => (
-  <label class="check">
-    <input type="checkbox" onChange={({ currentTarget }) => onChange(currentTarget.checked)} />
-    <span lang={lang}>{text}</span>
-  </label>
-);
-
 interface LanguageChoiceProps {
   /** The word for "language". */
   readonly label: string;

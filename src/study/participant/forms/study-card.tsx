@@ -14,12 +14,8 @@ const phraseOfState = {
   optional: 'question.optional',
 } as const;
 
-interface QuestionProps {
-  readonly question: ScreenQuestion;
-}
-
 /** A button for each question in order. */
-const Dots = ({ question: { phrases, all, number, goTo } }: QuestionProps) => (
+const Dots = ({ phrases, all, number, goTo }: ScreenQuestion) => (
   <nav class="dots" aria-label={phrases.text('question.all')}>
     {all.map(({ state }, index) => (
       <Button
@@ -34,7 +30,7 @@ const Dots = ({ question: { phrases, all, number, goTo } }: QuestionProps) => (
 );
 
 /** The text of a question and its field. */
-const Question = ({ question: { id, text, language, optional, field, phrases } }: QuestionProps) => (
+const Question = ({ id, text, language, optional, field, phrases }: ScreenQuestion) => (
   <fieldset class="scale" lang={language}>
     <legend>
       {text}
@@ -44,7 +40,8 @@ const Question = ({ question: { id, text, language, optional, field, phrases } }
         </span>
       ) : (
         <span class="must" lang={phrases.locale} title={phrases.text('question.needed')}>
-          {' *'}
+          {' '}
+          *
         </span>
       )}
     </legend>
@@ -60,8 +57,8 @@ function Screen({ screen }: { readonly screen: StudyScreen }) {
       <div class="content">
         {question ? (
           <>
-            <Dots question={question} />
-            <Question question={question} />
+            <Dots {...question} />
+            <Question {...question} />
           </>
         ) : (
           <>
@@ -109,9 +106,9 @@ function Form({ form }: { readonly form: StudyForm }) {
 
 export type StudyCard = ReturnType<typeof createStudyCard>;
 
-/** Returns the card of the study over the page on the desktop; `parent` is the element that it covers. */
-export function createStudyCard(parent: HTMLElement = document.body) {
-  const layer = parent.appendChild(document.createElement('div'));
+/** Returns the card of the study over the page on the desktop. */
+export function createStudyCard() {
+  const layer = document.body.appendChild(document.createElement('div'));
   layer.className = 'study-layer';
   layer.hidden = true;
   let shown: string | null = null;

@@ -21,10 +21,7 @@ const views = new Map<string, QuestionView>();
  *     answer: given ?? null,
  *     choose,
  *   }),
- *   card: ({ options, answer, choose }) =>
- *     options.map(([value, label]) => (
- *       <Button label={label} aria-pressed={answer === value} onClick={() => choose(value)} />
- *     )),
+ *   card: ({ options, choose }) => options.map(([one, label]) => <Button label={label} onClick={() => choose(one)} />),
  *   sheet: {
  *     targets: ({ options, answer, choose }) =>
  *       options.map(([value, label], index) => ({

@@ -158,13 +158,9 @@ async function findStudy(): Promise<Found> {
   }
 }
 
-interface WithdrawalPageProps {
-  readonly found: Found;
-  readonly languages: readonly [string, ...string[]];
-}
-
 /** The page in a language; another one can be chosen until everything is deleted. */
-function WithdrawalPage({ found: { about, fault }, languages }: WithdrawalPageProps) {
+function WithdrawalPage({ about, fault }: Found) {
+  const languages = about?.languages ?? shippedLanguages;
   const [language, choose] = useState(preferredLanguage(languages, navigator.languages));
   const [deleted, setDeleted] = useState<DeletedProps | null>(null);
   const phrases = phrasesOf(about ?? {}, language);
@@ -186,10 +182,4 @@ function WithdrawalPage({ found: { about, fault }, languages }: WithdrawalPagePr
   );
 }
 
-async function begin(): Promise<void> {
-  const found = await findStudy();
-  const languages = found.about?.languages ?? shippedLanguages;
-  render(<WithdrawalPage found={found} languages={languages} />, pageElement('content', HTMLElement));
-}
-
-void begin();
+render(<WithdrawalPage {...(await findStudy())} />, pageElement('content', HTMLElement));

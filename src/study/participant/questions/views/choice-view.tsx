@@ -30,7 +30,7 @@ export const choiceView: QuestionView<ChoiceForm, ChoiceField> = {
   card: ({ points, answer, choose }, name) => (
     <div class="choices">
       {points.map(({ value, label }) => (
-        <Radio key={value} name={name} value={value} isChosen={value === answer} choose={() => choose(value)}>
+        <Radio key={value} name={name} value={value} checked={value === answer} onChange={() => choose(value)}>
           <span>{label}</span>
         </Radio>
       ))}

@@ -36,26 +36,21 @@ export const likertView: QuestionView<LikertForm, LikertField> = {
   card({ points, ends, answer, choose }, name) {
     const many = points.length > maxNumberedPoints;
     const endOf = (index: number) => (index === 0 ? ends?.low : index === points.length - 1 ? ends?.high : undefined);
+    const nameOf = (value: number, end: string | undefined) =>
+      end ? `${value} ${end}` : many ? String(value) : undefined;
+    const point = ({ value, label }: ScreenPoint<number>, index: number) => {
+      const state = { checked: value === answer, onChange: () => choose(value) };
+      return (
+        <Radio key={value} name={name} value={value} aria-label={nameOf(value, endOf(index))} {...state}>
+          {!many && <b>{value}</b>}
+          {label && <span>{label}</span>}
+        </Radio>
+      );
+    };
     return (
       <>
         <div class={many ? 'points many' : 'points'} style={{ '--points': String(points.length) }}>
-          {points.map(({ value, label }, index) => {
-            const end = endOf(index);
-            const spoken = end ? `${value} ${end}` : many ? String(value) : undefined;
-            return (
-              <Radio
-                key={value}
-                name={name}
-                value={value}
-                spoken={spoken}
-                isChosen={value === answer}
-                choose={() => choose(value)}
-              >
-                {!many && <b>{value}</b>}
-                {label && <span>{label}</span>}
-              </Radio>
-            );
-          })}
+          {points.map(point)}
         </div>
         {ends && <Ends {...ends} />}
       </>

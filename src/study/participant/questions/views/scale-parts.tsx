@@ -1,4 +1,4 @@
-import type { ComponentChildren } from 'preact';
+import type { ComponentChildren, InputHTMLAttributes } from 'preact';
 import { vrColors, vrFont } from 'threepoint-ui/vr';
 import { inner, margin, width } from '../sheet-target';
 
@@ -36,21 +36,14 @@ export function paintEnds(context: CanvasRenderingContext2D, { low, high }: Scre
   context.textAlign = 'left';
 }
 
-interface RadioProps {
-  /** The name of the group. */
-  readonly name: string;
-  readonly value: string | number;
-  /** The accessible name; undefined: the content names it. */
-  readonly spoken?: string | undefined;
-  readonly isChosen: boolean;
-  readonly choose: () => void;
+interface RadioProps extends Pick<InputHTMLAttributes, 'name' | 'value' | 'checked' | 'onChange' | 'aria-label'> {
   readonly children: ComponentChildren;
 }
 
 /** A point of which one in its group can be chosen, on the card. */
-export const Radio = ({ name, value, spoken, isChosen, choose, children }: RadioProps) => (
+export const Radio = ({ children, ...input }: RadioProps) => (
   <label class="choice">
-    <input type="radio" name={name} value={value} aria-label={spoken} checked={isChosen} onChange={choose} />
+    <input type="radio" {...input} />
     {children}
   </label>
 );
