@@ -182,4 +182,4 @@ function WithdrawalPage({ about, fault }: Found) {
   );
 }
 
-render(<WithdrawalPage {...(await findStudy())} />, pageElement('content', HTMLElement));
+void findStudy().then((found) => render(<WithdrawalPage {...found} />, pageElement('content', HTMLElement)));
