@@ -179,7 +179,7 @@ export const Sentences = ({ sentences, ...attributes }: SentencesProps) => (
   </ul>
 );
 
-interface TickProps extends Pick<InputHTMLAttributes, 'name' | 'checked' | 'defaultChecked' | 'onChange'> {
+interface TickProps extends Pick<InputHTMLAttributes, 'name' | 'checked' | 'defaultChecked' | 'required' | 'onChange'> {
   readonly label: string;
 }
 

@@ -2,7 +2,6 @@
 export type { CalibrationStep } from './calibration-dialog';
 export { CalibrationDialog, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 export { type CalibrationGuide, createCalibrationGuide } from './calibration-guide';
-export { button, element, labelled, pageElement } from './element';
 export { createEnterButton, type EnterButton } from './enter-button';
 export type { FrameReport } from './frame-times-overlay';
 export { differenceLines, FrameTimes, milliseconds, missedFrames } from './frame-times-overlay';
@@ -10,6 +9,7 @@ export { linkTo, type RoomLink, RoomLinkCard, showInvitation } from './invitatio
 export { type FileKind, fileNameOf, offerDownload, readLimited } from './limited-files';
 export { createMouseAim, isTouchFirst, type MouseAim } from './mouse-aim';
 export { createNotices, formatSentence, type Notice, type Notices } from './notices';
+export { pageElement } from './page-element';
 export { pageFolder } from './page-folder';
 export { drawQrCode, type QrCode, qrCode } from './qr-code';
 export { ServerPresence, type ServerState } from './server-presence';

@@ -8,7 +8,6 @@ import {
   threePointNames,
 } from 'threepoint/core';
 import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
-import { element } from 'threepoint-ui';
 import { Button, type Choice, Chooser, StatusLine } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../bones/lazy-bones-form';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
@@ -287,7 +286,10 @@ function Card({ labels, actions, reading, skeleton, state }: CardProps) {
 
 /** Creates the card, which is hidden while it has nothing to show. */
 export function createMocapCard(labels: Labels, actions: CardActions) {
-  const node = element('section', { class: 'mocap', 'aria-label': 'Motion capture', hidden: true });
+  const node = document.createElement('section');
+  node.className = 'mocap';
+  node.ariaLabel = 'Motion capture';
+  node.hidden = true;
   let shown: Pick<CardProps, 'reading' | 'skeleton' | 'state'> = { reading: null, skeleton: null, state: null };
   return {
     node,

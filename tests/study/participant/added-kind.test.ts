@@ -1,3 +1,4 @@
+import { type ButtonHTMLAttributes, h, toChildArray, type VNode } from 'preact';
 import * as v from 'valibot';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { planJsonSchema } from '../../../src/study/cli/check/plan-json-schema';
@@ -30,24 +31,6 @@ declare module '../../../src/study/model/questionnaires/question-kind' {
     agreement: { readonly kind: 'agreement'; readonly yes: string; readonly no: string };
   }
 }
-
-/** A button without a document. */
-class PlainButton {
-  readonly press: () => void;
-  readonly label: string;
-  pressed = '';
-
-  constructor(label: string, press: () => void) {
-    this.label = label;
-    this.press = press;
-  }
-
-  setAttribute(_: string, value: string): void {
-    this.pressed = value;
-  }
-}
-
-const button = (label: string, press: () => void) => new PlainButton(label, press);
 
 const [archery] = paperPlan().tasks as [StudyPlan['tasks'][number]];
 const plan = (): StudyPlan =>
@@ -92,7 +75,7 @@ function shown(answer: Answer | undefined, choose: (value: Answer) => void) {
 
 describe('a kind of question that is registered from outside', () => {
   // reason: the module is JavaScript, as a laboratory may write it
-  const added = agreement({ v, words, inLanguage, button });
+  const added = agreement({ v, words, inLanguage, h });
   const [kind] = added.questionKinds as unknown as [QuestionKind];
   const [view] = added.questionViews as unknown as [QuestionView];
   let remove: (() => void)[] = [];
@@ -133,11 +116,13 @@ describe('a kind of question that is registered from outside', () => {
   test('is answered on the desk card, which shows the answer', () => {
     const chosen: Answer[] = [];
     const { id, field, phrases } = shown(0, (value) => chosen.push(value));
-    const buttons = questionView(field).card(field, id, phrases) as unknown as readonly PlainButton[];
-    expect(buttons.map(({ label }) => label)).toEqual(['I agree', 'I disagree']);
-    for (const one of buttons) one.press();
+    const buttons = toChildArray(questionView(field).card(field, id, phrases)) as VNode<ButtonHTMLAttributes>[];
+    expect(buttons.map(({ props }) => [props.children, props['aria-pressed']])).toEqual([
+      ['I agree', false],
+      ['I disagree', true],
+    ]);
+    for (const { props } of buttons) (props.onClick as () => void)();
     expect(chosen).toEqual([1, 0]);
-    expect(buttons.map(({ pressed }) => pressed)).toEqual(['false', 'true']);
   });
 
   test('is answered on the VR sheet, which shows the answer', () => {

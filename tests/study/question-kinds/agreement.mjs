@@ -1,5 +1,5 @@
 // A kind of question of a laboratory, as docs/study.md describes it: one file without imports, outside the packages.
-export default ({ v, words, inLanguage, button }) => ({
+export default ({ v, words, inLanguage, h }) => ({
   questionKinds: [
     {
       kind: 'agreement',
@@ -27,19 +27,11 @@ export default ({ v, words, inLanguage, button }) => ({
         answer: given,
         choose,
       }),
-      // The card is built once for a question: its fields show the answer themselves.
-      card: ({ options, answer, choose }) => {
-        const press = (chosen) => {
-          choose(chosen);
-          for (const [i, [value]] of options.entries()) {
-            buttons[i].setAttribute('aria-pressed', String(value === chosen));
-          }
-        };
-        const buttons = options.map(([value, label]) =>
-          button(label, () => press(value), { 'aria-pressed': String(answer === value) }),
-        );
-        return buttons;
-      },
+      card: ({ options, answer, choose }) =>
+        options.map(([value, label]) => {
+          const attributes = { type: 'button', 'aria-pressed': answer === value, onClick: () => choose(value) };
+          return h('button', attributes, label);
+        }),
       sheet: {
         targets: ({ options, answer, choose }) =>
           options.map(([value, label], index) => ({

@@ -2,7 +2,6 @@ import './input-dialog.css';
 import { useSignal } from '@preact/signals';
 import { type ComponentChildren, render } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
-import { element } from 'threepoint-ui';
 import { Button, Labelled } from 'threepoint-ui/controls';
 
 /** The texts and fields of a dialog. */
@@ -54,8 +53,7 @@ function Dialog({ title, confirm, sentence, content, answer }: InputDialog & { r
 
 /** Opens a dialog; resolves with its fields, or with null if it is cancelled. */
 export function askInDialog(question: InputDialog): Promise<FormData | null> {
-  const place = element('div');
-  document.body.append(place);
+  const place = document.body.appendChild(document.createElement('div'));
   return new Promise((resolve) => {
     const answer: Answer = (fields) => {
       resolve(fields);

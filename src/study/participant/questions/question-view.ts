@@ -1,3 +1,4 @@
+import type { ComponentChild } from 'preact';
 import type { Phrases } from '../../model/phrases/phrases';
 import type { Answer, AnswerForm } from '../../model/questionnaires/question-kind';
 import type { Target } from './sheet-target';
@@ -36,11 +37,8 @@ export interface QuestionView<Form extends AnswerForm = AnswerForm, Field extend
   readonly kind: Form['kind'];
   /** Returns the field that card and sheet show. */
   field(form: Form, context: FieldContext): Field;
-  /**
-   * Returns the nodes of a field on the desk card, which is built once for a question: they show a new answer
-   * themselves. `id` is that of the question.
-   */
-  card(field: Field, id: string, phrases: Phrases): readonly Node[];
+  /** Returns the content of a field on the desk card. `id` is that of the question. */
+  card(field: Field, id: string, phrases: Phrases): ComponentChild;
   readonly sheet: SheetView<Field>;
   /** Returns the hint for typed text that is not an answer. Absent for kinds that are not typed. */
   misread?(form: Form, phrases: Phrases): string;

@@ -21,7 +21,7 @@ const views = new Map<string, QuestionView>();
  *     answer: given ?? null,
  *     choose,
  *   }),
- *   card: ({ options, choose }) => options.map(([value, label]) => button(label, () => choose(value))),
+ *   card: ({ options, choose }) => options.map(([one, label]) => <Button label={label} onClick={() => choose(one)} />),
  *   sheet: {
  *     targets: ({ options, answer, choose }) =>
  *       options.map(([value, label], index) => ({

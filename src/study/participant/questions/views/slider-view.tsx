@@ -1,10 +1,9 @@
-import { element } from 'threepoint-ui';
 import { fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import { type SliderForm, sliderValues } from '../../../model/questionnaires/kinds/slider';
 import type { QuestionView } from '../question-view';
 import { inner, margin, type Target, width } from '../sheet-target';
-import { endNodes, paintEnds, type ScreenEnds } from './scale-parts';
+import { Ends, paintEnds, type ScreenEnds } from './scale-parts';
 
 /** A line without points. */
 export interface SliderField {
@@ -35,30 +34,28 @@ export const sliderView: QuestionView<SliderForm, SliderField> = {
     choose,
   }),
   card({ values, ends, answer, choose }, name, { text }) {
-    const middle = Math.floor(values.length / 2);
-    const range = element('input', {
-      type: 'range',
-      name,
-      min: 0,
-      max: values.length - 1,
-      step: 1,
-      value: answer === null ? middle : values.indexOf(answer),
-      'data-id': 'answer',
-      'aria-label': text('question.range', ends),
-      // Without an answer the line is empty: a mark in the middle would suggest one.
-      class: answer === null ? 'open' : undefined,
-    });
-    const take = () => {
-      range.classList.remove('open');
-      choose(values[range.valueAsNumber] as number);
-    };
-    range.addEventListener('input', take);
-    // A click at the position of the hidden mark moves nothing, and is an answer.
-    range.addEventListener('click', take);
-    range.addEventListener('keydown', ({ key }) => {
-      if (key === 'Enter' || key === ' ') take();
-    });
-    return [range, endNodes(ends)];
+    const take = ({ currentTarget }: { readonly currentTarget: HTMLInputElement }) =>
+      choose(values[currentTarget.valueAsNumber] as number);
+    return (
+      <>
+        <input
+          type="range"
+          name={name}
+          min={0}
+          max={values.length - 1}
+          step={1}
+          value={answer === null ? Math.floor(values.length / 2) : values.indexOf(answer)}
+          aria-label={text('question.range', ends)}
+          // Without an answer the line is empty: a mark in the middle would suggest one.
+          class={answer === null ? 'open' : ''}
+          onInput={take}
+          // A click at the position of the hidden mark moves nothing, and is an answer.
+          onClick={take}
+          onKeyDown={(event) => (event.key === 'Enter' || event.key === ' ') && take(event)}
+        />
+        <Ends {...ends} />
+      </>
+    );
   },
   sheet: {
     /** Lays out a line of narrow targets, and two buttons for the last step. */

@@ -1,9 +1,8 @@
-import { element } from 'threepoint-ui';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import { type LikertForm, likertPoints } from '../../../model/questionnaires/kinds/likert';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
-import { endNodes, maxNumberedPoints, paintEnds, radios, type ScreenEnds, type ScreenPoint } from './scale-parts';
+import { Ends, maxNumberedPoints, paintEnds, Radio, type ScreenEnds, type ScreenPoint } from './scale-parts';
 
 /** A row of points. */
 export interface LikertField {
@@ -34,23 +33,28 @@ export const likertView: QuestionView<LikertForm, LikertField> = {
     answer: typeof given === 'number' ? given : null,
     choose,
   }),
-  card({ points, ends, answer, choose }, id) {
+  card({ points, ends, answer, choose }, name) {
     const many = points.length > maxNumberedPoints;
     const endOf = (index: number) => (index === 0 ? ends?.low : index === points.length - 1 ? ends?.high : undefined);
-    const choices = radios({
-      ...{ name: id, points, answer, choose },
-      inside: ({ value, label }, index) => {
-        const nodes = [
-          ...(many ? [] : [element('b', {}, String(value))]),
-          ...(label ? [element('span', {}, label)] : []),
-        ];
-        const end = endOf(index);
-        return { nodes, ...((many || end) && { name: end ? `${value} ${end}` : String(value) }) };
-      },
-    });
-    const grid = element('div', { class: many ? 'points many' : 'points' }, ...choices);
-    grid.style.setProperty('--points', String(points.length));
-    return [grid, ...(ends ? [endNodes(ends)] : [])];
+    const nameOf = (value: number, end: string | undefined) =>
+      end ? `${value} ${end}` : many ? String(value) : undefined;
+    const point = ({ value, label }: ScreenPoint<number>, index: number) => {
+      const state = { checked: value === answer, onChange: () => choose(value) };
+      return (
+        <Radio key={value} name={name} value={value} aria-label={nameOf(value, endOf(index))} {...state}>
+          {!many && <b>{value}</b>}
+          {label && <span>{label}</span>}
+        </Radio>
+      );
+    };
+    return (
+      <>
+        <div class={many ? 'points many' : 'points'} style={{ '--points': String(points.length) }}>
+          {points.map(point)}
+        </div>
+        {ends && <Ends {...ends} />}
+      </>
+    );
   },
   sheet: {
     targets({ points, ends, answer, choose }) {

@@ -1,4 +1,3 @@
-import { element } from 'threepoint-ui';
 import { fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import type { Phrases } from '../../../model/phrases/phrases';
@@ -38,18 +37,21 @@ function typedParts({ phrases: { text }, given, typed, type }: FieldContext) {
   };
 }
 
-function card({ kind, typed, unit, maxLength, type }: TypedField, name: string, { text }: Phrases): readonly Node[] {
+function card({ kind, typed, unit, maxLength, type }: TypedField, name: string, { text }: Phrases) {
   const attributes = {
-    ...{ name, maxlength: maxLength, autocomplete: 'off' },
-    ...{ 'data-id': 'answer', 'aria-label': text('question.field') },
-  };
-  const input =
-    kind === 'text'
-      ? element('textarea', { ...attributes, rows: 4 })
-      : element('input', { ...attributes, type: 'text', inputmode: 'decimal' });
-  input.value = typed;
-  input.addEventListener('input', () => type(input.value));
-  return [element('div', { class: 'typed' }, input, ...(unit ? [element('span', {}, unit)] : []))];
+    ...{ name, maxLength, autocomplete: 'off', value: typed, 'aria-label': text('question.field') },
+    onInput: ({ currentTarget }: { readonly currentTarget: { readonly value: string } }) => type(currentTarget.value),
+  } as const;
+  return (
+    <div class="typed">
+      {kind === 'text' ? (
+        <textarea rows={4} {...attributes} />
+      ) : (
+        <input type="text" inputMode="decimal" {...attributes} />
+      )}
+      {unit && <span>{unit}</span>}
+    </div>
+  );
 }
 
 const numberRows = ['789', '456', '123', '-0.'] as const;

@@ -1,9 +1,8 @@
-import { element } from 'threepoint-ui';
 import { inLanguage } from '../../../model/phrases/localized-text';
 import type { ChoiceForm } from '../../../model/questionnaires/kinds/choice';
 import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
-import { radios, type ScreenPoint } from './scale-parts';
+import { Radio, type ScreenPoint } from './scale-parts';
 
 /** A list of options. */
 export interface ChoiceField {
@@ -28,10 +27,15 @@ export const choiceView: QuestionView<ChoiceForm, ChoiceField> = {
     answer: typeof given === 'string' ? given : null,
     choose,
   }),
-  card({ points, answer, choose }, name) {
-    const inside = ({ label }: ScreenPoint<string>) => ({ nodes: [element('span', {}, label)] });
-    return [element('div', { class: 'choices' }, ...radios({ name, points, answer, choose, inside }))];
-  },
+  card: ({ points, answer, choose }, name) => (
+    <div class="choices">
+      {points.map(({ value, label }) => (
+        <Radio key={value} name={name} value={value} checked={value === answer} onChange={() => choose(value)}>
+          <span>{label}</span>
+        </Radio>
+      ))}
+    </div>
+  ),
   sheet: {
     targets({ points, answer, choose }) {
       const columns = points.length <= 3 ? points.length : 2;
