@@ -87,8 +87,6 @@ export interface GestureFrame {
 /** A press nocks within this distance of the fist from the nocking point [m]; the margin is hysteresis. */
 const nockReach = 0.18;
 const nearMargin = 0.03;
-/** A longer interval between two frames [s] is a pause: the page's clock counts its longest step for it. */
-const longestFrame = maxStepSeconds - 1e-3;
 
 const none: readonly never[] = [];
 
@@ -258,7 +256,7 @@ export class ArcheryGestures {
 
   /** Returns whether to cancel the shot: after a pause, without arrows, or when the input device has changed. */
   #mustCancel({ stringSide }: Roles): boolean {
-    if (this.#delta > longestFrame || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
+    if (this.#delta > maxStepSeconds + 1e-6 || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
     return this.#nocked !== null && this.#nocked.side !== stringSide;
   }
 

@@ -72,10 +72,12 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   update(frame: TrackingFrame, allButtons: Buttons): readonly HapticPulse[] | null {
-    const { study, settings, writer, onChange } = this.#context;
+    const { clock, study, settings, writer, onChange } = this.#context;
     this.#newestFrame = frame;
     if (study.run?.paused) return null;
     const buttons = study.run?.idle ? nothingPressed : allButtons;
+    // After a pause a hand may have let go long ago: a drawn arrow waits for it.
+    if (clock.paused) this.play.replaceHands();
     const { events, cues, haptics, bow } = this.play.follow(frame, buttons);
     const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
     this.#view.playEvents(events, cues);
