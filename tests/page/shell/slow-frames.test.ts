@@ -1,5 +1,6 @@
 import { createPageClock, defaultCalibration, MutablePointer } from 'threepoint/core';
-import { normalise, subtract, vec3 } from 'threepoint/math';
+import { distance, normalise, subtract, vec3 } from 'threepoint/math';
+import { landingPointOf } from 'threepoint-games/archery';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
 import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
@@ -48,12 +49,14 @@ describe.each([16, 200, 600])('with frames of %d ms', (frameMs) => {
     };
     run(8 * (frameMs / 600), false);
     run(4, true);
+    const marked = landingPointOf(play.newest!.bow!, play.targets);
     while (step(false).phase === 'ready') expect(page.seconds).toBeLessThan(60);
     const [began, left] = [page.seconds, probeOf(play.newest!).secondsLeft];
     run(8, false);
     const { secondsLeft, hits } = probeOf(play.newest!);
     expect(left - secondsLeft).toBeCloseTo(page.seconds - began, 1);
     expect(hits).toEqual([1]);
+    expect(distance(play.newest!.state.arrows[0]!.landing!.position, marked!)).toBeLessThan(0.05);
     while (step(false).phase === 'running') expect(page.seconds).toBeLessThan(90);
     expect(page.seconds - began).toBeGreaterThan(left - 2 * (frameMs / 1000));
     expect(page.seconds - began).toBeLessThan(left + 2 * (frameMs / 1000));
