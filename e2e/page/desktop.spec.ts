@@ -27,6 +27,18 @@ freshTest('a newcomer sees a moving body within seconds, without touching anythi
   await expect(page.getByRole('heading', { name: 'threepoint' })).toBeVisible();
 });
 
+freshTest('the note about a missing headset leaves by itself, and the picture grows', async ({ page }) => {
+  await page.setViewportSize({ width: 640, height: 360 });
+  await load(page, 'quality=low&estimator=ik&panel=off');
+  const note = page.getByText('An emulated headset takes its place.');
+  await expect(note).toBeVisible();
+  const tall = async () => (await probe(page)).avatar.box.bottom - (await probe(page)).avatar.box.top;
+  const before = await tall();
+  await expect(note).toBeHidden();
+  await expect.poll(tall).toBeGreaterThan(before + 20);
+  await keepPicture(page, 'zoomed-page');
+});
+
 /** Returns the box of the avatar's joints in the window [CSS pixels]. */
 const bodyBox = async (page: Page) => (await probe(page)).avatar.box;
 
