@@ -25,7 +25,7 @@ function createEstimators(actions: PanelActions) {
     node: element(
       'fieldset',
       { class: 'choices' },
-      element('legend', {}, 'Estimator'),
+      element('legend', {}, 'How the body moves'),
       ...choices.map(({ node }) => node),
     ),
     show({ estimator, unavailable, bodyComplaint }: PanelState) {

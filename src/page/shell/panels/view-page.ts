@@ -5,18 +5,18 @@ import type { PanelActions } from './panel-actions';
 import type { PanelPage } from './panel-state';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
-  'third-person': 'Third person',
-  front: 'Front',
-  'first-person': 'First person',
+  'third-person': 'From behind',
+  front: 'From the front',
+  'first-person': 'Own eyes',
 };
 
 const keys: readonly (readonly [string, string])[] = [
-  [`1 – ${estimatorOrder.length}`, 'estimator'],
+  [`1 – ${estimatorOrder.length}`, 'how the body moves'],
   ['V', 'next view'],
   ['C', 'calibrate'],
-  ['R', 'recentre'],
+  ['R', 'reset view'],
   ['M', 'mirror'],
-  ['B', 'debug skeleton'],
+  ['B', 'skeleton'],
   ['U', 'upper body only'],
   ['O', 'frame times'],
   ['T', 'mute, in voices'],
@@ -51,7 +51,7 @@ export function createViewPage(actions: PanelActions): PanelPage {
     node: button(viewTexts[view], () => actions.chooseView(view), { 'aria-pressed': 'false' }),
   }));
   const mirror = toggle('Mirror', (mirror) => actions.keep({ mirror }));
-  const skeleton = toggle('Debug skeleton', (debugSkeleton) => actions.change({ debugSkeleton }));
+  const skeleton = toggle('Skeleton', (debugSkeleton) => actions.change({ debugSkeleton }));
   const overlay = toggle('Frame times', (overlay) => actions.keep({ overlay }));
   const largerText = toggle('Larger text', (largerText) => actions.keep({ largerText }));
   const singleKeys = toggle('Single keys', (singleKeys) => actions.keep({ singleKeys }));
