@@ -5,7 +5,7 @@ test('a body of our own is chosen in the panel, worn, and remembered @full', asy
   await page.getByRole('tab', { name: 'Avatar' }).click();
   const choose = (name: string) => page.getByRole('button', { name, exact: true }).click();
   const worn = async () => (await probe(page)).avatar;
-  for (const name of ['Woman', 'Man', 'Stout', 'Child']) {
+  for (const name of ['Woman', 'Man', 'Sturdy', 'Child']) {
     await choose(name);
     await expect.poll(async () => (await worn()).name).toBe(name);
     await expect.poll(async () => Object.keys((await worn()).joints).length).toBeGreaterThan(15);

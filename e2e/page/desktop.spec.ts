@@ -27,6 +27,18 @@ freshTest('a newcomer sees a moving body within seconds, without touching anythi
   await expect(page.getByRole('heading', { name: 'threepoint' })).toBeVisible();
 });
 
+freshTest('the note about a missing headset leaves by itself, and the picture grows', async ({ page }) => {
+  await page.setViewportSize({ width: 640, height: 360 });
+  await load(page, 'quality=low&estimator=ik&panel=off');
+  const note = page.getByText('An emulated headset takes its place.');
+  await expect(note).toBeVisible();
+  const tall = async () => (await probe(page)).avatar.box.bottom - (await probe(page)).avatar.box.top;
+  const before = await tall();
+  await expect(note).toBeHidden();
+  await expect.poll(tall).toBeGreaterThan(before + 20);
+  await keepPicture(page, 'zoomed-page');
+});
+
 /** Returns the box of the avatar's joints in the window [CSS pixels]. */
 const bodyBox = async (page: Page) => (await probe(page)).avatar.box;
 
@@ -55,7 +67,7 @@ for (const [how, zoomIn] of [
 ] as const)
   test(`zooming in with ${how} keeps the face in the picture @full`, async ({ page }) => {
     await openWithHeadset(page, 'estimator=ik&panel=off');
-    await page.getByRole('button', { name: 'Recentre' }).click();
+    await page.getByRole('button', { name: 'Reset view' }).click();
     await expect.poll(async () => (await bodyBox(page)).bottom).toBeLessThan(600);
     const before = await bodyBox(page);
     await page.locator('#stage').focus();
@@ -130,9 +142,9 @@ test('third person, front and first person are a button away @full', async ({ pa
   await open(page, 'quality=low');
   await page.getByRole('tab', { name: 'View' }).click();
   for (const [label, view] of [
-    ['Front', 'front'],
-    ['First person', 'first-person'],
-    ['Third person', 'third-person'],
+    ['From the front', 'front'],
+    ['Own eyes', 'first-person'],
+    ['From behind', 'third-person'],
   ] as const) {
     const choice = page.getByRole('button', { name: label });
     await choice.click();

@@ -1,3 +1,4 @@
+import { maxStepSeconds } from 'threepoint/core';
 import type { GameRules } from './game-rules';
 
 /** A match in progress: it holds the newest state, and steps ticks from frames. */
@@ -19,9 +20,6 @@ interface MatchHooks<Action> {
   /** Called before each tick with its actions, which suffice to replay the match. */
   onTick?(actions: readonly Action[]): void;
 }
-
-/** After a gap longer than this [s] the match continues where it was, instead of catching up in one frame. */
-const longestGap = 1;
 
 /** Creates a match that plays the rules frame by frame from `start`. */
 export function createMatch<State, Action, Event, Options>(
@@ -50,7 +48,7 @@ export function createMatch<State, Action, Event, Options>(
     advance(time, actions) {
       startedAt ??= time;
       // A longer gap than a frame is a pause, which is removed from the match's time.
-      if (time - last > longestGap && stepped > 0) startedAt += time - last;
+      if (time - last > maxStepSeconds + 1e-6 && stepped > 0) startedAt += time - last;
       last = time;
       const now = time - startedAt;
       const tick = Math.floor(now / rules.tickSeconds);

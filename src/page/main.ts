@@ -30,15 +30,19 @@ function showStartFailure(error: unknown): void {
   document.body.replaceChildren(text);
 }
 
+/** How long the note stays that no headset was found [ms]: long enough to read it twice. */
+const noteMs = 10_000;
+
 /** Prepares the headset, and enables the button for a real or an emulated session. */
 async function offerSessions(headset: Headset, button: EnterButton, study: boolean): Promise<void> {
   const { real, sentence, passthrough } = await headset.prepare();
-  button.show({
+  const offer = {
     label: real ? 'Enter VR' : 'Enter VR (emulated)',
     passthroughLabel: passthrough && !study ? 'Enter AR' : null,
-    sentence: sentence && `${sentence} An emulated headset takes its place.`,
     enabled: true,
-  });
+  };
+  button.show({ ...offer, sentence: sentence && `${sentence} An emulated headset takes its place.` });
+  setTimeout(() => button.show({ ...offer, sentence: null }), noteMs);
 }
 
 /** Starts the frame loop. The panel is open as the address asks, else as in the last visit. */

@@ -1,5 +1,9 @@
-import { addScaled, distance, dot, subtract, type Vec3 } from 'threepoint/math';
-import type { Target } from './archery-state';
+import { addScaled, distance, dot, scale, subtract, type Vec3 } from 'threepoint/math';
+import { positionAt } from '../ballistics';
+import type { BowView, Target } from './archery-state';
+import { arrowLength, arrowSpeed, minimumDraw } from './bow';
+import { firstHit } from './flight';
+import { walls } from './rules';
 
 /** Distance of the aim point for a ray into the sky [m]. */
 const farthest = 14;
@@ -30,4 +34,15 @@ export function aimOf(origin: Vec3, direction: Vec3, targets: readonly Target[])
     target = index;
   }
   return { point: addScaled(origin, direction, nearest), distance: nearest, target };
+}
+
+/**
+ * Returns where the arrow on the string would land if it were released now, arena frame; null: it would return to the
+ * quiver.
+ */
+export function landingPointOf({ arrow, draw }: BowView, targets: readonly Target[]): Vec3 | null {
+  if (!arrow || draw < minimumDraw) return null;
+  const position = addScaled(arrow.nock, arrow.direction, arrowLength);
+  const launch = { position, velocity: scale(arrow.direction, arrowSpeed(draw)) };
+  return positionAt(launch, firstHit(launch, targets, walls).after);
 }

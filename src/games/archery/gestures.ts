@@ -51,7 +51,7 @@ export const defaultArcheryGestureSettings: ArcheryGestureSettings = {
 /**
  * A cue for sounds, captions and logs. taken: `side` has the bow now. near-string: a press here would nock. creak:
  * another few centimetres of draw. lost, resumed: a hand was lost and tracked again at a drawn bow. cancelled: the
- * arrow is back in the quiver.
+ * arrow is back in the quiver. too-soon: so it is, because the string was never drawn to `minimumDraw`.
  */
 export interface BowCue {
   readonly type:
@@ -62,6 +62,7 @@ export interface BowCue {
     | 'anchored'
     | 'released'
     | 'cancelled'
+    | 'too-soon'
     | 'lost'
     | 'resumed';
   readonly side: Side;
@@ -87,8 +88,6 @@ export interface GestureFrame {
 /** A press nocks within this distance of the fist from the nocking point [m]; the margin is hysteresis. */
 const nockReach = 0.18;
 const nearMargin = 0.03;
-/** A longer interval between two frames [s] is a pause: the page's clock counts its longest step for it. */
-const longestFrame = maxStepSeconds - 1e-3;
 
 const none: readonly never[] = [];
 
@@ -258,7 +257,7 @@ export class ArcheryGestures {
 
   /** Returns whether to cancel the shot: after a pause, without arrows, or when the input device has changed. */
   #mustCancel({ stringSide }: Roles): boolean {
-    if (this.#delta > longestFrame || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
+    if (this.#delta > maxStepSeconds + 1e-6 || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
     return this.#nocked !== null && this.#nocked.side !== stringSide;
   }
 
@@ -323,8 +322,11 @@ export class ArcheryGestures {
 
   #release(arrow: NockedArrow, roles: Roles): void {
     if (arrow.button === 'pinch' && !arrow.opened) arrow.opened = true;
-    else if (arrow.draw < minimumDraw || this.#time - this.#shotAt < releaseInterval) this.#cancel(roles.stringSide);
-    else this.#shoot(arrow, roles);
+    else if (arrow.draw >= minimumDraw && this.#time - this.#shotAt >= releaseInterval) this.#shoot(arrow, roles);
+    else {
+      this.#cancel(roles.stringSide);
+      if (arrow.longestDraw < minimumDraw) this.#cue('too-soon', roles.stringSide, this.#bow.inHand.position);
+    }
   }
 
   #draw(arrow: NockedArrow, stringHand: TrackedPose, { bowSide, stringSide }: Roles): void {

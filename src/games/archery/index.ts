@@ -1,5 +1,5 @@
 // "threepoint-games/archery": rules, gestures and players of archery.
-export { aimOf } from './aim-point';
+export { aimOf, landingPointOf } from './aim-point';
 export type { ArcheryAction, ArcheryEvent, ArcheryState, Arrow, BowView, Landing, Target } from './archery-state';
 export { arrowLength, braceHeight, maximumDraw } from './bow';
 export { bowInHand } from './bow-pose';

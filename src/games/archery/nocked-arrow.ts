@@ -58,8 +58,9 @@ const turned = makePose<'floor'>();
 /** An arrow on the string, from nocking to release; floor frame. `inHand` is the bow's pose in the hand. */
 export class NockedArrow {
   stage: Exclude<BowView['stage'], 'empty'> = 'nocked';
-  /** Draw beyond brace height [m]. */
+  /** Draw beyond brace height [m], and the longest so far. */
   draw = 0;
+  longestDraw = 0;
   /** Direction of the arrow, unit. */
   readonly direction: MutableVec3;
   /** Time of the first frame without a hand [s]; null: both are tracked. */
@@ -111,6 +112,7 @@ export class NockedArrow {
     this.#leap(bowDirection(inHand, held));
     slerpDirection(this.direction, held, this.#smoothing(oneHandedAimHalfLife, delta), this.direction);
     this.draw = Math.min(oneHandedDraw, this.draw + oneHandedDrawSpeed * delta);
+    this.longestDraw = this.draw;
     if (this.draw < oneHandedDraw) this.stage = this.#stageOfDraw();
     else if (this.stage !== 'anchored') return this.#anchor();
     return false;
@@ -158,6 +160,7 @@ export class NockedArrow {
   }
 
   #settle(delta: number): boolean {
+    this.longestDraw = Math.max(this.longestDraw, this.draw);
     const steady = this.draw >= anchorDraw && Math.abs(this.#drawSpeed) < anchorSpeed;
     this.#steady = steady ? this.#steady + delta : 0;
     if (this.stage === 'anchored' && Math.abs(this.draw - this.#anchoredAt) <= anchorSlack) return false;

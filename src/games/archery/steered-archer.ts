@@ -35,6 +35,7 @@ export function createSteeredArcher(body: ArcherBody) {
   let began = 0;
   let last: number | null = null;
   let aim: Vec3 | null = null;
+  let fullDraw = 0;
   /** Share of the full draw at the release, or when the arrow was cancelled. */
   let share = 0;
   /** The posture from which the hands return. */
@@ -46,6 +47,10 @@ export function createSteeredArcher(body: ArcherBody) {
   }
 
   return {
+    /** The draw at which the string is at the anchor [m]; 0 before the first frame. */
+    get fullDraw(): number {
+      return fullDraw;
+    },
     /** The hands return from a shot, and a press is not heeded yet. */
     get isRecovering(): boolean {
       return phase === 'loosing' || phase === 'following' || phase === 'returning' || phase === 'lowering';
@@ -57,14 +62,12 @@ export function createSteeredArcher(body: ArcherBody) {
       const taking = postures.ready(yawOf(subtract(aim, eyes)));
       const nocking: Posture = { ...taking, onString: 1 };
       const full = postures.drawn(aim);
+      fullDraw = full.hold.draw;
       const done = (seconds: number): number => minimumJerk(clamp((time - began) / seconds, 0, 1));
       const over = (seconds: number): boolean => time - began >= seconds;
 
       if (phase === 'ready' && pressed) enter('nocking', time);
-      else if (phase === 'nocking' && !pressed) {
-        left = mixPostures(taking, nocking, done(nockSeconds));
-        enter('returning', time);
-      } else if (phase === 'nocking' && over(nockSeconds)) enter('grabbing', time);
+      else if (phase === 'nocking' && over(nockSeconds)) enter('grabbing', time);
       else if (phase === 'grabbing' && over(grabSeconds)) {
         share = 0;
         enter('drawing', time);

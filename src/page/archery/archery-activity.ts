@@ -25,6 +25,17 @@ export const rangeScene: CameraScene = {
   front: { offset: { x: 1.6, y: 0.35, z: -2.7 }, aim: { x: 0, y: 0, z: 0 }, fovDegrees: 46 },
 };
 
+/** The view over the shoulder of the string hand, for a mouse that aims. */
+const shoulderScene: CameraScene = {
+  ...rangeScene,
+  'third-person': {
+    offset: { x: 0.72, y: 1.1, z: 1.6 },
+    aim: { x: 0.1, y: 0.45, z: -5 },
+    fovDegrees: 50,
+    sides: 0.5,
+  },
+};
+
 /** The leather of the bow's grip, as thick as its riser is there [m]. */
 const grip = { at: vec3(0, 0, 0), axis: vec3(0, 1, 0), radius: 0.019 };
 /** The string, with the arrow's nock on it, where fingers hook it [m]. */
@@ -35,7 +46,6 @@ export const createArcheryActivity = (context: ActivityContext): ArcheryActivity
 /** Archery in the page: the range, the bow, and the current round. */
 export class ArcheryActivity implements OpenActivity {
   readonly play: ArcheryPlay;
-  readonly scene = rangeScene;
   readonly #context: ActivityContext;
   readonly #view: ArcheryView;
   #newestFrame: TrackingFrame | null = null;
@@ -58,6 +68,14 @@ export class ArcheryActivity implements OpenActivity {
     return this.#view.sound;
   }
 
+  get scene(): CameraScene {
+    return this.#byMouse ? shoulderScene : rangeScene;
+  }
+
+  get #byMouse(): boolean {
+    return this.#context.inputSource === 'mouse';
+  }
+
   /** The side that the archer's chest faces. */
   get mirrorSide(): Side {
     return this.#context.settings.bowSide === 'left' ? 'right' : 'left';
@@ -72,10 +90,12 @@ export class ArcheryActivity implements OpenActivity {
   }
 
   update(frame: TrackingFrame, allButtons: Buttons): readonly HapticPulse[] | null {
-    const { study, settings, writer, onChange } = this.#context;
+    const { clock, study, settings, writer, onChange } = this.#context;
     this.#newestFrame = frame;
     if (study.run?.paused) return null;
     const buttons = study.run?.idle ? nothingPressed : allButtons;
+    // After a pause a hand may have let go long ago: a drawn arrow waits for it.
+    if (clock.paused) this.play.replaceHands();
     const { events, cues, haptics, bow } = this.play.follow(frame, buttons);
     const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
     this.#view.playEvents(events, cues);
@@ -108,6 +128,7 @@ export class ArcheryActivity implements OpenActivity {
     if (!frame || !newest) return;
     this.#view.showScoreboard(this.#context.headset.worn);
     this.#view.show(newest.state, this.#context.study.run?.idle ? null : newest.bow, newest.time, frame.head);
+    this.#view.showAim(newest.state, newest.bow, this.#byMouse ? this.play.aim : null);
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {

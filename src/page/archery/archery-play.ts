@@ -113,6 +113,15 @@ export class ArcheryPlay {
     this.restart(calibration);
   }
 
+  /**
+   * The point that a pointer aims at, arena frame, and the draw of its archer at the anchor [m]; null: none has aimed
+   * yet, or no arrow is left.
+   */
+  get aim(): { readonly point: Vec3; readonly fullDraw: number } | null {
+    const point = this.#aimedAt;
+    return point && isArmed(this.#match.state) ? { point, fullDraw: this.#steered.fullDraw } : null;
+  }
+
   get targets(): ArcheryState['targets'] {
     return this.#match.state.targets;
   }

@@ -6,12 +6,15 @@ import {
   type BowCue,
   type BowView,
   braceHeight,
+  landingPointOf,
 } from 'threepoint-games/archery';
 import { disposeTree } from '../scene/dispose-tree';
 import type { Quality } from '../scene/renderer';
+import type { ArcheryPlay } from './archery-play';
 import { createResultPanel } from './boards/result-panel';
 import { ScorePopups } from './boards/score-popups';
 import { createScoreboard } from './boards/scoreboard';
+import { createAimMark } from './bow/aim-mark';
 import { makeArrowPose } from './bow/arrow-pose';
 import { createArrows } from './bow/arrows';
 import { createBow } from './bow/bow-model';
@@ -39,12 +42,21 @@ export function createArcheryView({ quality, distances, onCaption }: ArcheryView
   const trails = createTrails(arrowLength);
   const scoreboard = createScoreboard(quality);
   const pops = new ScorePopups(quality);
+  const aimMark = createAimMark();
   const result = createResultPanel(quality);
   const sounds = new ArcherySounds(onCaption);
   let shown: ArcheryState | null = null;
   const onString = makeArrowPose();
   const bow = createBow(quality, braceHeight);
-  range.object.add(stands.object, arrows.object, trails.object, scoreboard.object, pops.object, result.object);
+  range.object.add(
+    stands.object,
+    arrows.object,
+    trails.object,
+    scoreboard.object,
+    pops.object,
+    result.object,
+    aimMark.object,
+  );
   return {
     /** The surroundings of the arena: the whole view except the bow. */
     range,
@@ -71,6 +83,14 @@ export function createArcheryView({ quality, distances, onCaption }: ArcheryView
       bow.show(bowView);
       range.setZoneWarning(!state.inZone);
       range.animate(matchTime);
+    },
+    /**
+     * Marks where the arrow on the string would land, else the point that is aimed at, and how far the string is drawn;
+     * null: hides the mark.
+     */
+    showAim({ targets }: ArcheryState, bow: BowView | null, aim: ArcheryPlay['aim']): void {
+      const landing = aim && ((bow && landingPointOf(bow, targets)) ?? aim.point);
+      aimMark.show(landing, aim && bow ? Math.min(1, bow.draw / aim.fullDraw) : 0);
     },
     /**
      * Shows or hides the board beside the field. At a desk the play bar has its figures, and the logo would cover it.

@@ -34,6 +34,8 @@ interface CameraStart {
   readonly fovDegrees: number;
   /** What stays in sight above the body [m]; default 0. */
   readonly headroom?: number;
+  /** What stays in sight to the left and right, as the tangent of its angle; absent: the whole body does. */
+  readonly sides?: number;
 }
 
 /** The starts of the camera in one place. */
@@ -246,14 +248,20 @@ export class DesktopView {
   }
 
   /**
-   * Returns the zoom at which a standing body is no larger than the part that is left to the picture, and how far the
-   * picture moves left and up [CSS pixels] to show it there. The scene's own composition is changed no further.
+   * Returns the zoom at which what must stay in sight, by default a standing body, fits the part that is left to the
+   * picture, and how far the picture moves left and up [CSS pixels] to show it there. The scene's own composition is
+   * changed no further.
    */
   #fitBody(view: Exclude<ViewName, 'first-person'>): Readonly<Record<'zoom' | 'shift' | 'rise', number>> {
     const { left, right, top, bottom } = this.#insets;
     const height = window.innerHeight;
     const freeHeight = Math.max(1, height - top - bottom);
     const freeWidth = Math.max(1, window.innerWidth - left - right);
+    const { sides, fovDegrees } = this.#scene[view];
+    if (sides !== undefined) {
+      const widest = (freeWidth * Math.tan((fovDegrees * Math.PI) / 360)) / (height * sides);
+      return { zoom: Math.min(1, widest), shift: (right - left) / 2, rise: (bottom - top) / 2 };
+    }
     const { head, feet } = this.#standing(view);
     const zoom = Math.min(1, (bodyShare * freeHeight) / (head - feet), freeWidth / (bodyWidth * (head - feet)));
     const margin = ((1 - bodyShare) / 2) * freeHeight;

@@ -5,7 +5,7 @@ export const bodyLabels: readonly { readonly name: BuiltInBody; readonly label: 
   { name: 'mannequin', label: 'Mannequin' },
   { name: 'woman', label: 'Woman' },
   { name: 'man', label: 'Man' },
-  { name: 'stout', label: 'Stout' },
+  { name: 'stout', label: 'Sturdy' },
   { name: 'child', label: 'Child' },
 ];
 

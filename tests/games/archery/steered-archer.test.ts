@@ -36,8 +36,9 @@ describe.each(['left', 'right'] as const)('with the bow in the %s hand', (bowSid
   });
 
   test('a press too short to draw shoots nothing', () => {
-    const { state } = play(bowSide, 6, (time) => ({ pressed: time % 2 < 0.3, cancelled: false }));
+    const { state, cues } = play(bowSide, 6, (time) => ({ pressed: time % 2 < 0.3, cancelled: false }));
     expect(state.arrowsLeft).toBe(5);
+    expect(cues).toContain('too-soon');
   });
 
   test('an arrow put back is still there', () => {
@@ -45,5 +46,6 @@ describe.each(['left', 'right'] as const)('with the bow in the %s hand', (bowSid
     expect(state.arrowsLeft).toBe(5);
     expect(cues).toContain('nocked');
     expect(cues).toContain('cancelled');
+    expect(cues).not.toContain('too-soon');
   });
 });

@@ -22,7 +22,9 @@ function range(settings: { readonly seconds?: number } = {}) {
   const frame = (pose: Posed, trigger: number, ms = frameMs) => {
     stamp += ms;
     const buttons = { left: allReleased, right: { ...allReleased, trigger } };
-    const { cues, events } = play.follow(posed(clock.tick(stamp), pose), buttons);
+    const time = clock.tick(stamp);
+    if (clock.paused) play.replaceHands();
+    const { cues, events } = play.follow(posed(time, pose), buttons);
     said.push(...[...cues, ...events].map(({ type }) => type).filter((type) => type !== 'creak'));
   };
   return {

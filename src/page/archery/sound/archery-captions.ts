@@ -69,6 +69,8 @@ export function cueCaption({ type, side }: BowCue): string | null {
       return 'Fully drawn';
     case 'cancelled':
       return 'Arrow back in the quiver';
+    case 'too-soon':
+      return 'You let go before the string was drawn: hold it longer';
     case 'lost':
       return `The ${side} hand is not tracked: the arrow waits`;
     case 'resumed':

@@ -7,7 +7,7 @@ import type { PanelPageProps } from './panel';
 /** Lets the user choose an estimator. An unavailable one gives the reason. */
 const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions }: PanelPageProps) => (
   <fieldset class="choices">
-    <legend>Estimator</legend>
+    <legend>How the body moves</legend>
     {estimatorOrder.map((name) => {
       const { label, text } = estimatorTexts[name];
       const reason = unavailable[name];

@@ -4,18 +4,18 @@ import { estimatorOrder } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
-  'third-person': 'Third person',
-  front: 'Front',
-  'first-person': 'First person',
+  'third-person': 'From behind',
+  front: 'From the front',
+  'first-person': 'Own eyes',
 };
 
 const keys: readonly (readonly [string, string])[] = [
-  [`1 – ${estimatorOrder.length}`, 'estimator'],
+  [`1 – ${estimatorOrder.length}`, 'how the body moves'],
   ['V', 'next view'],
   ['C', 'calibrate'],
-  ['R', 'recentre'],
+  ['R', 'reset view'],
   ['M', 'mirror'],
-  ['B', 'debug skeleton'],
+  ['B', 'skeleton'],
   ['U', 'upper body only'],
   ['O', 'frame times'],
   ['T', 'mute, in voices'],
@@ -41,11 +41,7 @@ export const ViewPage = ({ state, actions }: PanelPageProps) => (
         ))}
       </Group>
       <Toggle label="Mirror" on={state.mirror} set={(mirror) => actions.keep({ mirror })} />
-      <Toggle
-        label="Debug skeleton"
-        on={state.debugSkeleton}
-        set={(debugSkeleton) => actions.change({ debugSkeleton })}
-      />
+      <Toggle label="Skeleton" on={state.debugSkeleton} set={(debugSkeleton) => actions.change({ debugSkeleton })} />
       <Toggle label="Frame times" on={state.overlay} set={(overlay) => actions.keep({ overlay })} />
       <Toggle label="Larger text" on={state.largerText} set={(largerText) => actions.keep({ largerText })} />
       {state.rateHz !== null && <p class="hint">{rateText(state.rateHz, state.ratesHz)}</p>}

@@ -5,13 +5,13 @@ import type { EstimatorName } from 'threepoint/core';
  * first, then what needs more than three points.
  */
 export const estimatorTexts: Readonly<Record<EstimatorName, { readonly label: string; readonly text: string }>> = {
-  learned: { label: 'Learned', text: 'A network trained on motion capture corrects the IK body.' },
-  ik: { label: 'Inverse kinematics', text: 'Spine, clavicles and elbows in closed form.' },
-  paper: { label: 'Paper', text: 'The network of Anvari, Park and Kim (2023), as published.' },
-  'hands-only': { label: 'Hands only', text: 'Head and hands as tracked, no body between them.' },
+  learned: { label: 'Learned', text: 'The most lifelike: learned from recordings of people.' },
+  ik: { label: 'Inverse kinematics', text: 'Calculated from how joints bend, without learning.' },
+  paper: { label: 'Paper', text: 'For comparison: as in the study of Anvari, Park and Kim (2023).' },
+  'hands-only': { label: 'Hands only', text: 'Head and hands, and nothing between them.' },
   device: {
     label: 'Device',
-    text: 'The body that the headset itself tracks. Learned replaces it when the headset reports none.',
+    text: 'The body that the headset tracks itself; without one, Learned.',
   },
 };
 

@@ -1,5 +1,13 @@
-/** The longest step of the clock [s]: a longer gap between frames is a pause, of which only this much counts. */
-export const maxStepSeconds = 0.5;
+import { clamp } from '../math/damper';
+
+/** The longest frame [s], on a machine that draws slowly: a longer gap between frames is a pause. */
+export const maxStepSeconds = 2;
+/** The part of a pause that counts [s]: a shorter gap is no pause. */
+const pauseSeconds = 0.5;
+/** The longest slow frame, in usual frames: a longer gap is a pause. */
+const slowestFrame = 4;
+/** The share of a frame in the length of usual frames. */
+const usualShare = 0.2;
 /** The assumed frame length [s] until one was measured. */
 const usualStep = 1 / 60;
 /** The shortest frame of any device [s]: a smaller step of the time stamp does not measure a frame. */
@@ -12,9 +20,10 @@ const shortestStep = 1 / 1000;
 export interface PageClock {
   /**
    * Returns the time [s] of the frame with the time stamp `timestampMs`. After a time stamp of another clock, which
-   * goes back, the time advances by the length of the last frame. After a pause, with a time stamp more than
-   * `maxStepSeconds` ahead, it advances by `maxStepSeconds`. The same time stamp within half a frame is the same frame:
-   * the time and `paused` stay. A time stamp that is not finite is replaced by the result of `read`.
+   * goes back, the time advances by the length of the last frame. After a pause it advances by 0.5 s. A pause is a gap
+   * of more than 0.5 s that is longer than four usual frames or than `maxStepSeconds`: on a machine that draws two
+   * frames a second, time passes as it does elsewhere. The same time stamp within half a frame is the same frame: the
+   * time and `paused` stay. A time stamp that is not finite is replaced by the result of `read`.
    */
   tick(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
@@ -41,6 +50,8 @@ export function createPageClock(read: () => number): PageClock {
   let step = usualStep;
   let paused = false;
   let leftOut = 0;
+  /** The length of usual frames, a moving average in which a pause is the longest frame [s]. */
+  let usual = usualStep;
 
   return {
     tick(dated) {
@@ -50,10 +61,11 @@ export function createPageClock(read: () => number): PageClock {
       if (stamp === null) time = timestampMs / 1000;
       else {
         const passed = (timestampMs - stamp) / 1000;
-        paused = passed > maxStepSeconds;
-        if (paused) leftOut += passed - maxStepSeconds;
+        paused = passed > clamp(slowestFrame * usual, pauseSeconds, maxStepSeconds);
+        if (paused) leftOut += passed - pauseSeconds;
         else if (passed >= shortestStep) step = passed;
-        time += paused ? maxStepSeconds : step;
+        time += paused ? pauseSeconds : step;
+        usual += usualShare * (clamp(passed, shortestStep, maxStepSeconds) - usual);
       }
       stamp = timestampMs;
       readAt = read();
@@ -68,7 +80,7 @@ export function createPageClock(read: () => number): PageClock {
       return leftOut;
     },
     now() {
-      const since = Math.min(maxStepSeconds, Math.max(0, (read() - readAt) / 1000));
+      const since = clamp((read() - readAt) / 1000, 0, pauseSeconds);
       newest = Math.max(newest, (stamp === null ? readAt / 1000 : time) + since);
       return newest;
     },

@@ -47,7 +47,7 @@ export function drawMenu(
   fillRoundedRect(context, [2, 2, menuWidth - 4, menuHeight - 4], 40, vrColors.glass, vrColors.line);
   const { calibration, sheet, notice } = state;
   const soft = { color: vrColors.inkSoft, baseline: 'middle' } as const;
-  const heading = calibration ? 'Calibrate' : (sheet?.heading ?? 'Estimator');
+  const heading = calibration ? 'Calibrate' : (sheet?.heading ?? 'How the body moves');
   drawText(context, heading, [menuMargin + 4, 72], { font: '600 30px', ...soft });
   if (calibration) drawCalibration(context, calibration);
   else sheet?.draw(context);
