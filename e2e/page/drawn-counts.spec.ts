@@ -37,3 +37,19 @@ test('mirror, archery and the ball for three stay within the budget of a headset
     expect(scene.triangles + mirror.triangles, world).toBeLessThanOrEqual(budget.triangles);
   }
 });
+
+test('the first picture takes at most 40 draw calls, garden and reflection included @full', async ({ page }) => {
+  await drawSeldom(page, hour);
+  await load(page, 'panel=off&quality=high&estimator=ik');
+  const drawn = async () => {
+    const { scene, mirror } = (await probe(page)).drawing;
+    return { drawCalls: scene.drawCalls + mirror.drawCalls, triangles: scene.triangles + mirror.triangles };
+  };
+  // The garden comes after the first body.
+  const { triangles } = await drawn();
+  await expect.poll(async () => (await drawn()).triangles).toBeGreaterThan(triangles + 10_000);
+  const { drawCalls } = await drawn();
+  test.info().annotations.push({ type: 'first picture', description: `${drawCalls} draw calls` });
+  expect(drawCalls).toBeGreaterThan(10);
+  expect(drawCalls).toBeLessThanOrEqual(40);
+});

@@ -118,6 +118,7 @@ async function start(): Promise<void> {
   await Promise.all([chosen, sessionsOffered, openFromAddress(page)]);
   await joinStudyOfAddress(page);
   loading.finish();
+  void page.stage.studio.openWindows();
   // Compiling shaders is loading, not drawing.
   timing.reset();
   controls.show();

@@ -9,19 +9,17 @@ import {
 } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
 import { composeTransforms, invertTransform } from 'threepoint/math';
-import { type Avatar, createAvatarBetweenFrames, Mirror } from 'threepoint/three';
+import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
 import { ballRules, defaultBallOptions, stations } from 'threepoint-games/ball';
 import { ArcheryPlay } from '../archery/archery-play';
 import { type ArcheryView, createArcheryView } from '../archery/archery-view';
 import { type BallScene, BallView } from '../ball/ball-view';
 import type { Quality } from '../scene/renderer';
 import type { Surroundings } from '../scene/surroundings';
+import { Mirrors } from '../studio/mirrors';
 import { createStudio, type Studio } from '../studio/studio';
 import type { WorldName } from './headset-report';
 
-/** The places of the mirror: ahead of the user, and at the right where arrows fly ahead [m, rad]. */
-const mirrorAhead = { x: 0, z: -1.5, turned: 0 };
-const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
 const archerySettings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
 /** The offset between the other players in the actor's performance [s]. */
 const actorOffset = 7;
@@ -39,7 +37,7 @@ export class CheckWorlds {
   readonly avatar: Avatar;
   readonly #renderer: WebGLRenderer;
   readonly #studio: Studio;
-  readonly #mirror: Mirror;
+  readonly #mirrors: Mirrors;
   readonly #archery: ArcheryView;
   readonly #archeryPlay: ArcheryPlay;
   readonly #ball: BallView;
@@ -52,10 +50,7 @@ export class CheckWorlds {
   private constructor(renderer: WebGLRenderer, quality: Quality, avatars: readonly [Avatar, Avatar, Avatar]) {
     this.#renderer = renderer;
     this.#studio = createStudio(renderer, quality);
-    this.#mirror = new Mirror({
-      distance: -mirrorAhead.z,
-      ...(quality === 'low' && { resolution: 400, samples: 0 }),
-    });
+    this.#mirrors = new Mirrors(quality);
     this.#archeryPlay = new ArcheryPlay(
       defaultCalibration,
       () => archerySettings,
@@ -92,7 +87,7 @@ export class CheckWorlds {
       this.#otherBodies.add(avatar.object);
       return { avatar, estimator: createEstimator('ik', defaultCalibration) };
     });
-    this.#studio.scene.add(this.#mirror.object, this.#archery.bow, this.#otherBodies);
+    this.#studio.scene.add(this.#mirrors.object, this.#archery.bow, this.#otherBodies);
     own.setFirstPerson(true);
     this.show('mirror');
   }
@@ -111,9 +106,8 @@ export class CheckWorlds {
     this.#world = world;
     const place = { mirror: null, archery: this.#archery.range, ball: this.#court }[world];
     this.#studio.setSurroundings(place);
-    this.#mirror.setVisible(world !== 'ball');
-    const { x, z, turned } = world === 'archery' ? mirrorAside : mirrorAhead;
-    this.#mirror.place(x, z, turned);
+    this.#mirrors.place(world === 'archery' ? 'right' : null);
+    this.#mirrors.setVisible(world !== 'ball');
     this.#archery.bow.visible = world === 'archery';
     this.#otherBodies.visible = world === 'ball';
   }
@@ -136,7 +130,7 @@ export class CheckWorlds {
 
   /** Draws the world at a time [s]. */
   draw(camera: Camera, time: number): void {
-    this.#mirror.reflect(this.#renderer, this.#studio.scene, camera, time);
+    this.#mirrors.reflect(this.#renderer, this.#studio.scene, camera, time);
     this.#renderer.render(this.#studio.scene, camera);
   }
 }

@@ -1,6 +1,6 @@
 import type { Mesh } from 'three';
 import { headingOf } from 'threepoint/core';
-import { addScaled, dampVec3, forward, type Pose, rotate, type Vec3, vec3 } from 'threepoint/math';
+import { addScaled, clamp, dampVec3, forward, type Pose, rotate, type Vec3, vec3, wrapAngle } from 'threepoint/math';
 import { showToEyesOnly } from 'threepoint/three';
 import { createVrPanel, fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr';
 import { disposeTree } from '../scene/dispose-tree';
@@ -8,15 +8,22 @@ import { disposeTree } from '../scene/dispose-tree';
 const [width, height] = [900, 300];
 /** The distance of the caption, and how far it lies below the eyes [m]. */
 const [away, below] = [1.5, 0.42];
+/** The most that the caption stands to the right of where the head looks [rad]: beside the body in the mirror. */
+const aside = 0.5;
 /** The half-life with which the caption follows the head [s]: a short glance does not move it. */
 const halfLife = 0.2;
 
-/** Shows the instruction and the progress of a step in the headset, always in view. */
+/**
+ * Shows the instruction and the progress of a step in the headset, always in view and beside what the user looks at. A
+ * head that turns to it finds it ahead.
+ */
 export class StepCaption {
   readonly object: Mesh;
   readonly #panel = createVrPanel(width, height, 1000);
   #drawn = '';
   #place: Vec3 | null = null;
+  /** Where it stands, as a turn about the vertical axis [rad]. */
+  #heading = 0;
   #last = 0;
 
   constructor() {
@@ -65,7 +72,11 @@ export class StepCaption {
       return;
     }
     const ahead = rotate(headingOf(eyes.orientation), forward);
-    const goal = addScaled(addScaled(eyes.position, ahead, away), vec3(0, -1, 0), below);
+    const looking = Math.atan2(-ahead.x, -ahead.z);
+    const toTheRight = this.#place ? wrapAngle(looking - this.#heading) : aside;
+    this.#heading = looking - clamp(toTheRight, 0, aside);
+    const towards = vec3(-Math.sin(this.#heading), 0, -Math.cos(this.#heading));
+    const goal = addScaled(addScaled(eyes.position, towards, away), vec3(0, -1, 0), below);
     this.#place = this.#place ? dampVec3(this.#place, goal, halfLife, Math.max(0, time - this.#last)) : goal;
     this.#last = time;
     const { x, y, z } = this.#place;

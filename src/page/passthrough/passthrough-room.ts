@@ -1,10 +1,10 @@
-import { Fog, Mesh, type Object3D, PlaneGeometry, ShadowMaterial } from 'three';
+import { Fog, type Object3D } from 'three';
 import { thirdPersonOnlyLayer } from 'threepoint/three';
 import type { BoundarySize } from 'threepoint/webxr';
 import type { Notices } from 'threepoint-ui';
 import type { Activity, FloorNeeds } from '../activity/activity';
-import type { Quality } from '../scene/renderer';
 import type { Surroundings } from '../scene/surroundings';
+import { wallDistance } from '../studio/mirrors';
 import type { Studio } from '../studio/studio';
 import { detectedFloors, hasSpace } from './floor-space';
 import { MirrorStand, type StoredAnchor } from './mirror-stand';
@@ -14,7 +14,6 @@ export interface PassthroughOptions {
   readonly session: XRSession;
   /** The space within the boundary of the headset; null: the device does not report it. */
   readonly room: BoundarySize | null;
-  readonly quality: Quality;
   readonly studio: Studio;
   readonly notices: Pick<Notices, 'show'>;
   readonly kept: StoredAnchor;
@@ -28,19 +27,6 @@ export interface PassthroughOptions {
 
 /** The start of the fog in passthrough, beyond any room [m]. */
 const fogStart = 1e5;
-const shadowSize = 12;
-const shadowDarkness = 0.4;
-
-/** Receives the shadow of the avatar on the real floor. */
-function createShadowPlane(): Mesh {
-  const material = new ShadowMaterial({ opacity: shadowDarkness, fog: false });
-  const plane = new Mesh(new PlaneGeometry(shadowSize, shadowSize).rotateX(-Math.PI / 2), material);
-  plane.name = 'shadow plane';
-  plane.receiveShadow = true;
-  plane.position.y = 0.003;
-  return plane;
-}
-
 /** Returns the notice that the room is smaller than an activity needs. */
 function tooSmall({ place }: Pick<Activity, 'place'>, { halfWidth, ahead, behind }: FloorNeeds): string {
   const size = `${2 * halfWidth} × ${ahead + behind} m`;
@@ -55,25 +41,18 @@ export class PassthroughRoom {
   readonly mirror: MirrorStand;
   readonly #options: PassthroughOptions;
   readonly #light = new RoomLight();
-  readonly #shadowPlane: Mesh | null;
-  /** The layers of the studio's objects before the session. */
-  readonly #layers = new Map<Object3D, number>();
   readonly #hidden = new Set<Object3D>();
   #arranged: Surroundings | null = null;
   #showsRoom = true;
 
   constructor(options: PassthroughOptions) {
-    const { session, studio, quality, kept, floorSpace, isCovered } = options;
+    const { session, studio, kept, floorSpace, isCovered } = options;
     this.#options = options;
     this.mirror = new MirrorStand({ session, kept, floorSpace, isCovered });
     void this.#light.start(session);
     // The mirror shows the studio behind the avatar: it cannot show the room.
-    studio.home.traverse((node) => {
-      this.#layers.set(node, node.layers.mask);
-      node.layers.set(thirdPersonOnlyLayer);
-    });
-    this.#shadowPlane = quality === 'high' ? createShadowPlane() : null;
-    if (this.#shadowPlane) studio.scene.add(this.#shadowPlane);
+    studio.setLayer(thirdPersonOnlyLayer);
+    studio.setRealFloor(0);
   }
 
   /** Whether the user sees the own room, not the world of an activity. */
@@ -91,7 +70,10 @@ export class PassthroughRoom {
     if (activity() === null) {
       const { x, y, z, turned } = this.mirror.place;
       standMirror(x, y, z, turned);
-      if (this.#shadowPlane) this.#shadowPlane.position.y = y + 0.003;
+      // The mirror shows the studio as if it hung on the wall there.
+      studio.home.position.set(x + wallDistance * Math.sin(turned), y, z + wallDistance * Math.cos(turned));
+      studio.home.rotation.y = turned;
+      studio.setRealFloor(y);
     }
     const light = this.#showsRoom ? this.#light.read(frame, floor) : null;
     if (light) studio.setEstimatedLight(light);
@@ -100,10 +82,11 @@ export class PassthroughRoom {
   dispose(): void {
     const { studio } = this.#options;
     this.mirror.dispose();
-    for (const [node, mask] of this.#layers) node.layers.mask = mask;
+    studio.home.position.set(0, 0, 0);
+    studio.home.rotation.y = 0;
+    studio.setLayer(0);
+    studio.setRealFloor(null);
     for (const node of this.#hidden) node.visible = true;
-    this.#shadowPlane?.removeFromParent();
-    this.#shadowPlane?.geometry.dispose();
     studio.restore();
   }
 

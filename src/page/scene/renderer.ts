@@ -1,7 +1,7 @@
 import {
+  ACESFilmicToneMapping,
   LinearMipmapLinearFilter,
   LinearMipmapNearestFilter,
-  LinearToneMapping,
   type MinificationTextureFilter,
   PCFShadowMap,
   PerspectiveCamera,
@@ -42,9 +42,8 @@ export function affordableQuality(): Quality {
 export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): WebGLRenderer {
   const renderer = new WebGLRenderer({ canvas, antialias: quality === 'high', powerPreference: 'high-performance' });
   renderer.outputColorSpace = SRGBColorSpace;
-  // Three fogs after tone mapping, and what a mirror shows is mapped twice: a mapping that leaves colours alone shows
-  // one room in both.
-  renderer.toneMapping = LinearToneMapping;
+  // Light through a window is several times as bright as the room. Sky, hills and fog are not mapped.
+  renderer.toneMapping = ACESFilmicToneMapping;
   renderer.shadowMap.enabled = quality === 'high';
   renderer.shadowMap.type = PCFShadowMap;
   renderer.xr.enabled = true;

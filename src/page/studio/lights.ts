@@ -53,6 +53,8 @@ export class Lights {
     this.#key.shadow.bias = -0.0006;
     this.#key.shadow.normalBias = 0.015;
     scene.fog = this.#fog;
+    // What nothing covers is haze.
+    scene.background = this.#fog.color;
     scene.add(this.#blob, this.#key, this.#key.target, this.#rim, this.#front, this.#fill);
   }
 

@@ -1,164 +1,113 @@
 import {
   BackSide,
-  CircleGeometry,
+  BoxGeometry,
   Color,
   Group,
   Mesh,
   MeshBasicMaterial,
-  MeshLambertMaterial,
   PlaneGeometry,
-  RingGeometry,
   Scene,
-  ShaderMaterial,
-  SphereGeometry,
+  ShadowMaterial,
   type WebGLRenderer,
 } from 'three';
+import { uploadToGpu } from '../scene/gpu-upload';
+import { hazeColor } from '../scene/outdoors/sky';
 import type { Quality } from '../scene/renderer';
 import type { EstimatedLight, Lighting, Surroundings } from '../scene/surroundings';
 import { Lights } from './lights';
+import { createRoom } from './room/room';
 
-const horizon = new Color('#3a475d');
-const zenith = new Color('#121722');
-const ground = new Color('#1c2431');
-const floorRadius = 24;
+const shadowSize = 12;
+const shadowDarkness = 0.4;
 
-/**
- * A level square about the origin. Its vertices lie far from where heads are: one right below a level camera has w = 0,
- * and SwiftShader clips the triangles of such a vertex wrongly.
- */
-const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
-
-/** Creates the sky, a sphere that is darker overhead. It is drawn behind everything and without fog. */
-function createSky(): Mesh {
-  const material = new ShaderMaterial({
-    side: BackSide,
-    depthWrite: false,
-    depthTest: false,
-    fog: false,
-    uniforms: { horizon: { value: horizon }, zenith: { value: zenith } },
-    vertexShader: `varying vec3 direction;
-      void main() {
-        direction = normalize(position);
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-        // A mirror's tilted near plane tilts its far plane too: the sky must not depend on it.
-        gl_Position.z = 0.0;
-      }`,
-    fragmentShader: `varying vec3 direction; uniform vec3 horizon; uniform vec3 zenith;
-      void main() {
-        float height = max(normalize(direction).y, 0.0);
-        gl_FragColor = vec4(mix(horizon, zenith, smoothstep(0.0, 0.5, height)), 1.0);
-        // Fog is not tone-mapped; neither is what it fades into.
-        #include <colorspace_fragment>
-      }`,
-  });
-  const sky = new Mesh(new SphereGeometry(40, 24, 16), material);
-  sky.renderOrder = -1;
-  return sky;
-}
-
-/** Creates lines every half metre, which fade with distance and are antialiased by their derivatives. */
-function createGrid(): Mesh {
-  const material = new ShaderMaterial({
-    transparent: true,
-    depthWrite: false,
-    fog: false,
-    uniforms: { lineColor: { value: new Color('#8fa3c2') } },
-    vertexShader: `varying vec3 onFloor;
-      void main() {
-        vec4 world = modelMatrix * vec4(position, 1.0);
-        onFloor = world.xyz;
-        gl_Position = projectionMatrix * viewMatrix * world;
-      }`,
-    fragmentShader: `varying vec3 onFloor; uniform vec3 lineColor;
-      float lines(vec2 at) {
-        vec2 width = fwidth(at);
-        vec2 distanceToLine = abs(fract(at - 0.5) - 0.5) / max(width, vec2(1e-5));
-        vec2 strength = (1.0 - min(distanceToLine, 1.0)) * (1.0 - smoothstep(0.15, 0.6, width));
-        return max(strength.x, strength.y);
-      }
-      void main() {
-        float fade = 1.0 - smoothstep(1.5, 9.0, length(onFloor.xz));
-        float alpha = (0.10 * lines(onFloor.xz * 2.0) + 0.16 * lines(onFloor.xz)) * fade;
-        gl_FragColor = vec4(lineColor, alpha);
-        #include <colorspace_fragment>
-      }`,
-  });
-  const grid = new Mesh(levelSquare(18), material);
-  grid.position.y = 0.002;
-  return grid;
+/** Receives the shadow of the body on a floor that is not lit itself: it has its light from a map, or is a real one. */
+function createShadowPlane(): Mesh {
+  const material = new ShadowMaterial({ opacity: shadowDarkness, fog: false });
+  const plane = new Mesh(new PlaneGeometry(shadowSize, shadowSize).rotateX(-Math.PI / 2), material);
+  plane.name = 'shadow plane';
+  plane.receiveShadow = true;
+  return plane;
 }
 
 /**
- * Creates the floor. Lambert is matt, and compiles in a third of the time where shaders are compiled for a processor.
+ * The environment that surfaces reflect: plaster walls, a wooden floor, the windows, the veranda and the skylight. It is
+ * never shown.
  */
-function createFloor(): Mesh {
-  const floor = new Mesh(levelSquare(2 * floorRadius), new MeshLambertMaterial({ color: ground }));
-  floor.receiveShadow = true;
-  return floor;
-}
-
-/** Creates the mark where to stand: a ring with a notch towards the mirror (−Z). */
-function createMark(): Group {
-  const material = new MeshBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.55, depthWrite: false });
-  const gap = 0.5;
-  const ring = new Mesh(new RingGeometry(0.4, 0.412, 72, 1, Math.PI / 2 + gap / 2, 2 * Math.PI - gap), material);
-  const arrow = new Mesh(new CircleGeometry(0.035, 3, Math.PI / 2), material);
-  arrow.position.y = 0.41;
-  const mark = new Group();
-  mark.add(ring, arrow);
-  mark.rotation.x = -Math.PI / 2;
-  mark.position.y = 0.004;
-  return mark;
-}
-
-/** The environment that surfaces reflect: a bright ceiling panel, a warm side, a cool back. It is never shown. */
 function createLightRoom(): Scene {
-  const room = new Scene();
-  room.background = new Color('#2a3342');
-  const panel = (color: string, intensity: number, width: number, height: number, at: [number, number, number]) => {
-    const mesh = new Mesh(
-      new PlaneGeometry(width, height),
-      new MeshBasicMaterial({ color: new Color(color).multiplyScalar(intensity), side: 2 }),
-    );
+  const light = new Scene();
+  const add = (
+    color: string,
+    strength: number,
+    geometry: PlaneGeometry | BoxGeometry,
+    at: [number, number, number],
+  ) => {
+    const material = new MeshBasicMaterial({ color: new Color(color).multiplyScalar(strength), side: BackSide });
+    const mesh = new Mesh(geometry, material);
     mesh.position.set(...at);
-    mesh.lookAt(0, 0, 0);
-    room.add(mesh);
+    light.add(mesh);
   };
-  panel('#ffffff', 9, 5, 5, [0, 6, 0]);
-  panel('#ffd9b0', 5, 3, 5, [5, 2.5, 2]);
-  panel('#a9c4ff', 4, 3, 5, [-5, 2, 1]);
-  panel('#c8d6f0', 2.5, 6, 3, [0, 2, -6]);
-  panel('#2b3647', 1, 14, 14, [0, -3, 0]);
-  return room;
+  add('#e9ddca', 0.55, new BoxGeometry(6, 3, 6.2), [0, 0.3, 0.6]);
+  add('#c49d74', 0.5, new PlaneGeometry(6, 6.2).rotateX(Math.PI / 2), [0, -1.19, 0.6]);
+  for (const z of [-1.2, 1.6]) add('#e6f0ff', 7, new PlaneGeometry(1.9, 2).rotateY(-Math.PI / 2), [-2.98, 0.3, z]);
+  add('#dfeccb', 4, new PlaneGeometry(3.8, 2.4), [0, 0, 3.68]);
+  add('#f2f7ff', 9, new PlaneGeometry(1.4, 1.5).rotateX(-Math.PI / 2), [1.1, 1.78, 1]);
+  return light;
 }
 
+/** The sun that comes in on the left lights people from the front: further round than it shines on the floor. */
 const studioLighting = (quality: Quality): Lighting => ({
-  key: { color: '#fff1e0', intensity: quality === 'high' ? 2.6 : 2.8, from: [1.6, 4.2, 1.9] },
-  rim: { color: '#b4caff', intensity: 1, from: [-2.4, 2.6, -2.8] },
-  front: { color: '#eef2ff', intensity: 0.7, from: [-1.2, 1.8, -2.5] },
-  fill: { sky: '#cfdcf5', ground: '#3a4354', intensity: quality === 'high' ? 0.35 : 1.1 },
+  key: { color: '#fff0da', intensity: quality === 'high' ? 1.9 : 1.8, from: [-2.7, 3.1, -2.3] },
+  rim: { color: '#eef4ff', intensity: 1.5, from: [1.6, 2.7, 3.4] },
+  front: { color: '#fff3e4', intensity: 0.55, from: [1.7, 1.6, -2.6] },
+  fill: { sky: '#f4f1ea', ground: '#b08a66', intensity: quality === 'high' ? 0.7 : 1.15 },
   shadow: { halfSize: 1.7, resolution: 1024, softness: 5, centre: null },
-  fog: { color: '#3a475d', near: 3, far: floorRadius - 6 },
+  fog: { color: hazeColor, near: 16, far: 95 },
   environment: createLightRoom,
-  environmentIntensity: 0.38,
-  contactShadow: quality === 'high' ? 0.45 : 0.7,
+  environmentIntensity: 0.5,
+  contactShadow: quality === 'high' ? 0.5 : 0.7,
 });
 
 /**
- * Creates the studio around the people: floor, sky, light and shadow, without loading files. The floor is y = 0 of the
- * floor frame.
+ * Creates the studio around the people: a room with its light and shadow. The floor is y = 0 of the floor frame. The
+ * garden before its windows comes with `openWindows`.
  */
 export function createStudio(renderer: WebGLRenderer, quality: Quality) {
   const scene = new Scene();
-  scene.background = null;
   const lights = new Lights(scene, renderer, quality);
-  const mark = createMark();
+  const shadowPlane = quality === 'high' ? createShadowPlane() : null;
   const studio = new Group();
-  studio.add(createSky(), createFloor(), createGrid(), mark);
+  studio.add(createRoom(quality));
   const studioPlace: Surroundings = { object: studio, scenery: [], lighting: studioLighting(quality) };
   scene.add(studio);
+  if (shadowPlane) scene.add(shadowPlane);
   lights.set(studioPlace.lighting);
   let place = studioPlace;
+  let layer = 0;
+  let windows: Promise<void> | null = null;
+  let realFloor: number | null = null;
+
+  function showShadowPlane(): void {
+    if (!shadowPlane) return;
+    shadowPlane.visible = realFloor !== null || place === studioPlace;
+    shadowPlane.position.y = (realFloor ?? 0) + 0.003;
+  }
+  showShadowPlane();
+
+  async function addGarden(): Promise<void> {
+    const { createGarden } = await import('./room/garden');
+    const garden = createGarden(quality);
+    await uploadToGpu(renderer, scene, garden);
+    garden.traverse((node) => node.layers.set(layer));
+    studio.add(garden);
+  }
+
+  /** Loads the garden before the windows, once and only where the studio is shown. Until then there is haze. */
+  async function openWindows(): Promise<void> {
+    if (place !== studioPlace) return;
+    windows ??= addGarden();
+    await windows;
+  }
+
   return {
     scene,
     /** The studio's objects, which other surroundings replace. */
@@ -170,9 +119,16 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
     setEstimatedLight: (light: EstimatedLight | null): void => lights.setEstimate(light),
     /** Moves shadow and light to the person at (x, z) [m], floor frame. */
     follow: (x: number, z: number): void => lights.follow(x, z),
-    /** Shows or hides the mark on the floor of the studio where to stand. */
-    setMarkVisible(visible: boolean): void {
-      mark.visible = visible;
+    openWindows,
+    /** Shows the studio on this layer only. */
+    setLayer(onLayer: number): void {
+      layer = onLayer;
+      studio.traverse((node) => node.layers.set(layer));
+    },
+    /** Receives shadows on a real floor at this height [m]; null: on the floor of the studio. */
+    setRealFloor(height: number | null): void {
+      realFloor = height;
+      showShadowPlane();
     },
     /** Replaces the studio by another place with its light and fog; null: shows the studio again. */
     setSurroundings(surroundings: Surroundings | null): void {
@@ -181,7 +137,9 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
       scene.remove(place.object);
       scene.add(next.object);
       place = next;
+      showShadowPlane();
       lights.set(next.lighting);
+      void openWindows();
     },
     /** Rebuilds the graphics resources after a lost context. */
     restore: (): void => lights.set(place.lighting),

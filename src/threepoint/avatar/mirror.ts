@@ -3,6 +3,7 @@ import {
   type BufferGeometry,
   type Camera,
   Group,
+  type Material,
   Matrix4,
   Mesh,
   MeshStandardMaterial,
@@ -10,7 +11,9 @@ import {
   PlaneGeometry,
   type Scene,
   UnsignedByteType,
+  Vector2,
   type WebGLRenderer,
+  type WebGLRenderTarget,
 } from 'three';
 import { Reflector } from 'three/addons/objects/Reflector.js';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
@@ -22,13 +25,12 @@ interface MirrorOptions {
   readonly distance?: number;
   readonly width?: number;
   readonly height?: number;
-  /**
-   * The largest width of the reflection's texture [pixels]; a headset draws one for each eye, of at most half the eye's
-   * pixels.
-   */
+  /** The largest width of the reflection [pixels]; default: it has the pixels of the picture that shows it. */
   readonly resolution?: number;
   /** Samples per pixel of the reflection; 0 for software rendering. */
   readonly samples?: number;
+  /** The material of the frame, which the mirror disposes; default: dark metal. */
+  readonly frame?: MeshStandardMaterial;
 }
 
 const frameWidth = 0.035;
@@ -63,12 +65,17 @@ export class Mirror {
   private readonly pace = new FramePacer();
   /** The textures take no memory. */
   private released = true;
-  private readonly frame = new Mesh<BufferGeometry, MeshStandardMaterial>(
-    undefined,
-    new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 }),
-  );
+  private readonly frame: Mesh<BufferGeometry, MeshStandardMaterial>;
 
-  constructor({ distance = 1.8, width = 1.5, height = 2.15, resolution = 1024, samples = 4 }: MirrorOptions = {}) {
+  constructor({
+    distance = 1.8,
+    width = 1.5,
+    height = 2.15,
+    resolution = Number.POSITIVE_INFINITY,
+    samples = 2,
+    frame = new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 }),
+  }: MirrorOptions = {}) {
+    this.frame = new Mesh<BufferGeometry, MeshStandardMaterial>(undefined, frame);
     this.width = width;
     this.height = height;
     this.resolution = resolution;
@@ -111,7 +118,8 @@ export class Mirror {
       if (camera.parent === null) camera.updateMatrixWorld();
       for (let i = 1; i < this.glasses.length; i++) this.glasses[i]!.visible = false;
       this.glasses[0]!.layers.set(0);
-      this.fitTarget(0, Number.POSITIVE_INFINITY);
+      renderer.getDrawingBufferSize(pictureSize);
+      this.fitTarget(0, pictureSize.x, pictureSize.y);
       this.released = false;
       this.pace.restart();
       this.reflectTo(0, renderer, scene, camera);
@@ -128,7 +136,7 @@ export class Mirror {
       if (wide * high === 0) continue;
       if (!this.glasses[eye]) this.addGlass();
       this.glasses[eye]!.layers.set(eyeLayers[eye]!);
-      this.fitTarget(eye, wide * high);
+      this.fitTarget(eye, wide, high);
       this.reflectTo(eye, renderer, scene, cameras[eye]!);
     }
   }
@@ -141,9 +149,11 @@ export class Mirror {
     for (const glass of this.glasses) glass.getRenderTarget().dispose();
   }
 
-  /** Sets the size of a reflector's texture for an image of this many pixels; infinity: the largest texture. */
-  private fitTarget(index: number, pixels: number): void {
-    const { width, height } = reflectionSize(pixels, this.height / this.width, this.resolution);
+  /** Sets the size of a reflector's texture for a picture of this size [pixels]: it shows the picture's own view. */
+  private fitTarget(index: number, wide: number, high: number): void {
+    const share = Math.min(1, this.resolution / wide);
+    const width = Math.floor(wide * share);
+    const height = Math.floor(high * share);
     const target = this.glasses[index]!.getRenderTarget();
     if (target.width !== width || target.height !== height) target.setSize(width, height);
   }
@@ -158,13 +168,15 @@ export class Mirror {
     this.object.removeFromParent();
   }
 
-  /** Draws the reflection for a camera if it sees the reflector. */
+  /** Draws the reflection for a camera if it sees the reflector, and no more of it than it sees. */
   private reflectTo(index: number, renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
     const glass = this.glasses[index]!;
     glass.visible = true;
     glass.updateWorldMatrix(true, false);
-    if (!seesRectangle(camera, glass.matrixWorld, this.width, this.height)) return;
+    const seen = seenPart(camera, glass.matrixWorld, this.width, this.height);
+    if (!seen) return;
     const target = glass.getRenderTarget();
+    limitToPart(target, seen);
     target.texture.colorSpace = renderer.outputColorSpace;
     // The mirror's back lies between the glass and the reflecting camera; clipping it away is not exact everywhere.
     this.object.visible = false;
@@ -186,8 +198,6 @@ export class Mirror {
 
   private addGlass(): void {
     const glass = new Reflector(new PlaneGeometry(this.width, this.height), {
-      textureWidth: this.resolution,
-      textureHeight: Math.round((this.resolution * this.height) / this.width),
       clipBias: 0.003,
       multisample: this.samples,
       // The glass absorbs a little light; #bcbcbc would absorb none.
@@ -195,6 +205,8 @@ export class Mirror {
       shader,
     });
     const target = glass.getRenderTarget();
+    // The reflection is tone-mapped already.
+    (glass.material as Material).toneMapped = false;
     // By this property three.js encodes the colours of a render target like those of the canvas, which needs no more
     // bits.
     Object.assign(target, { isXRRenderTarget: true });
@@ -264,40 +276,36 @@ export class FramePacer {
   }
 }
 
-/**
- * The largest size of a reflection relative to the image that shows it [fraction of pixels]. A mirror of 1.5 × 2.15 m
- * seen from 1.5 m fills less than a third of an eye's 96°.
- */
-const pixelFraction = 0.4;
+/** The size of a picture [pixels], overwritten by each reflection. */
+const pictureSize = new Vector2();
 
-/** The size of a texture [pixels]. */
-interface TextureSize {
-  readonly width: number;
-  readonly height: number;
+/** A part of a picture, from −1 to 1, right and up. */
+interface PicturePart {
+  left: number;
+  right: number;
+  bottom: number;
+  top: number;
 }
 
+const wholePicture: Readonly<PicturePart> = { left: -1, right: 1, bottom: -1, top: 1 };
 /** The result of the newest call, reused to avoid garbage. */
-const size = { width: 0, height: 0 };
-
-/**
- * Returns the size of the reflection in an image of this many pixels. `heightToWidth`: the aspect of the mirror;
- * `maxWidth`: the limit [pixels]. The next call overwrites the result.
- */
-export function reflectionSize(pixels: number, heightToWidth: number, maxWidth: number): TextureSize {
-  const width = Math.floor(Math.min(maxWidth, Math.sqrt((pixelFraction * pixels) / heightToWidth)));
-  size.width = width;
-  size.height = Math.floor(width * heightToWidth);
-  return size;
-}
+const part: PicturePart = { ...wholePicture };
+/** A corner this near to the camera's plane has no place in the picture [m]. */
+const nearestCorner = 0.01;
 
 const clipFromRectangle = new Matrix4();
 
 /**
- * Returns whether a camera may see a rectangle [m] about the origin of its frame's xy plane: false if all corners lie
- * beyond one plane of the view frustum. Allocates nothing, unlike three.js's Frustum. The camera's matrices must be up
- * to date.
+ * Returns the part of the picture of a camera that a rectangle [m] about the origin of its frame's xy plane may cover;
+ * null: all corners lie beyond one plane of the view frustum. Allocates nothing: the next call overwrites the result.
+ * The camera's matrices must be up to date.
  */
-export function seesRectangle(camera: Camera, floorFromRectangle: Matrix4, width: number, height: number): boolean {
+export function seenPart(
+  camera: Camera,
+  floorFromRectangle: Matrix4,
+  width: number,
+  height: number,
+): Readonly<PicturePart> | null {
   clipFromRectangle.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(floorFromRectangle);
   const m = clipFromRectangle.elements;
   for (let axis = 0; axis < 3; axis++) {
@@ -306,8 +314,31 @@ export function seesRectangle(camera: Camera, floorFromRectangle: Matrix4, width
       const x = m[3]! + side * m[axis]!;
       const y = m[7]! + side * m[axis + 4]!;
       const middle = m[15]! + side * m[axis + 12]!;
-      if (middle + (Math.abs(x) * width + Math.abs(y) * height) / 2 < 0) return false;
+      if (middle + (Math.abs(x) * width + Math.abs(y) * height) / 2 < 0) return null;
     }
   }
-  return true;
+  part.left = part.bottom = 1;
+  part.right = part.top = -1;
+  for (let x = -width / 2; x <= width / 2; x += width) {
+    for (let y = -height / 2; y <= height / 2; y += height) {
+      const depth = m[3]! * x + m[7]! * y + m[15]!;
+      if (depth < nearestCorner) return wholePicture;
+      const across = (m[0]! * x + m[4]! * y + m[12]!) / depth;
+      const up = (m[1]! * x + m[5]! * y + m[13]!) / depth;
+      part.left = Math.max(-1, Math.min(part.left, across));
+      part.right = Math.min(1, Math.max(part.right, across));
+      part.bottom = Math.max(-1, Math.min(part.bottom, up));
+      part.top = Math.min(1, Math.max(part.top, up));
+    }
+  }
+  return part;
+}
+
+/** Draws a target only where the picture shows it; a reflection has left and right exchanged. */
+function limitToPart(target: WebGLRenderTarget, { left, right, bottom, top }: Readonly<PicturePart>): void {
+  const { width, height } = target;
+  // Sampling takes in a pixel beyond each edge.
+  const [x, y] = [Math.floor(((1 - right) / 2) * width) - 1, Math.floor(((1 + bottom) / 2) * height) - 1];
+  target.scissorTest = true;
+  target.scissor.set(x, y, Math.ceil(((right - left) / 2) * width) + 3, Math.ceil(((top - bottom) / 2) * height) + 3);
 }

@@ -85,7 +85,6 @@ export class Activities {
     if (next) await this.#open(next);
     this.#options.writer.change({ following: null });
     this.#staging.arrange(this.#current, true);
-    this.#options.stage.studio.setMarkVisible(this.#current === null);
     this.#options.onCaption('');
     this.#options.onArrival();
   }

@@ -45,10 +45,9 @@ export class PassthroughHost {
   }
 
   #roomOptions(session: XRSession): PassthroughOptions {
-    const { headset, stage, activities, store, notices, quality } = this.#parts;
+    const { headset, stage, activities, store, notices } = this.#parts;
     return {
       notices,
-      quality,
       isCovered: this.#isCovered,
       session,
       room: headset.room,

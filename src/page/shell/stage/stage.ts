@@ -1,18 +1,15 @@
 import type { TrackingFrame } from 'threepoint/core';
 import type { Side } from 'threepoint/math';
-import { type Avatar, createDebugSkeleton, createHeadLossFade, Mirror } from 'threepoint/three';
+import { type Avatar, createDebugSkeleton, createHeadLossFade } from 'threepoint/three';
 import { defaultSavings, type Savings } from 'threepoint/webxr';
 import { createVrCaptions } from 'threepoint-ui/vr';
 import type { Watched } from '../../activity/activity';
 import { DesktopView, type Insets } from '../../scene/desktop-view';
 import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../../scene/renderer';
 import { createVignette } from '../../scene/vignette';
+import { Mirrors } from '../../studio/mirrors';
 import { createStudio, type Studio } from '../../studio/studio';
 
-/** The user stands at the origin and looks along −Z, at the mirror [m]. */
-const mirrorDistance = 1.5;
-/** A mirror at the user's right is out of the way of what flies ahead [m, rad]. */
-const mirrorAside = { x: 1.95, z: -0.1, turned: -1.3 };
 /** The position of the shadow and the light of an absent body [m]. */
 const outOfSight = 100;
 /** Longest step of a camera that follows [s]: a page that was asleep does not leap. */
@@ -50,8 +47,7 @@ export class Stage {
   /** The newest picture: its reflections in the mirror, and the rest with all eyes and shadows. */
   readonly drawn = { mirror: { drawCalls: 0, triangles: 0 }, scene: { drawCalls: 0, triangles: 0 } };
   readonly #quality: Quality;
-  readonly #mirror: Mirror;
-  readonly #mirrorHeight: number;
+  readonly #mirrors: Mirrors;
   readonly #skeleton = createDebugSkeleton();
   readonly #headLoss = createHeadLossFade();
   readonly #headsetCamera = createHeadsetCamera();
@@ -64,12 +60,8 @@ export class Stage {
     this.renderer = createRenderer(canvas, quality);
     this.studio = createStudio(this.renderer, quality);
     this.view = new DesktopView(canvas);
-    this.#mirror = new Mirror({
-      distance: mirrorDistance,
-      ...(quality === 'low' && { resolution: 400, samples: 0 }),
-    });
-    this.#mirrorHeight = this.#mirror.object.position.y;
-    const parts = [this.#mirror, this.#skeleton, this.vignette, this.#captions];
+    this.#mirrors = new Mirrors(quality);
+    const parts = [this.#mirrors, this.#skeleton, this.vignette, this.#captions];
     this.studio.scene.add(...parts.map(({ object }) => object));
     // A picture has several renders, and three.js would restart its counts in each of them.
     this.renderer.info.autoReset = false;
@@ -84,18 +76,14 @@ export class Stage {
     this.#captions.setText(text);
   }
 
-  /** Places the mirror at this side of the user; null: ahead of the user. */
+  /** Places the mirror at this side of the user; null: on the wall ahead of the user. */
   placeMirror(side: Side | null): void {
-    const { x, z, turned } = mirrorAside;
-    const sign = side === 'right' ? 1 : -1;
-    if (side) this.standMirror(sign * x, 0, z, sign * turned);
-    else this.standMirror(0, 0, -mirrorDistance, 0);
+    this.#mirrors.place(side);
   }
 
   /** Stands the mirror on the floor at this height, its middle at (x, z) [m]; turned by 0 it faces +Z [rad]. */
   standMirror(x: number, floor: number, z: number, turned: number): void {
-    this.#mirror.place(x, z, turned);
-    this.#mirror.object.position.y = this.#mirrorHeight + floor;
+    this.#mirrors.stand(x, floor, z, turned);
   }
 
   setSkeletonVisible(visible: boolean): void {
@@ -142,12 +130,12 @@ export class Stage {
     const eyes = inSession && frame ? frame.head : null;
     this.vignette.show(time, eyes);
     this.#captions.show(time, eyes);
-    const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
-    this.#mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
+    const beforeIt = inside || this.#mirrors.isBeforeWall(view.camera.position);
+    this.#mirrors.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
     const camera = inSession ? this.#headsetCamera : view.camera;
     const { scene } = this.studio;
     renderer.info.reset();
-    this.#mirror.reflect(renderer, scene, camera, time);
+    this.#mirrors.reflect(renderer, scene, camera, time);
     this.#count('mirror');
     renderer.render(scene, camera);
     this.#count('scene');
@@ -157,7 +145,7 @@ export class Stage {
     if (savings === this.#savings) return;
     this.#savings = savings;
     this.renderer.xr.setFoveation(savings.foveation);
-    this.#mirror.setMaxRate(savings.mirrorRateHz);
+    this.#mirrors.setMaxRate(savings.mirrorRateHz);
   }
 
   #count(part: 'mirror' | 'scene'): void {

@@ -46,7 +46,6 @@ function page(listed: readonly Activity[] = registered) {
     mirror: null as Side | null,
     scene: studioScene,
     orbit: true,
-    mark: true,
     palette: null as string | null,
   };
   const recorder = new Recorder();
@@ -54,12 +53,7 @@ function page(listed: readonly Activity[] = registered) {
     ...services,
     seed: 5,
     stage: {
-      studio: {
-        ...services.stage.studio,
-        setMarkVisible(visible) {
-          seen.mark = visible;
-        },
-      },
+      studio: services.stage.studio,
       view: {
         ...services.stage.view,
         setScene(scene: CameraScene) {
@@ -126,12 +120,12 @@ describe('going to a game', () => {
     expect(places).toHaveLength(1);
   });
 
-  test('camera, mark and mirror go along to the range, and back', async () => {
+  test('camera and mirror go along to the range, and back', async () => {
     const { activities, seen, places } = page();
     await activities.goTo('archery');
-    expect(seen).toMatchObject({ scene: rangeScene, mark: false, mirror: 'right' });
+    expect(seen).toMatchObject({ scene: rangeScene, mirror: 'right' });
     await activities.goTo('studio');
-    expect(seen).toMatchObject({ scene: studioScene, mark: true, mirror: null });
+    expect(seen).toMatchObject({ scene: studioScene, mirror: null });
     expect(places.at(-1)).toBeNull();
   });
 
@@ -142,7 +136,7 @@ describe('going to a game', () => {
     await activities.goTo('ball');
     expect(activities.name).toBe('studio');
     expect(activities.arriving).toBe(false);
-    expect(seen).toMatchObject({ scene: studioScene, mark: true });
+    expect(seen).toMatchObject({ scene: studioScene });
     expect(notices).toEqual([
       { level: 'error', text: expect.stringMatching(/^The ball court could not be opened: mannequin\.vrm: /) },
     ]);
@@ -399,7 +393,7 @@ describe('a third activity', () => {
     const { activities, seen, done } = dartsPage();
     await activities.goTo('darts');
     expect(activities.name).toBe('darts');
-    expect(seen).toEqual({ mirror: 'right', scene: dartScene, orbit: true, mark: false, palette: 'red' });
+    expect(seen).toEqual({ mirror: 'right', scene: dartScene, orbit: true, palette: 'red' });
     await activities.goTo('archery');
     expect(done).toEqual(['dispose']);
     expect(seen).toMatchObject({ scene: rangeScene, palette: null });
