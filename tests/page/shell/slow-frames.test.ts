@@ -69,7 +69,7 @@ describe.each([16, 200, 600])('with frames of %d ms', (frameMs) => {
       connect: (visitor, time) => host.connect(visitor, time),
       visitor: { name: 'Robin', calibration: defaultCalibration },
       bots: () => true,
-      acting: () => true,
+      readyByItself: () => true,
       seed: 3,
     });
     const step = () => {
