@@ -21,16 +21,7 @@ export {
   sendResponse,
   textResponse,
 } from './response';
-export {
-  type Call,
-  createRouter,
-  jsonOf,
-  noPage,
-  type Route,
-  rejectionOf as refusalOf,
-  type Service,
-  textOf,
-} from './router';
+export { type Call, createRouter, jsonOf, noPage, type Route, rejectionOf, type Service, textOf } from './router';
 export { secretWeakness } from './secret-strength';
 export { contentSecurityPolicy, permissionsPolicy } from './security-headers';
 export { createSitePolicy, type SitePolicy } from './site-policy';

@@ -56,5 +56,5 @@ test('more bytes than may wait are refused, and their place is free again afterw
 test('a thread that ends answers all who wait', async () => {
   const { calls } = started();
   const waiting = [calls.call('end', []), calls.call('count', [])];
-  for (const call of waiting) await expect(call).rejects.toMatchObject({ reason: 'ended' });
+  await Promise.all(waiting.map((call) => expect(call).rejects.toMatchObject({ reason: 'ended' })));
 });

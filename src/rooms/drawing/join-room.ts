@@ -9,19 +9,19 @@ import {
   unknownFingers,
 } from 'threepoint/core';
 import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
+import * as v from 'valibot';
 import type { ClientPolicy } from '../client/client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from '../client/connection';
-import { peopleClientPolicy } from '../client/people-client-policy';
 import { RoomAddress } from '../client/room-address';
 import { RoomClient } from '../client/room-client';
 import { type PassStorage, tabStorage } from '../client/room-pass';
 import type { OwnAvatar } from '../client/shared-avatar';
 import type { PoseSource } from '../peers/pose-sender';
-import type { SeatInfo } from '../protocol/messages';
+import { roomMessageReader, type SeatInfo } from '../protocol/messages';
 import { headBits } from '../protocol/pose-steps';
 import { maxSteps, placeUnit } from '../protocol/quantise';
 import type { HostedGame } from '../room/match-policy';
-import type { People } from '../room/people-policy';
+import { noMatchState, type People, peopleKind, sharedFloor } from '../room/people-policy';
 import { PlacedPose } from './placed-pose';
 import { RoomBodies } from './room-bodies';
 import { relativeTransform } from './world-transform';
@@ -83,6 +83,18 @@ export interface JoinedRoom<Game extends HostedGame = People> {
   /** Gives up the seat, ends the connection and removes the others. */
   leave(): void;
 }
+
+/** The client policy of a room without a game. */
+const peopleClientPolicy: ClientPolicy<People> = {
+  kind: peopleKind,
+  readMessage: roomMessageReader<People>(peopleKind, v.null(), v.never()),
+  unpack: () => noMatchState,
+  follow: (state) => state,
+  at: (state) => state,
+  predict: (state) => state,
+  answers: () => false,
+  arenaFromFloor: () => sharedFloor,
+};
 
 /** The number of attempts before `joinRoom` rejects. */
 const maxAttempts = 3;

@@ -1,13 +1,14 @@
-import { Group, type Object3D } from 'three';
+import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarRef } from '../core/body/avatar-ref';
 import { bodyOf, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
+import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { PersonalAvatar, RemotePerson } from '../core/body/remote-person';
 import { TransientError } from '../core/errors/transient-error';
 import { type MutableTransform, makeTransform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
-import { PlacedAvatar } from './placed-avatar';
+import { createBlobShadow } from './blob-shadow';
 import { meshesOf } from './scene-meshes';
 
 interface RemoteAvatarsOptions<Wanted, Id> {
@@ -26,17 +27,6 @@ interface RemoteAvatarsOptions<Wanted, Id> {
   onRefused(avatar: Wanted, reason: unknown): void;
   /** Whether a soft shadow lies under each body. Default: true. */
   readonly shadows?: boolean;
-}
-
-interface Body<Wanted, Id> {
-  readonly placed: PlacedAvatar;
-  readonly of: Wanted;
-  /** The person who has the body; null: nobody. */
-  id: Id | null;
-  /** The time at which a person had it last [s]. */
-  usedAt: number;
-  palette: string;
-  readonly placement: MutableTransform<'floor', 'floor'>;
 }
 
 /** The time [s] after which a failed load is repeated. */
@@ -90,7 +80,7 @@ function isAmong<Id>(people: readonly { readonly id: Id }[], id: Id | null): boo
 export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef, Id = number> {
   readonly object = new Group();
   readonly #options: RemoteAvatarsOptions<Wanted, Id>;
-  readonly #bodies: Body<Wanted, Id>[] = [];
+  readonly #bodies: RemoteBody<Wanted, Id>[] = [];
   /** The queues in which an avatar is loading. */
   readonly #loading = new Set<string>();
   readonly #refused = new Map<Wanted, Refusal>();
@@ -116,14 +106,14 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
       const body = visible ? this.#bodyFor(id, (only && plain) || person.avatar, people) : this.#bodyOf(id);
       if (!body) continue;
       body.usedAt = time;
-      body.placed.place.visible = visible;
-      if (visible) draw(body, person, mouthOf(id), time);
+      body.place.visible = visible;
+      if (visible) body.draw(person, mouthOf(id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {
       const body = this.#bodies[i]!;
       if (isAmong(people, body.id)) continue;
       body.id = null;
-      body.placed.place.visible = false;
+      body.place.visible = false;
       if (time - body.usedAt > spareSeconds(body.of)) this.#drop(i);
     }
   }
@@ -132,7 +122,7 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
   jointsOf(id: Id): Readonly<Record<string, Vec3>> | null {
     const body = this.#visibleBodyOf(id);
     if (!body) return null;
-    const joints = Object.entries(body.placed.avatar.jointPositions());
+    const joints = Object.entries(body.avatar.jointPositions());
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
@@ -147,18 +137,18 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
     while (this.#bodies.length > 0) this.#drop(this.#bodies.length - 1);
   }
 
-  #bodyOf(id: Id): Body<Wanted, Id> | null {
+  #bodyOf(id: Id): RemoteBody<Wanted, Id> | null {
     for (const body of this.#bodies) if (body.id === id) return body;
     return null;
   }
 
-  #visibleBodyOf(id: Id): Body<Wanted, Id> | null {
+  #visibleBodyOf(id: Id): RemoteBody<Wanted, Id> | null {
     const body = this.#bodyOf(id);
-    return body?.placed.place.visible ? body : null;
+    return body?.place.visible ? body : null;
   }
 
   /** Returns the body of a person with this avatar, or the plain one; null while that is being made. */
-  #bodyFor(id: Id, avatar: Wanted, people: readonly { readonly id: Id }[]): Body<Wanted, Id> | null {
+  #bodyFor(id: Id, avatar: Wanted, people: readonly { readonly id: Id }[]): RemoteBody<Wanted, Id> | null {
     const { plain } = this.#options;
     const own = this.#bodyOf(id);
     const wanted = own?.of === avatar ? own : this.#freeBody(avatar, people);
@@ -172,7 +162,10 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
   }
 
   /** Returns a plain body: a person's own one or a free one; null while it is being made, or if there is none. */
-  #plainBody(own: Body<Wanted, Id> | null, people: readonly { readonly id: Id }[]): Body<Wanted, Id> | null {
+  #plainBody(
+    own: RemoteBody<Wanted, Id> | null,
+    people: readonly { readonly id: Id }[],
+  ): RemoteBody<Wanted, Id> | null {
     const { plain } = this.#options;
     if (plain === undefined) return null;
     const body = own?.of === plain ? own : this.#freeBody(plain, people);
@@ -181,7 +174,7 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
     return body;
   }
 
-  #freeBody(avatar: Wanted, people: readonly { readonly id: Id }[]): Body<Wanted, Id> | null {
+  #freeBody(avatar: Wanted, people: readonly { readonly id: Id }[]): RemoteBody<Wanted, Id> | null {
     for (const body of this.#bodies) {
       if (body.of === avatar && (body.id === null || !isAmong(people, body.id))) return body;
     }
@@ -224,30 +217,81 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
   #add(avatar: Avatar, of: Wanted): void {
     if (isBuiltInAvatar(of)) {
       const first = this.#bodies.find((body) => isBuiltInAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
-      if (first) shareGeometry(first.placed.avatar.object, avatar.object);
+      if (first) shareGeometry(first.avatar.object, avatar.object);
       avatar.setSkinTone(skinToneOf(of));
     }
-    const placed = new PlacedAvatar(avatar, this.#options.shadows ?? true);
-    this.object.add(placed.place);
-    const free = { id: null, palette: '', placement: makeTransform<'floor', 'floor'>() };
-    this.#bodies.push({ placed, of, usedAt: this.#now, ...free });
+    const body = new RemoteBody<Wanted, Id>(avatar, of, this.#now, this.#options.shadows ?? true);
+    this.object.add(body.place);
+    this.#bodies.push(body);
   }
 
   #drop(index: number): void {
-    this.#bodies.splice(index, 1)[0]?.placed.dispose();
+    this.#bodies.splice(index, 1)[0]?.dispose();
   }
 }
 
-function draw<Wanted, Id>(body: Body<Wanted, Id>, person: RemotePerson<Wanted, Id>, mouth: number, time: number): void {
-  const { avatar, place } = body.placed;
-  const { palette, placement } = person;
-  if (isBuiltInAvatar(body.of) && palette !== null && body.palette !== palette) {
-    avatar.setPalette(palette);
-    body.palette = palette;
+/** A body on the floor of its person. Measures, palette and opacity are set only when they change. */
+class RemoteBody<Wanted, Id> {
+  readonly avatar: Avatar;
+  readonly of: Wanted;
+  /** The person who has the body; null: nobody. */
+  id: Id | null = null;
+  /** The time at which a person had it last [s]. */
+  usedAt: number;
+  /** The person's floor, invisible at first. */
+  readonly place = new Group();
+  readonly placement: MutableTransform<'floor', 'floor'> = makeTransform();
+  readonly #shadow: Mesh<PlaneGeometry, MeshBasicMaterial> | null;
+  #fitted: Calibration | null = null;
+  #palette = '';
+  #opacity = 1;
+
+  constructor(avatar: Avatar, of: Wanted, usedAt: number, shadow: boolean) {
+    this.avatar = avatar;
+    this.of = of;
+    this.usedAt = usedAt;
+    this.#shadow = shadow ? createBlobShadow() : null;
+    this.place.visible = false;
+    this.place.add(avatar.object);
+    if (this.#shadow) this.place.add(this.#shadow);
   }
-  copyVec3(placement.position, body.placement.position);
-  copyQuat(placement.orientation, body.placement.orientation);
-  place.position.copy(placement.position);
-  place.quaternion.copy(placement.orientation);
-  body.placed.draw(person, mouth, time);
+
+  /** Poses the body at a time [s]. `mouth`: 0 shut to 1. */
+  draw(
+    { calibration, palette, placement, pose, opacity }: RemotePerson<Wanted, Id>,
+    mouth: number,
+    time: number,
+  ): void {
+    const { avatar, place } = this;
+    if (isBuiltInAvatar(this.of) && palette !== null && this.#palette !== palette) {
+      avatar.setPalette(palette);
+      this.#palette = palette;
+    }
+    if (!this.#fitted || !sameMeasures(this.#fitted, calibration)) {
+      this.#fitted = calibration;
+      avatar.setCalibration(calibration);
+    }
+    if (opacity !== this.#opacity) {
+      this.#opacity = opacity;
+      avatar.setOpacity(opacity);
+      if (this.#shadow) this.#shadow.visible = opacity > 0.5;
+    }
+    copyVec3(placement.position, this.placement.position);
+    copyQuat(placement.orientation, this.placement.orientation);
+    place.position.copy(placement.position);
+    place.quaternion.copy(placement.orientation);
+    avatar.setMouth(mouth);
+    avatar.setPose(pose, time);
+    if (!this.#shadow) return;
+    const { hips, head } = avatar.jointPositions();
+    const over = hips ?? head;
+    if (over) this.#shadow.position.set(over.x, this.#shadow.position.y, over.z);
+  }
+
+  dispose(): void {
+    this.place.removeFromParent();
+    this.avatar.dispose();
+    this.#shadow?.geometry.dispose();
+    this.#shadow?.material.dispose();
+  }
 }

@@ -74,14 +74,14 @@ test('an avatar that never arrives leaves its person the previous one, and holds
     }
     expect(others.object.children.filter(({ visible }) => visible)).toHaveLength(count);
   };
-  const until = (count: number, adas: string, bens: string | null) => vi.waitFor(() => drawn(count, adas, bens));
-  await until(1, 'red', null);
-  await vi.waitFor(async () => {
+  const until = (check: () => Promise<void>) => vi.waitFor(check, { timeout: 30_000 });
+  await until(() => drawn(1, 'red', null));
+  await until(async () => {
     await drawn(1, 'endless', null);
     expect(requests).toEqual(['red of ada', 'endless of ada']);
   });
-  await until(2, 'endless', 'red');
-  await vi.waitFor(async () => {
+  await until(() => drawn(2, 'endless', 'red'));
+  await until(async () => {
     await drawn(2, 'endless', 'blue');
     expect(disposed).toEqual(['red of ben']);
   });

@@ -33,7 +33,6 @@ import { MatchCamera, type MatchScenes } from './match-camera';
 import type { MatchFrame, SeatFrame } from './match-frame';
 import type { MatchPlay, MatchPlayOptions } from './match-play';
 import { createOtherBodies } from './other-bodies';
-import { playerProbes } from './player-probes';
 import { type RoomPlace, roomFor } from './room-place';
 import type { SeatedGame } from './seated-game';
 
@@ -273,7 +272,16 @@ export abstract class MatchActivity<
   }
 
   players(): readonly PlayerProbe[] {
-    return playerProbes(this.play, this.#bodies);
+    const { newest, room } = this.play;
+    return (newest?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
+      const player = newest?.players[id];
+      if (!player) return [];
+      const { name, bot, presence } = player;
+      const drawn = Object.entries(this.#bodies.jointsOf(id) ?? {});
+      const joints = Object.fromEntries(drawn.map(([joint, { x, y, z }]) => [joint, [x, y, z] as const]));
+      const { avatar = defaultAvatar } = room?.seats[id] ?? {};
+      return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: this.#bodies.drawnAs(id), joints }];
+    });
   }
 
   dispose(): void {

@@ -1,5 +1,5 @@
 import { checked, identifier, participantId } from 'threepoint/core';
-import { errorLine, errorResponse, HttpError, type HttpResponse, internalError, refusalOf } from 'threepoint-http';
+import { errorLine, errorResponse, HttpError, type HttpResponse, internalError, rejectionOf } from 'threepoint-http';
 import { Rejection } from '../../model/progress/rejection';
 import type { StudyStorage } from '../study-storage';
 import { type Effect, failureSentence } from './effect';
@@ -44,7 +44,7 @@ export const retryAfterSeconds = 5;
 
 /** Returns the HTTP error for an error of a request with this effect, or null for a fault of the server. */
 function httpErrorOf(error: unknown, effect: Effect): HttpError | null {
-  if (!(error instanceof Rejection)) return refusalOf(error);
+  if (!(error instanceof Rejection)) return rejectionOf(error);
   const { reason, field, failure } = error;
   const message = failure === null ? error.message : failureSentence(error.message, effect, failure === 'not done');
   // The page for withdrawals takes 507 for a sign that nothing was deleted.
