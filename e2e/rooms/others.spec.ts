@@ -126,7 +126,7 @@ test('between a room and the open controls the button that enters VR is read who
   expect(await overlap(page, 'button.enter', '#play .round:not([hidden])')).toBe(false);
 });
 
-test('nothing lies over the name, its line, the places or Reset view at 900 × 560', async ({ page }) => {
+test('nothing lies over the name, its line, the places or Centre at 900 × 560', async ({ page }) => {
   await open(page, 'quality=low&estimator=ik&avatar=');
   expect(await overlap(page, '#play', '#masthead p')).toBe(false);
   const { joints } = (await probe(page)).avatar;

@@ -57,7 +57,7 @@ export function createPanel(
     createViewPage(actions),
   ];
   const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs(pages));
-  const recentre = button('Reset view', () => actions.recentre(), { class: 'quiet' });
+  const recentre = button('Centre', () => actions.recentre(), { class: 'quiet' });
   const exit = button(exitLabel(false), () => actions.exitVr(), { class: 'quiet' });
   const opener = button('Controls', () => toggle(), {
     class: 'quiet opener',

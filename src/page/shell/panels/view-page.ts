@@ -5,8 +5,8 @@ import type { PanelActions } from './panel-actions';
 import type { PanelPage } from './panel-state';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
-  'third-person': 'From behind',
-  front: 'From the front',
+  'third-person': 'Behind',
+  front: 'Front',
   'first-person': 'Own eyes',
 };
 
@@ -14,7 +14,7 @@ const keys: readonly (readonly [string, string])[] = [
   [`1 – ${estimatorOrder.length}`, 'how the body moves'],
   ['V', 'next view'],
   ['C', 'calibrate'],
-  ['R', 'reset view'],
+  ['R', 'centre'],
   ['M', 'mirror'],
   ['B', 'skeleton'],
   ['U', 'upper body only'],
