@@ -67,7 +67,7 @@ for (const [how, zoomIn] of [
 ] as const)
   test(`zooming in with ${how} keeps the face in the picture @full`, async ({ page }) => {
     await openWithHeadset(page, 'estimator=ik&panel=off');
-    await page.getByRole('button', { name: 'Reset view' }).click();
+    await page.getByRole('button', { name: 'Centre' }).click();
     await expect.poll(async () => (await bodyBox(page)).bottom).toBeLessThan(600);
     const before = await bodyBox(page);
     await page.locator('#stage').focus();
@@ -142,9 +142,9 @@ test('third person, front and first person are a button away @full', async ({ pa
   await open(page, 'quality=low');
   await page.getByRole('tab', { name: 'View' }).click();
   for (const [label, view] of [
-    ['From the front', 'front'],
+    ['Front', 'front'],
     ['Own eyes', 'first-person'],
-    ['From behind', 'third-person'],
+    ['Behind', 'third-person'],
   ] as const) {
     const choice = page.getByRole('button', { name: label });
     await choice.click();

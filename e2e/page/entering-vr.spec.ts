@@ -65,7 +65,7 @@ test('recentring moves the floor under the head, and the body goes on', async ({
   await enterVr(page);
   await headset.place({ head: { position: [0.6, 1.6, 0.4] } });
   await expect.poll(async () => (await probe(page)).tracking?.head[0]).toBeCloseTo(0.6, 2);
-  await page.getByRole('button', { name: 'Reset view' }).click();
+  await page.getByRole('button', { name: 'Centre' }).click();
   await expect.poll(async () => Math.hypot(...((await probe(page)).tracking?.head ?? [9]))).toBeCloseTo(1.6, 2);
   await headset.place({ head: { position: [0.7, 1.6, 0.4] } });
   await expect.poll(async () => (await joint(page, 'head'))[0]).toBeCloseTo(0.1, 1);

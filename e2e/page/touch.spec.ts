@@ -48,14 +48,14 @@ test.describe('on a phone', () => {
         await expect(page.getByRole('tab', { name })).toHaveAttribute('aria-selected', 'true');
       }
       await page.getByRole('tab', { name: 'View' }).tap();
-      await button('From the front').tap();
+      await button('Front').tap();
       await expect.poll(async () => (await probe(page)).view).toBe('front');
-      await button('From behind').tap();
+      await button('Behind').tap();
       await expect.poll(async () => (await probe(page)).view).toBe('third-person');
       await page.getByText('Mirror', { exact: true }).last().tap();
       await keepPicture(page, 'touch-controls');
       await button('Controls').tap();
-      await button('Reset view').tap();
+      await button('Centre').tap();
 
       await button('Archery').tap();
       await expect(button('Archery')).toHaveAttribute('aria-pressed', 'true', { timeout: 60_000 });
@@ -153,7 +153,7 @@ for (const play of ['studio', 'archery', 'ball'] as const)
       await page.setViewportSize({ width, height });
       for (const controls of ['open', 'closed']) {
         await page.getByRole('button', { name: 'Controls' }).click();
-        await page.getByRole('button', { name: 'Reset view' }).click();
+        await page.getByRole('button', { name: 'Centre' }).click();
         const where = `${width} × ${height}, controls ${controls}`;
         await expect.poll(() => collisions(page), { message: where }).toEqual([]);
         expect((await notice.boundingBox())!.width, where).toBeGreaterThan(200);

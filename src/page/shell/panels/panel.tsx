@@ -74,7 +74,7 @@ export const Panel = ({
         hidden={!state.inSession}
         onClick={() => actions.exitVr()}
       />
-      <Button label="Reset view" class="quiet" onClick={() => actions.recentre()} />
+      <Button label="Centre" class="quiet" onClick={() => actions.recentre()} />
       <Button label="Controls" class="quiet opener" aria-controls="panel" aria-expanded={open} onClick={toggle} />
     </div>
     <div class="panel" id="panel" hidden={!open}>

@@ -4,8 +4,8 @@ import { estimatorOrder } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
-  'third-person': 'From behind',
-  front: 'From the front',
+  'third-person': 'Behind',
+  front: 'Front',
   'first-person': 'Own eyes',
 };
 
@@ -13,7 +13,7 @@ const keys: readonly (readonly [string, string])[] = [
   [`1 – ${estimatorOrder.length}`, 'how the body moves'],
   ['V', 'next view'],
   ['C', 'calibrate'],
-  ['R', 'reset view'],
+  ['R', 'centre'],
   ['M', 'mirror'],
   ['B', 'skeleton'],
   ['U', 'upper body only'],

@@ -240,6 +240,7 @@ describe('a player who takes the headset off', () => {
       body: { discontinuity: () => activities.current?.discontinuity?.() },
       activities,
       study,
+      onChange: nothing,
     });
     const controls = fake<Controls>({ show: nothing, setWorn: nothing, layOut: nothing });
     const changes = new SessionChanges(

@@ -122,7 +122,7 @@ export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonl
   const overlay = state.overlay ? 'Hide frame times' : 'Frame times';
   const entries: readonly MenuEntry[] = [
     { id: 'calibrate', label: 'Calibrate', act: () => actions.calibrate() },
-    { id: 'recentre', label: 'Reset view', act: () => actions.recentre() },
+    { id: 'recentre', label: 'Centre', act: () => actions.recentre() },
     { id: 'comfort', label: 'Comfort', act: () => actions.openComfort() },
     { id: 'overlay', label: overlay, act: () => actions.setOverlay(!state.overlay) },
     { id: 'exit', label: exitLabel(state.inPassthrough), act: () => actions.exit() },
