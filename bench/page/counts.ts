@@ -36,6 +36,7 @@ async function openStage() {
   const emulator = await installEmulator();
   emulator.device.stereoEnabled = true;
   const stage = new Stage(canvas, 'high');
+  await stage.studio.openWindows();
   const { renderer } = stage;
   await renderer.xr.setSession(await requestVrSession());
   const estimator = createEstimator('ik', defaultCalibration);

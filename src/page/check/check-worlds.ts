@@ -95,7 +95,9 @@ export class CheckWorlds {
   /** Builds the worlds and three bodies from the file of the built-in avatar. */
   static async create(renderer: WebGLRenderer, quality: Quality, file: ArrayBuffer): Promise<CheckWorlds> {
     const avatar = async () => createAvatarBetweenFrames(await parseAvatar(file, 'mannequin.vrm'));
-    return new CheckWorlds(renderer, quality, [await avatar(), await avatar(), await avatar()]);
+    const worlds = new CheckWorlds(renderer, quality, [await avatar(), await avatar(), await avatar()]);
+    await worlds.#studio.openWindows();
+    return worlds;
   }
 
   get scene(): Studio['scene'] {

@@ -22,7 +22,7 @@ export class StepCaption {
   readonly #panel = createVrPanel(width, height, 1000);
   #drawn = '';
   #place: Vec3 | null = null;
-  /** Where it stands, as a turn about the vertical axis [rad]. */
+  /** The direction in which it stands, as a turn about the vertical axis [rad]. */
   #heading = 0;
   #last = 0;
 

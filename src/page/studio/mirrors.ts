@@ -48,7 +48,7 @@ export class Mirrors {
     this.#current.setVisible(visible);
   }
 
-  /** Returns whether a point of the floor frame is in front of the wall with the mirror: from behind it hides people. */
+  /** Returns whether a point, floor frame, is in front of the wall mirror, which hides people from behind. */
   isBeforeWall({ z }: { readonly z: number }): boolean {
     return z > 0.1 - wallDistance;
   }

@@ -30,8 +30,8 @@ function createShadowPlane(): Mesh {
 }
 
 /**
- * The environment that surfaces reflect: plaster walls, a wooden floor, the windows, the veranda and the skylight. It is
- * never shown.
+ * The environment that surfaces reflect: plaster walls, a wooden floor, the windows, the veranda and the skylight. It
+ * is never shown.
  */
 function createLightRoom(): Scene {
   const light = new Scene();

@@ -30,7 +30,7 @@ test('the caption of a step leaves the reflection of the body free', () => {
   for (const edge of edges(caption)) expect(edge).toBeGreaterThan(shoulder);
 });
 
-test('a head that turns to the caption finds it ahead, and one that turns away takes it along', () => {
+test('a head that turns to the caption finds it ahead, and takes it along', () => {
   const caption = new StepCaption();
   let time = 0;
   const turnTo = (degrees: number) => {

@@ -30,27 +30,26 @@ type Unplaced = Omit<Patch, 'x' | 'y'>;
 
 const names = ['x', 'y', 'z'] as const;
 
+const triple = (at: (axis: number) => number): Triple => [at(0), at(1), at(2)];
+
 /** Returns the rectangle of a box's side, which faces along an axis. */
 function rectangle(from: Triple, to: Triple, axis: 0 | 1 | 2, facing: 1 | -1) {
   // The two axes in the order in which their cross product points along the axis, or against it.
   const first = (facing > 0 ? axis + 1 : axis + 2) % 3;
   const second = (facing > 0 ? axis + 2 : axis + 1) % 3;
-  const along = (which: number): Triple => [0, 1, 2].map((i) => (i === which ? to[i]! - from[i]! : 0)) as never;
-  const origin = [...from] as [number, number, number];
-  if (facing > 0) origin[axis] = to[axis];
-  const normal = [0, 1, 2].map((i) => (i === axis ? facing : 0)) as never as Triple;
-  return { origin, u: along(first), v: along(second), normal };
+  const along = (which: number) => triple((i) => (i === which ? to[i]! - from[i]! : 0));
+  const origin = triple((i) => (i === axis && facing > 0 ? to[i]! : from[i]!));
+  return { origin, u: along(first), v: along(second), normal: triple((i) => (i === axis ? facing : 0)) };
 }
 
 const texels = (edge: Triple, density: number): number => Math.max(2, Math.round(Math.hypot(...edge) * density) + 1);
 
 function sidePatch(side: Side): Unplaced {
   const { axis, facing, color, density } = side;
-  // The side that faces inwards lies where the box's own side of the other direction is.
-  const flat = { from: [...room.from] as never as Triple, to: [...room.to] as never as Triple };
+  // The box of the room, pressed flat onto this side.
   const at = facing > 0 ? room.from[axis] : room.to[axis];
-  const pressed = (point: Triple) => point.map((value, i) => (i === axis ? at : value)) as never as Triple;
-  const face = rectangle(pressed(flat.from), pressed(flat.to), axis, facing);
+  const pressed = (point: Triple) => triple((i) => (i === axis ? at : point[i]!));
+  const face = rectangle(pressed(room.from), pressed(room.to), axis, facing);
   return { ...face, color, side, box: null, columns: texels(face.u, density), rows: texels(face.v, density) };
 }
 
@@ -75,17 +74,13 @@ export function layOutLightMap(): { readonly patches: readonly Patch[]; readonly
   const order = unplaced.map((patch, index) => ({ patch, index }));
   order.sort((a, b) => b.patch.rows - a.patch.rows || a.index - b.index);
   const placed: Patch[] = [];
-  let [x, y, shelf] = [0, 0, 0];
-  let first = true;
+  let [x, y, shelf] = [neutral.columns as number, 0, 0];
   for (const { patch, index } of order) {
-    if (shelf === 0) shelf = patch.rows;
-    if (x + patch.columns + (first ? neutral.columns : 0) > mapWidth) {
+    if (x + patch.columns > mapWidth) {
       y += shelf;
-      x = 0;
-      shelf = patch.rows;
+      [x, shelf] = [0, 0];
     }
-    if (first) x = neutral.columns;
-    first = false;
+    shelf = Math.max(shelf, patch.rows);
     placed[index] = { ...patch, x, y };
     x += patch.columns;
   }
