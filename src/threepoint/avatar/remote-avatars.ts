@@ -7,6 +7,7 @@ import { type MutableTransform, makeTransform, transformPoint } from '../core/ma
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
+import { gazeTargetOf } from './gaze-targets';
 import { PlacedAvatar } from './placed-avatar';
 import { meshesOf } from './scene-meshes';
 
@@ -73,10 +74,10 @@ function isAmong(people: readonly RemotePerson[], id: number): boolean {
 }
 
 /**
- * Draws the bodies of other people. Copies of one body share its graphics memory. Bodies are created when they are
- * first needed and reused for later people. Files are loaded one at a time; while a file loads, or if it is refused,
- * the plain body is drawn. A load with a transient fault is repeated: a person who was away for long names their file
- * before it is in the store again.
+ * Draws the bodies of other people, whose eyes turn to each other. Copies of one body share its graphics memory. Bodies
+ * are created when they are first needed and reused for later people. Files are loaded one at a time; while a file
+ * loads, or if it is refused, the plain body is drawn. A load with a transient fault is repeated: a person who was away
+ * for long names their file before it is in the store again.
  */
 export class RemoteAvatars {
   readonly object = new Group();
@@ -104,6 +105,7 @@ export class RemoteAvatars {
       const body = this.#bodyFor(person, plain ? defaultAvatar : person.avatar, people);
       if (!body) continue;
       body.drawnAt = time;
+      body.placed.avatar.setGaze(gazeTargetOf(person, people));
       draw(body, person, this.#options.mouthOf(person.id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {
