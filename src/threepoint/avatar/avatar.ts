@@ -63,6 +63,11 @@ export interface Avatar {
    */
   setMouth(open: number): void;
   /**
+   * Sets what the eyes turn to from the next `setPose` on, floor frame [m], while it is less than 35° from where the
+   * face points; the place is copied. null: they look ahead.
+   */
+  setGaze(target: Vec3 | null): void;
+  /**
    * Sets the bend of a hand's fingers for poses that have none, from the next `setPose` on; the shape is copied. null:
    * not seen, they keep their bend for a while and relax.
    */
@@ -213,9 +218,10 @@ class VrmAvatar implements Avatar {
   }
 
   /** Animates what no pose contains: eyes, lids, hair, and nodes that the file constrains to bones. */
-  private animateDetails({ position, orientation }: AvatarPose['head'], deltaSeconds: number): void {
+  private animateDetails(head: AvatarPose['head'], deltaSeconds: number): void {
     const { vrm } = this;
-    this.face.update(orientation, deltaSeconds);
+    const { position, orientation } = head;
+    this.face.update(head, deltaSeconds);
     vrm.nodeConstraintManager?.update();
     this.springs.update(this.object, position, orientation, deltaSeconds);
     for (const material of vrm.materials ?? []) (material as { update?(seconds: number): void }).update?.(deltaSeconds);
@@ -298,6 +304,10 @@ class VrmAvatar implements Avatar {
 
   setMouth(open: number): void {
     this.face.setMouth(open);
+  }
+
+  setGaze(target: Vec3 | null): void {
+    this.face.setGaze(target);
   }
 
   setFingers(side: Side, shape: HandShape | null): void {

@@ -7,10 +7,11 @@ import {
   VRMLookAtRangeMap,
 } from '@pixiv/three-vrm';
 import type { BufferGeometry, Mesh } from 'three';
-import { clamp, damp } from '../core/math/damper';
-import { conjugate, copyQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
+import { damp } from '../core/math/damper';
+import type { Pose } from '../core/math/pose';
+import { conjugate, copyQuat, multiply, quat, rotate } from '../core/math/quat';
 import { nextRandom, type RandomState } from '../core/math/random';
-import { forward, vec3 } from '../core/math/vec3';
+import { copyVec3, forward, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { boneNode } from './humanoid/needed-bones';
 
 /** The interval between two blinks, and the duration of a blink [s]. */
@@ -31,6 +32,12 @@ const mouthStill = 1 / 256;
  * The angle [degrees] up to which eyes hold their target while the head turns; beyond it they jump to where it faces.
  */
 const widestGaze = 11;
+/** The angle [degrees] up to which eyes are turned to a target that is set, and the half-life of that turn [s]. */
+const widestTarget = 35;
+const gazeHalfLife = 0.025;
+/** The share of the expression "surprised" with an open mouth: brows go with speech; and the half-life of that [s]. */
+const browShare = 0.3;
+const browHalfLife = 0.12;
 /** The largest turn of the eyes of a file without VRM [degrees]. */
 const eyeRange = new VRMLookAtRangeMap(30, 30);
 
@@ -118,6 +125,17 @@ class MouthMeshes {
   }
 }
 
+/**
+ * Returns whether an expression can be mixed with others by a small share: it has steps in between, and stops neither
+ * lids, mouth nor eyes.
+ */
+function isMixable(vrm: VRM, name: VRMExpressionPresetName): boolean {
+  const expression = vrm.expressionManager?.getExpression(name);
+  if (!expression || expression.isBinary) return false;
+  const { overrideBlink, overrideLookAt, overrideMouth } = expression;
+  return [overrideBlink, overrideLookAt, overrideMouth].every((override) => override === 'none');
+}
+
 /** Returns the look-at of a rig with eye bones; null: it has none. */
 function gazeOf(vrm: VRM): VRMLookAt | null {
   if (vrm.lookAt) return vrm.lookAt;
@@ -128,15 +146,27 @@ function gazeOf(vrm: VRM): VRMLookAt | null {
 
 const inverse = quat(0, 0, 0, 1);
 const ahead = vec3(0, 0, 0);
+const degrees = 180 / Math.PI;
 
-/** Animates the face of an avatar: blinking, the direction of the eyes, and the mouth. */
+/** The angles of a direction in the frame of a head [degrees]: to the left, and down. */
+const yawOf = ({ x, z }: Vec3): number => Math.atan2(-x, -z) * degrees;
+const pitchOf = ({ x, y, z }: Vec3): number => Math.atan2(-y, Math.hypot(x, z)) * degrees;
+
+const isWithin = (widest: number, direction: Vec3): boolean =>
+  Math.hypot(yawOf(direction), pitchOf(direction)) <= widest;
+
+/** Animates the face of an avatar: blinking, the direction of the eyes, the mouth, and brows that go with it. */
 export class Face {
   readonly #lids: Mover;
   readonly #mouth: Mover;
+  /** null: the file has no expression for it, or one that excludes others. */
+  readonly #brows: Mover | null;
   readonly #mouthMeshes: MouthMeshes;
   readonly #gaze: VRMLookAt | null;
   /** The head's rotation when the eyes reached their target. */
   readonly #held = quat(0, 0, 0, 1);
+  readonly #target = vec3(0, 0, 0);
+  #hasTarget = false;
   #random: RandomState;
   /** The time until the next blink [s]; below 0: since one began. */
   #until = shortestPause;
@@ -144,6 +174,7 @@ export class Face {
   /** The opening of the mouth, and its target. */
   #open = 0;
   #opening = 0;
+  #raised = 0;
 
   /** `seed`: faces with different seeds blink at different times. */
   constructor(vrm: VRM, seed: number) {
@@ -151,7 +182,14 @@ export class Face {
     this.#gaze = gazeOf(vrm);
     this.#lids = new Mover(vrm, 'blink', lidsOf);
     this.#mouth = new Mover(vrm, 'aa', mouthOf);
+    this.#brows = isMixable(vrm, 'surprised') ? new Mover(vrm, 'surprised', () => []) : null;
     this.#mouthMeshes = new MouthMeshes(vrm);
+  }
+
+  /** Sets the place that the eyes turn to while it is before the face, floor frame [m]; null: none. */
+  setGaze(target: Vec3 | null): void {
+    this.#hasTarget = target !== null;
+    if (target) copyVec3(target, this.#target);
   }
 
   /** Sets the target of the mouth's opening: 0 shut to 1; NaN: shut. */
@@ -159,10 +197,11 @@ export class Face {
     this.#opening = open > 0 ? Math.min(open, 1) : 0;
   }
 
-  /** Advances by one frame. The head's orientation is in the floor frame and faces −Z at identity. */
-  update(head: Quat, deltaSeconds: number): void {
+  /** Advances by one frame. The head's pose is in the floor frame, at the eyes, and faces −Z at identity. */
+  update(head: Pose<'floor'>, deltaSeconds: number): void {
     if (this.#lids.isPresent) this.#blink(deltaSeconds);
     if (this.#mouth.isPresent) this.#speak(deltaSeconds);
+    if (this.#brows) this.#raise(this.#brows, deltaSeconds);
     if (this.#gaze) this.#look(this.#gaze, head, deltaSeconds);
   }
 
@@ -189,15 +228,29 @@ export class Face {
     this.#mouthMeshes.setShaped(this.#open > 0);
   }
 
-  #look(gaze: VRMLookAt, head: Quat, deltaSeconds: number): void {
-    // The target in the frame of the head: opposite to its rotation, never ahead of it.
-    rotate(multiply(conjugate(head, inverse), this.#held, inverse), forward, ahead);
-    const yaw = (Math.atan2(-ahead.x, -ahead.z) * 180) / Math.PI;
-    const pitch = (Math.asin(clamp(-ahead.y, -1, 1)) * 180) / Math.PI;
-    const leaps = Math.hypot(yaw, pitch) > widestGaze;
-    if (leaps) copyQuat(head, this.#held);
-    gaze.yaw = leaps ? 0 : yaw;
-    gaze.pitch = leaps ? 0 : pitch;
+  #raise(brows: Mover, deltaSeconds: number): void {
+    const target = browShare * this.#open;
+    if (this.#raised === target) return;
+    const raised = damp(this.#raised, target, browHalfLife, deltaSeconds);
+    this.#raised = Math.abs(target - raised) < mouthStill ? target : raised;
+    brows.move(this.#raised);
+  }
+
+  #look(gaze: VRMLookAt, { position, orientation }: Pose<'floor'>, deltaSeconds: number): void {
+    conjugate(orientation, inverse);
+    if (this.#hasTarget) rotate(inverse, subtract(this.#target, position, ahead), ahead);
+    if (this.#hasTarget && isWithin(widestTarget, ahead)) {
+      copyQuat(orientation, this.#held);
+      gaze.yaw = damp(gaze.yaw, yawOf(ahead), gazeHalfLife, deltaSeconds);
+      gaze.pitch = damp(gaze.pitch, pitchOf(ahead), gazeHalfLife, deltaSeconds);
+    } else {
+      // The direction in which the eyes looked, in the frame of the head: opposite to its rotation, never ahead of it.
+      rotate(multiply(inverse, this.#held, inverse), forward, ahead);
+      const holds = isWithin(widestGaze, ahead);
+      if (!holds) copyQuat(orientation, this.#held);
+      gaze.yaw = holds ? yawOf(ahead) : 0;
+      gaze.pitch = holds ? pitchOf(ahead) : 0;
+    }
     gaze.update(deltaSeconds);
     if (gaze.applier instanceof VRMLookAtExpressionApplier) gaze.applier.expressions.update();
   }

@@ -9,6 +9,7 @@ import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
+import { gazeTargetOf } from './gaze-targets';
 import { meshesOf } from './scene-meshes';
 
 interface RemoteAvatarsOptions<Wanted, Id> {
@@ -72,10 +73,10 @@ function isAmong<Id>(people: readonly { readonly id: Id }[], id: Id | null): boo
 }
 
 /**
- * Draws the bodies of other people. Bodies are created when they are first needed, and reused for later people unless
- * they are personal. Copies of one built-in body share its graphics memory. Files are loaded one at a time, a personal
- * avatar independently of the others. A load with a transient error is repeated: a person who was away for long names
- * their file before it is in the store again.
+ * Draws the bodies of other people, whose eyes turn to each other. Bodies are created when they are first needed, and
+ * reused for later people unless they are personal. Copies of one built-in body share its graphics memory. Files are
+ * loaded one at a time, a personal avatar independently of the others. A load with a transient error is repeated: a
+ * person who was away for long names their file before it is in the store again.
  */
 export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef, Id = number> {
   readonly object = new Group();
@@ -107,7 +108,9 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
       if (!body) continue;
       body.usedAt = time;
       body.place.visible = visible;
-      if (visible) body.draw(person, mouthOf(id), time);
+      if (!visible) continue;
+      body.avatar.setGaze(gazeTargetOf(person, people));
+      body.draw(person, mouthOf(id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {
       const body = this.#bodies[i]!;

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { Group, type Mesh, type Object3D, Quaternion, Vector3 } from 'three';
 import { type Calibration, defaultCalibration } from 'threepoint/core';
-import { fromAxisAngle, identity, up } from 'threepoint/math';
+import { fromAxisAngle, identity, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
@@ -10,7 +10,7 @@ import { poseOf } from '../core/estimation/drawn';
 import { changed } from './glb';
 
 /** The mannequin with two strands of hair on springs, eyes on bones, and lids. */
-const living = (): ArrayBuffer =>
+const living = (surprised: Record<string, unknown> = {}): ArrayBuffer =>
   changed((json) => {
     const vrm = json.extensions.VRMC_vrm as unknown as Record<string, Record<string, unknown>>;
     const bones = vrm.humanoid?.humanBones as Record<string, { node: number }>;
@@ -29,7 +29,7 @@ const living = (): ArrayBuffer =>
       ...{ type: 'bone', offsetFromHeadBone: [0, 0.06, 0], rangeMapHorizontalInner: range },
       ...{ rangeMapHorizontalOuter: range, rangeMapVerticalDown: range, rangeMapVerticalUp: range },
     };
-    vrm.expressions = { preset: { blink: { isBinary: false }, aa: { isBinary: false } } };
+    vrm.expressions = { preset: { blink: { isBinary: false }, aa: { isBinary: false }, surprised } };
     const joint = (node: number) => ({ node, hitRadius: 0.02, stiffness: 1, gravityPower: 0.6, dragForce: 0.4 });
     json.extensions.VRMC_springBone = {
       specVersion: '1.0',
@@ -38,8 +38,11 @@ const living = (): ArrayBuffer =>
     json.extensionsUsed = [...json.extensionsUsed, 'VRMC_springBone'];
   });
 
-async function opened(body: Calibration = defaultCalibration): Promise<{ loaded: LoadedAvatar; avatar: Avatar }> {
-  const loaded = await parseAvatar(living(), 'living.vrm');
+async function opened(
+  body: Calibration = defaultCalibration,
+  file = living(),
+): Promise<{ loaded: LoadedAvatar; avatar: Avatar }> {
+  const loaded = await parseAvatar(file, 'living.vrm');
   const avatar = createAvatar(loaded);
   avatar.setCalibration(body);
   return { loaded, avatar };
@@ -150,12 +153,32 @@ describe('eyes', () => {
     expect(eyeYaw(body)).toBeCloseTo(0, 3);
   });
 
+  test('turn to a target that is set, until it is too far aside or removed', async () => {
+    const body = await opened();
+    const { eyeHeight } = defaultCalibration;
+    // 45 cm to the left of the face, a metre ahead: 24 degrees.
+    body.avatar.setGaze(vec3(-0.45, eyeHeight, -1));
+    let time = stand(body.avatar, 0, 1);
+    expect(eyeYaw(body)).toBeCloseTo(24.2, 1);
+    // The head turns to it by 20 degrees, and eyes stay on it.
+    time = stand(body.avatar, time, 1, { aside: 0, yaw: (20 * Math.PI) / 180 });
+    expect(eyeYaw(body)).toBeCloseTo(4.2, 1);
+    time = stand(body.avatar, time, 1, { aside: 0, yaw: (-20 * Math.PI) / 180 });
+    expect(eyeYaw(body)).toBeCloseTo(0, 3);
+    time = stand(body.avatar, time, 1);
+    expect(eyeYaw(body)).toBeCloseTo(24.2, 1);
+    body.avatar.setGaze(null);
+    stand(body.avatar, time, 1);
+    expect(Math.abs(eyeYaw(body))).toBeLessThan(11);
+  });
+
   test('moved by shapes of a file hold their target and leap as eyes on bones do', async () => {
     const range = { inputMaxValue: 90, outputScale: 1 };
     const bytes = changed(
       (json) => {
         const vrm = json.extensions.VRMC_vrm as unknown as Record<string, unknown>;
-        const bind = (index: number) => ({ morphTargetBinds: [{ node: 53, index, weight: 1 }] });
+        const node = json.nodes.findIndex(({ name }) => name === 'faceSkin');
+        const bind = (index: number) => ({ morphTargetBinds: [{ node, index, weight: 1 }] });
         vrm.expressions = { preset: { lookLeft: bind(0), lookRight: bind(1) } };
         vrm.lookAt = {
           ...{ type: 'expression', offsetFromHeadBone: [0, 0.06, 0], rangeMapHorizontalInner: range },
@@ -202,6 +225,31 @@ describe('eyes', () => {
     expect(blinks).toBeLessThanOrEqual(seconds / 2);
     expect(shut).toBeLessThan(60 * 30 * 0.1);
   });
+});
+
+describe('brows', () => {
+  const raised = ({ loaded }: { loaded: LoadedAvatar }) => loaded.vrm.expressionManager?.getValue('surprised');
+
+  test('rise a little while the mouth is open, and come down with it', async () => {
+    const body = await opened();
+    body.avatar.setMouth(1);
+    const time = stand(body.avatar, 0, 2);
+    expect(raised(body)).toBeGreaterThan(0.1);
+    expect(raised(body)).toBeLessThan(0.5);
+    body.avatar.setMouth(0);
+    stand(body.avatar, time, 3);
+    expect(raised(body)).toBe(0);
+  });
+
+  test.each([{ isBinary: true }, { overrideMouth: 'block' }, { overrideBlink: 'blend' }])(
+    'stay where the expression %j would take lids or mouth over',
+    async (expression) => {
+      const body = await opened(defaultCalibration, living(expression));
+      body.avatar.setMouth(1);
+      stand(body.avatar, 0, 2);
+      expect(raised(body)).toBe(0);
+    },
+  );
 });
 
 /** Stands for so long with a mouth that is to be open so far; how far it is then. */
@@ -269,7 +317,10 @@ describe('a mouth', () => {
       const bytes = changed(
         (json) => {
           delete (json.extensions.VRMC_vrm as unknown as Record<string, unknown>).expressions;
-          for (const { extras } of json.meshes) if (extras?.targetNames) extras.targetNames = [name, 'MouthOpen'];
+          for (const { extras } of json.meshes) {
+            const shapes = extras?.targetNames as string[] | undefined;
+            if (shapes) extras!.targetNames = shapes.map((shape, i) => [name, 'MouthOpen'][i] ?? shape);
+          }
         },
         undefined,
         file,
@@ -285,7 +336,10 @@ describe('a mouth', () => {
         if (morphTargetInfluences) influences.push([...morphTargetInfluences]);
       });
       expect(influences.length).toBeGreaterThan(0);
-      for (const each of influences) expect(each).toEqual([1, 0]);
+      for (const [first, ...others] of influences) {
+        expect(first).toBe(1);
+        expect(others).toEqual(others.map(() => 0));
+      }
     },
   );
 });

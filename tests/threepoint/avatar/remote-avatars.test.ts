@@ -1,5 +1,5 @@
 import { readFileSync } from 'node:fs';
-import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
+import { Euler, Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import {
   type AvatarHash,
   type AvatarRef,
@@ -70,6 +70,31 @@ describe('bodies of others', () => {
         expect(drawn && distance(drawn, transformPoint(placement, solved[name].position))).toBeLessThan(1e-6);
       }
     }
+    others.dispose();
+  });
+
+  test('turn their eyes to the head before their face, and ahead once it has gone', async () => {
+    const facing = { position: vec3(0.3, 0, -2), orientation: fromAxisAngle(up, Math.PI) };
+    const avatar = builtInAvatarOf('woman', 'tan');
+    const placement = { position: vec3(0, 0, 0), orientation: fromAxisAngle(up, 0) };
+    const head = { position: vec3(0, 1.59, 0), orientation: fromAxisAngle(up, 0), tracking: 'tracked' as const };
+    const pose = poseOf(estimator, { ...actorFrame(9.5, defaultCalibration), head });
+    const people = [person(1, { avatar, pose, placement }), person(2, { avatar, pose, placement: facing })];
+    const others = await gathered(people);
+    const eyeYaw = () => {
+      const yaws: number[] = [];
+      others.object.traverse((node) => {
+        if (node.name === 'leftEye') yaws.push(new Euler().setFromQuaternion(node.quaternion, 'YXZ').y);
+      });
+      return yaws;
+    };
+    for (let i = 1; i < 60; i++) others.show(people, 10 + i / 60);
+    const [first, second] = eyeYaw();
+    // Each is to the right of where the other's face points, by 8.5 degrees.
+    expect(first).toBeCloseTo(-0.149, 2);
+    expect(second).toBeCloseTo(-0.149, 2);
+    for (let i = 1; i < 60; i++) others.show(people.slice(0, 1), 11 + i / 60);
+    expect(eyeYaw()[0]).toBeCloseTo(0, 3);
     others.dispose();
   });
 

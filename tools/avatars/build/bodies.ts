@@ -15,23 +15,26 @@ interface Colours {
   readonly skin: string;
   readonly hair: string;
   readonly top: string;
+  /** Edges of the top, and stripes. */
+  readonly trim: string;
   readonly bottom: string;
+  readonly shoes: string;
 }
 
 /**
  * Triangles before seams are cut: a beard or a large head needs some of them for its shapes, so that the file stays as
  * small.
  */
-const usualTriangles = 4_800;
+const usualTriangles = 2_900;
 
 function person(
   name: string,
   measures: PersonMeasures,
-  { skin, hair, top, bottom }: Colours,
+  { skin, hair, top, trim, bottom, shoes }: Colours,
   triangles = usualTriangles,
 ): Figure {
   return {
-    ...personOf(measures),
+    ...personOf(measures, { Brow: linear(hair), TopTrim: linear(trim), Shoes: linear(shoes) }),
     name,
     rest: 'Skin',
     box: [
@@ -40,14 +43,16 @@ function person(
     ],
     triangles,
     shadedOver: 4e-3,
+    rounded: true,
+    refinements: 2,
     // The edge of a top about the neck.
     careful: (x, y) => (x < 0.14 && y > 1.38 && y < 1.47 ? 0.9 : 0),
     colors: {
       Skin: { color: linear(skin), roughness: 0.6 },
-      Hair: { color: linear(hair), roughness: 0.62 },
+      Hair: { color: linear(hair), roughness: 0.55 },
       Top: cloth(top),
       Bottom: cloth(bottom),
-      Details: { color: [1, 1, 1], roughness: 0.4 },
+      Details: { color: [1, 1, 1], roughness: 0.5 },
     },
     meshes: [
       { name: 'bodySkin', materials: ['Skin', 'Top', 'Bottom', 'Details'], ofHead: false },
@@ -69,24 +74,27 @@ const woman = person(
     neck: 0.86,
     trapezius: 0.84,
     limbs: { shoulder: 0.78, upperArm: 0.84, forearm: 0.86, thigh: 1.0, calf: 0.93 },
-    feet: 0.92,
+    feet: 1.0,
     head: {
-      size: 0.99,
-      width: 0.96,
-      eye: { radii: [0.0156, 0.0096], out: 0.0312, slant: 0.0013 },
-      brow: { thickness: 0.0019, above: 0.0202 },
-      jaw: 0.92,
-      mouth: [0.0205, 0.0082],
-      nose: 0.84,
+      size: 1.3,
+      width: 0.98,
+      eye: { radii: [0.0186, 0.0142], slant: 0.0018 },
+      iris: [0.42, 0.17, 0.05],
+      brow: { thickness: 0.0028, above: 0.023, arch: 0.003 },
+      lash: [0.0028, 0.001],
+      jaw: 0.9,
+      mouth: [0.0178, 0.0058],
+      smile: 11,
+      nose: 0.88,
     },
     hair: 'bob',
     wears: {
-      top: { off: 0.007, sleeve: 0.6, hem: 0.95, neck: 0.035, ribbed: false },
-      bottom: { off: 0.003, cuffOff: 0.006, cuff: 0.1 },
+      top: { off: 0.009, flare: 0.011, full: 0.004, sleeve: 0.57, hem: 0.95, neck: 0.03, ribbed: false },
+      bottom: { off: 0.004, cuffOff: 0.013, cuff: 0.115 },
       shoes: 0.085,
     },
   },
-  { skin: '#b9805c', hair: '#2a1a14', top: '#2f8f8b', bottom: '#2c3242' },
+  { skin: '#b9805c', hair: '#4a2a1e', top: '#2f9a93', trim: '#f2dfbd', bottom: '#38415a', shoes: '#d9694f' },
 );
 
 const man = person(
@@ -101,23 +109,28 @@ const man = person(
     neck: 1,
     trapezius: 1,
     limbs: { shoulder: 0.83, upperArm: 1.06, forearm: 1.06, thigh: 1.02, calf: 1.02 },
-    feet: 1.04,
+    feet: 1.08,
     head: {
-      size: 1,
-      width: 1.02,
-      eye: { radii: [0.0142, 0.0086], out: 0.0318, slant: 0.0003 },
-      brow: { thickness: 0.0031, above: 0.0195 },
-      mouth: [0.0215, 0.0068],
+      size: 1.25,
+      width: 1.03,
+      eye: { radii: [0.017, 0.0128], slant: 0.0004 },
+      iris: [0.32, 0.13, 0.045],
+      brow: { thickness: 0.0036, above: 0.0245, arch: 0.0016 },
+      lash: [0.0031, 0.0008],
+      jaw: 1.12,
+      mouth: [0.0195, 0.005],
+      smile: 9,
+      nose: 1.08,
     },
     hair: 'short',
     wears: {
-      top: { off: 0.009, sleeve: 0.345, hem: 0.95, neck: 0.012, ribbed: false },
-      bottom: { off: 0.006, cuffOff: 0.016, cuff: 0.075 },
+      top: { off: 0.011, flare: 0.012, full: 0.002, sleeve: 0.355, hem: 0.95, neck: 0.012, ribbed: false },
+      bottom: { off: 0.007, cuffOff: 0.018, cuff: 0.1 },
       shoes: 0.085,
     },
   },
-  { skin: '#7a4e35', hair: '#15100e', top: '#d9d4c7', bottom: '#33475f' },
-  4_600,
+  { skin: '#7a4e35', hair: '#1f1714', top: '#e6dfd0', trim: '#c8552f', bottom: '#33517a', shoes: '#39404a' },
+  3_600,
 );
 
 const stout = person(
@@ -133,24 +146,28 @@ const stout = person(
     neck: 1.14,
     trapezius: 1.02,
     limbs: { shoulder: 0.88, upperArm: 1.22, forearm: 1.16, thigh: 1.15, calf: 1.12 },
-    feet: 1.05,
+    feet: 1.1,
     head: {
-      size: 1.02,
-      width: 1.07,
-      eye: { radii: [0.014, 0.0086], out: 0.0312, slant: 0 },
-      brow: { thickness: 0.0031, above: 0.02 },
-      mouth: [0.02, 0.0066],
-      cheeks: 0.008,
+      size: 1.27,
+      width: 1.08,
+      eye: { radii: [0.0168, 0.0126], slant: 0 },
+      iris: [0.13, 0.2, 0.11],
+      brow: { thickness: 0.0036, above: 0.0245, arch: 0.0022 },
+      lash: [0.0031, 0.0008],
+      mouth: [0.0185, 0.005],
+      smile: 13,
+      nose: 1.16,
+      cheeks: 0.005,
     },
     hair: 'curls',
     wears: {
-      top: { off: 0.011, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
-      bottom: { off: 0.004, cuffOff: 0.018, cuff: 0.075 },
+      top: { off: 0.0125, flare: 0.008, full: 0.008, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
+      bottom: { off: 0.006, cuffOff: 0.018, cuff: 0.1 },
       shoes: 0.085,
     },
   },
-  { skin: '#e0ac86', hair: '#7a4324', top: '#b5523b', bottom: '#3c3f45' },
-  3_600,
+  { skin: '#e0ac86', hair: '#8a4a24', top: '#c2573c', trim: '#6d2f2b', bottom: '#4a4f58', shoes: '#7b5a3e' },
+  2_700,
 );
 
 const child = person(
@@ -165,26 +182,37 @@ const child = person(
     neck: 0.84,
     trapezius: 0.76,
     limbs: { shoulder: 0.72, upperArm: 0.84, forearm: 0.9, thigh: 0.86, calf: 0.9 },
-    feet: 1.02,
+    feet: 1.12,
     head: {
-      size: 1.3,
-      width: 1.0,
-      eye: { radii: [0.0158, 0.0108], out: 0.0316, slant: 0.0004 },
-      brow: { thickness: 0.002, above: 0.0205 },
-      jaw: 0.9,
-      cheeks: 0.007,
-      mouth: [0.0185, 0.0064],
-      nose: 0.72,
+      size: 1.38,
+      width: 1.02,
+      eye: { radii: [0.019, 0.0152], slant: 0.0004 },
+      iris: [0.12, 0.22, 0.38],
+      brow: { thickness: 0.003, above: 0.0238, arch: 0.0026 },
+      lash: [0.0034, 0.0018],
+      jaw: 0.84,
+      cheeks: 0.004,
+      mouth: [0.0165, 0.0046],
+      smile: 10,
+      nose: 0.78,
     },
     hair: 'tousled',
     wears: {
-      top: { off: 0.01, sleeve: 0.3, hem: 0.95, neck: 0.01, ribbed: false },
+      top: {
+        off: 0.012,
+        flare: 0.013,
+        full: 0.002,
+        sleeve: 0.3,
+        hem: 0.95,
+        neck: 0.01,
+        ribbed: false,
+      },
       bottom: { off: 0.006, cuffOff: 0.026, cuff: 0.46 },
       shoes: 0.09,
     },
   },
-  { skin: '#d39a72', hair: '#4a2c1c', top: '#e6b23c', bottom: '#3a5a8c' },
-  4_550,
+  { skin: '#d39a72', hair: '#5d3820', top: '#f0bd3f', trim: '#f6f1e4', bottom: '#3f6aa6', shoes: '#d9503f' },
+  3_200,
 );
 
 /** Every body that is ours, by the name of its file. */

@@ -1,9 +1,20 @@
 import type { FaceShape, Figure, Label, Seam } from './figure';
+import { lightOn, rounded, withPieces } from './pieces';
 import { hipLine } from './rig';
 import { type Point, smoothstep } from './signed-distance';
-import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, refine, type Surface } from './surface';
+import {
+  compact,
+  cutAlong,
+  decimate,
+  largestPart,
+  mesh,
+  normalsOf,
+  projectOnto,
+  refine,
+  type Surface,
+} from './surface';
 import { skinWeights } from './weights';
-import { type Skinned, writeVrm } from './write-vrm';
+import { writeVrm } from './write-vrm';
 
 /** Finer than a finger's fillet [m]. */
 const cell = 0.0042;
@@ -104,22 +115,36 @@ const isInside = ({ value }: Seam, { positions, indices }: Surface, t: number, m
     return value(positions[v]!, positions[v + 1]!, positions[v + 2]!) < outsideAtMost;
   });
 
-/** How far each vertex goes for each shape of the face [m]. */
-const movesOf = ({ shapes }: Figure, { positions }: Surface): Skinned['shapes'] =>
-  Object.entries(shapes).map(([name, displaced]) => {
+/** How far each vertex goes for each shape of the face [m]: none of the body's, and none that a label holds. */
+function movesOf({ shapes, holds }: Figure, { positions, indices }: Surface, kinds: Label[], ofHead: boolean[]) {
+  return Object.entries(shapes).map(([shape, displaced]) => {
+    const name = shape as FaceShape;
+    const held = new Set<number>();
+    for (const [corner, vertex] of indices.entries()) {
+      const triangle = Math.floor(corner / 3);
+      if (!ofHead[triangle] || holds?.(kinds[triangle]!, name)) held.add(3 * vertex);
+    }
     const moves = new Float32Array(positions.length);
     for (let i = 0; i < moves.length; i += 3) {
       const [x, y, z] = [positions[i]!, positions[i + 1]!, positions[i + 2]!];
-      const to = displaced(x, y, z);
+      const to = held.has(i) ? null : displaced(x, y, z);
       if (to) moves.set([to[0] - x, to[1] - y, to[2] - z], i);
     }
-    return { name: name as FaceShape, moves };
+    return { name, moves };
+  });
+}
+
+/** Returns the label of each triangle. */
+const labelsOf = (surface: Surface, seams: readonly Seam[], rest: Label): Label[] =>
+  Array.from({ length: surface.indices.length / 3 }, (_, triangle) => {
+    const middle = middleOf(surface, 3 * triangle);
+    return seams.find((seam) => isInside(seam, surface, 3 * triangle, middle))?.label ?? rest;
   });
 
 /** A body as a VRM 1.0 file; the same bytes every time. `coarser`: cells so many times larger, for a quick look. */
 export async function buildBody(figure: Figure, report?: (what: string) => void, coarser = 1): Promise<Uint8Array> {
   const { body, seams, rest, box, shadedOver } = figure;
-  const fine = projectOnto(body, mesh(body, ...box, coarser * cell), 2);
+  const fine = projectOnto(body, largestPart(mesh(body, ...box, coarser * cell)), 2);
   report?.(`${fine.indices.length / 3} triangles of ${coarser * cell * 1000} mm`);
   const weighed = importance(fine, figure);
   const coarse = await decimate(
@@ -128,27 +153,28 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
     figure.triangles,
   );
   let surface = projectOnto(body, coarse);
-  surface = projectOnto(body, refine(surface, finenessOf(figure)));
+  // Edges grow where a coarse surface is projected: those of full sleeves are halved again.
+  for (let pass = 0; pass < (figure.refinements ?? 1); pass++) {
+    surface = projectOnto(body, refine(surface, finenessOf(figure)));
+  }
   const settled = new Set<number>();
   // What lies over others comes last: a thin line through a surface that is cut along its middle already keeps both
   // edges.
   for (const { value } of seams.toReversed()) surface = cutAlong(surface, value, settled);
   surface = compact(surface);
-  report?.(`${surface.indices.length / 3} triangles`);
-  const kinds: Label[] = [];
-  const ofHead: boolean[] = [];
-  for (let t = 0; t < surface.indices.length; t += 3) {
-    const middle = middleOf(surface, t);
-    const label = seams.find((seam) => isInside(seam, surface, t, middle))?.label ?? rest;
-    kinds.push(label);
-    ofHead.push(figure.ofHead(label, middle));
-  }
-  return writeVrm(figure, {
+  const kinds = labelsOf(surface, seams, rest);
+  const ofHead = kinds.map((label, triangle) => figure.ofHead(label, middleOf(surface, 3 * triangle)));
+  const normals = normalsOf(body, surface.positions, shadedOver);
+  const skinned = {
     surface,
-    normals: normalsOf(body, surface.positions, shadedOver),
+    normals,
     skin: skinWeights(surface, figure),
     labels: kinds,
     ofHead,
-    shapes: movesOf(figure, surface),
-  });
+    light: figure.tint ? lightOn(body, surface, normals) : null,
+    shapes: movesOf(figure, surface, kinds, ofHead),
+  };
+  const whole = withPieces(figure, skinned, (piece) => labelsOf(piece.surface, piece.seams, piece.rest));
+  report?.(`${whole.surface.indices.length / 3} triangles`);
+  return writeVrm(figure, figure.rounded ? rounded(whole) : whole);
 }

@@ -1,291 +1,310 @@
-import { averageFace, averageHead, foldedX, movedRegion, type Part, part, type Region } from './anatomy';
-import type { Seam } from './figure';
-import { ellipsoid, moved, type Point, smoothstep } from './signed-distance';
+import { movedRegion, part, type Region } from './anatomy';
+import type { Displacement, FaceShape, Label, Piece, Seam, Sink, Tint } from './figure';
+import {
+  eyeHeight,
+  headOrigin,
+  type MouthMeasures,
+  mouthFineness,
+  mouthHeight,
+  mouthSeams,
+  movedOnHead,
+  onAverageHead,
+  onFront,
+  openMouth,
+  unseen,
+} from './mouth';
+import { ball } from './pieces';
+import { ellipsoid, moved, type Point, smoothstep, taperedCapsule } from './signed-distance';
+import { cutAlong } from './surface';
 
-/** A face against the average one. */
-export interface FaceMeasures {
-  /** The scale of the whole head, and the additional scale of its width. */
-  readonly size: number;
-  readonly width: number;
-  /**
-   * Half width and half height of an eye, how far out of the middle it lies and how much higher its outer corner is
-   * [m].
-   */
-  readonly eye: { readonly radii: readonly [number, number]; readonly out: number; readonly slant: number };
-  /** Half of a brow's thickness, and how far above the eye it lies [m]. */
-  readonly brow: { readonly thickness: number; readonly above: number };
-  /** Half width and half height of the mouth [m]. */
-  readonly mouth: readonly [number, number];
-  /** The scale of the jaw's width; absent: 1. */
+/** A drawn face: a round skull over a small chin, large eyes, a small nose and mouth; lengths at size 1. */
+export interface FaceMeasures extends MouthMeasures {
+  /** Half width and half height of an eye, and how much higher its outer corner is [m]. */
+  readonly eye: { readonly radii: readonly [number, number]; readonly slant: number };
+  /** Linear. */
+  readonly iris: Tint;
+  /** Half of a brow's thickness, how far above the eye it lies, and by how much it is arched [m]. */
+  readonly brow: { readonly thickness: number; readonly above: number; readonly arch: number };
+  /** The thickness of the upper lashes, and how far they reach beyond the outer corner [m]. */
+  readonly lash: readonly [number, number];
+  /** The scale of jaw and chin; absent: 1. */
   readonly jaw?: number;
   /** The scale of the nose; absent: 1. */
   readonly nose?: number;
-  /** Fuller cheeks and chin [m]; absent: the average ones. */
+  /** Fuller cheeks and chin [m]; absent: none. */
   readonly cheeks?: number;
 }
 
-/** The measures of a face that determine its mouth. */
-export type MouthMeasures = Pick<FaceMeasures, 'size' | 'width' | 'mouth'>;
-
-/** The origin of the head's scaling: the head joint. */
-const root: Point = [0, 1.516, -0.012];
-const eyeHeight = 1.594;
-const mouthHeight = 1.536;
-/** Below it is the neck, which stays as it is up to so high [m]. */
-const chin = 1.49;
-const neckFront = 1.462;
-
 /** Scales a region to a head of these measures. */
 export const inHead = (region: Region, { size, width }: FaceMeasures): Region =>
-  movedRegion(region, { about: root, factor: [size * width, size, size] });
+  movedRegion(region, { about: headOrigin, factor: [size * width, size, size] });
 
-/** A place on a head of these measures as it lies on the average one, x ≥ 0. */
-export const onAverageHead = (
-  { size, width }: Pick<FaceMeasures, 'size' | 'width'>,
-  x: number,
-  y: number,
-  z: number,
-): Point => [foldedX(x) / (size * width), root[1] + (y - root[1]) / size, root[2] + (z - root[2]) / size];
+const head = (solid: Parameters<typeof part>[2]) => part('head', 0.02, solid);
 
-/**
- * A place on a head of these measures after what lies there on the average one has gone from one place to another; x ≥
- * 0 there, on both sides here.
- */
-const movedOnHead = (
-  { size }: Pick<FaceMeasures, 'size'>,
-  [worldX, worldY, worldZ]: Point,
-  from: Point,
-  to: Point,
-): Point => [
-  // In the middle, where both halves are rounded into one, nothing goes aside.
-  worldX * (to[0] / from[0]),
-  worldY + (to[1] - from[1]) * size,
-  worldZ + (to[2] - from[2]) * size,
-];
+/** How far out of the middle an eye's opening and its ball lie [m]. */
+const eyeOut = 0.0345;
+const ballOut = 0.0325;
+/** The radius of an eyeball, of which a flat cap is seen, and where its centre is [m]. */
+const ballRadius = 0.032;
+const ballCentre: Point = [ballOut, eyeHeight, 0.0425];
+/** The thickness of a lid over the ball, and how deep the socket's floor lies under the ball's surface [m]. */
+const lidThickness = 0.0028;
+const floorDepth = 0.004;
 
-/** Skull, jaw and chin. */
-export function skullOf({ jaw = 1 }: FaceMeasures): Region {
-  const narrower = (one: Part): Part => ({ ...one, solid: moved(one.solid, { factor: [jaw, 1, 1] }) });
-  // Chin and jawbone are the third and the fourth part of the average head.
-  return { ...averageHead, parts: averageHead.parts.map((one, i) => (i === 2 || i === 3 ? narrower(one) : one)) };
-}
+/** Skull, cheeks, jaw and chin. */
+export const skullOf = ({ jaw = 1, cheeks = 0 }: FaceMeasures): Region => ({
+  inner: 0.03,
+  joint: 0.022,
+  parts: [
+    head(ellipsoid([0, 1.62, -0.012], [0.0815, 0.083, 0.09])),
+    head(ellipsoid([0, 1.566, 0.018], [0.0615 + cheeks, 0.068, 0.062])),
+    head(ellipsoid([0.036 + cheeks, 1.553, 0.042], [0.027 + cheeks, 0.026 + cheeks, 0.026])),
+    head(taperedCapsule([0, 1.515, 0.05], [0.012 * jaw, 1.514, 0.047], 0.02 * jaw + cheeks, 0.019 * jaw)),
+    head(taperedCapsule([0.046 * jaw, 1.556, 0.004], [0.02 * jaw, 1.516, 0.036], 0.02, 0.021)),
+  ],
+});
 
 /** Nose and lips. */
-export function featuresOf({ nose = 1 }: FaceMeasures): Region {
-  const about: Point = [0, 1.585, 0.08];
-  const smaller = (one: Part): Part => ({ ...one, solid: moved(one.solid, { about, factor: [nose, nose, nose] }) });
-  // The first two parts of the average face are its nose; lips follow.
-  return { ...averageFace, parts: averageFace.parts.map((one, i) => (i < 2 ? smaller(one) : one)) };
-}
-
-/** Eyeballs, bulging a little under their lids. */
-export const eyesOf = ({ eye }: FaceMeasures): Region => ({
-  inner: 0.004,
-  joint: 0.008,
-  parts: [
-    part('head', 0.02, ellipsoid([eye.out, eyeHeight, 0.068], [eye.radii[0] * 1.15, eye.radii[1] * 1.4, 0.0155])),
-  ],
-});
-
-export const cheeksOf = (fullness: number): Region => ({
-  inner: 0.02,
-  joint: 0.03,
-  parts: [
-    part(
-      'head',
-      0.02,
-      ellipsoid([0.036 + 0.6 * fullness, 1.554, 0.044], [0.022 + fullness, 0.024 + fullness, 0.022 + fullness]),
-    ),
-    part('head', 0.02, ellipsoid([0.012, 1.514, 0.044], [0.024 + fullness, 0.016 + fullness, 0.02 + fullness])),
-  ],
-});
-
-/** How far outside an eye's edge a place is, in eyes: 1 on the edge. */
-function eyeRadius({ eye }: FaceMeasures, x: number, y: number, larger = 1): number {
-  const [a, b] = eye.radii;
-  const dx = (x - eye.out) / a;
-  const dy = (y - eyeHeight - eye.slant * dx) / b;
-  // Pointed towards the nose, round outside.
-  const pointed = dx < 0 ? 1 + 0.25 * dx * dx * Math.abs(dy) : 1;
-  return (Math.hypot(dx, dy) * pointed) / larger;
-}
-
-const circle = (x: number, y: number, cx: number, cy: number, radius: number): number =>
-  Math.hypot(x - cx, y - cy) - radius;
-
-/** The height of the line between the average head's lips [m]. */
-const lipsMeetAt = (x: number): number => mouthHeight + 6 * x * x;
-/** Half of the dark line between lips [m]; its round ends lie before their corners. */
-const lineThickness = 0.0011;
-const lineEnd = 0.94;
-
-type MouthWidth = Pick<FaceMeasures, 'mouth'>;
-
-/** How far beyond the straight part of the line a place is [m]. */
-const beyondLine = ({ mouth: [wide] }: MouthWidth, x: number): number =>
-  Math.max(0, x - lineEnd * wide + lineThickness);
-
-/** Half of the line's thickness so far out of the middle [m]. */
-const halfLine = (face: MouthWidth, x: number): number =>
-  Math.sqrt(Math.max(0, lineThickness ** 2 - beyondLine(face, x) ** 2));
-
-/** The line between the lips on the average head: 0 on its edge, negative inside. */
-const mouthLine = (face: MouthWidth, x: number, y: number): number =>
-  Math.hypot(beyondLine(face, x), y - lipsMeetAt(x)) - lineThickness;
-
-/** Both lips, likewise. */
-const bothLips = ({ mouth: [wide, high] }: MouthWidth, x: number, y: number): number =>
-  high * (Math.hypot(x / wide, (y - lipsMeetAt(x) + 0.0008) / high) - 1);
-
-/** A line on the front of a head, drawn on the average one. */
-const onFront = (
-  head: Pick<FaceMeasures, 'size' | 'width'>,
-  value: (x: number, y: number) => number,
-): ((x: number, y: number, z: number) => number) => {
-  return (worldX, worldY, worldZ) => {
-    const [x, y, z] = onAverageHead(head, worldX, worldY, worldZ);
-    return Math.max(value(x, y), 0.03 - z);
+export function featuresOf({ nose = 1, mouth: [wide], smile = 6 }: FaceMeasures): Region {
+  const end = 0.6 * wide;
+  const raised = smile * end * end;
+  const about: Point = [0, 1.58, 0.075];
+  const scaled = (solid: ReturnType<typeof ellipsoid>) => head(moved(solid, { about, factor: [nose, nose, nose] }));
+  return {
+    inner: 0.008,
+    joint: 0.015,
+    parts: [
+      scaled(taperedCapsule([0, 1.589, 0.0745], [0, 1.569, 0.0885], 0.004, 0.0082)),
+      scaled(ellipsoid([0.0095, 1.5665, 0.083], [0.0065, 0.0058, 0.0075])),
+      head(taperedCapsule([0, 1.5402, 0.0765], [end, 1.5402 + raised, 0.0715], 0.0056, 0.0042)),
+      head(taperedCapsule([0, 1.5312, 0.0755], [0.85 * end, 1.532 + raised, 0.0715], 0.0062, 0.0046)),
+    ],
   };
+}
+
+/** Lids over the eyeballs, which lie in sockets. */
+export const lids: Region = {
+  inner: 0.004,
+  joint: 0.012,
+  parts: [head(ellipsoid(ballCentre, [1, 1, 1].map(() => ballRadius + lidThickness) as unknown as Point))],
 };
 
-/**
- * The line between the lips of a head and the lips: the upper one is cut by itself, so that vertices lie along the
- * line's middle, too.
- */
-export const mouthSeams = (face: MouthMeasures, line: Seam['label'], lips: Seam['label']): readonly Seam[] => [
-  { label: line, value: onFront(face, (x, y) => mouthLine(face, x, y)) },
-  { label: lips, value: onFront(face, (x, y) => Math.max(bothLips(face, x, y), lipsMeetAt(x) - y)) },
-  { label: lips, value: onFront(face, (x, y) => bothLips(face, x, y)) },
-];
-
-/** Seams of eyes, brows and mouth; each is 0 on its line and negative inside. */
-export function faceSeams(face: FaceMeasures): readonly Seam[] {
-  const { eye, brow } = face;
+/** How far outside an eye's opening a place is, in eyes: 1 on the edge. Upper lids hang a little. */
+function eyeRadius({ eye }: FaceMeasures, x: number, y: number): number {
   const [a, b] = eye.radii;
-  const inFace = (value: (x: number, y: number) => number) => onFront(face, value);
-  const eyeEdge = (x: number, y: number) => b * (eyeRadius(face, x, y) - 1);
-  // The upper lid lies over a part of the iris: one that shows whole stares.
-  const irisRadius = 1.04 * b;
-  const irisHeight = eyeHeight + 0.2 * b;
+  const dx = (x - eyeOut) / a;
+  const dy = (y - eyeHeight - eye.slant * dx) / b;
+  return (Math.abs(dx) ** 2.3 + Math.abs(dy > 0 ? 1.17 * dy : dy) ** 2.3) ** (1 / 2.3);
+}
+
+/** Seams of eyes and mouth; each is 0 on its line and negative inside. */
+export function faceSeams(face: FaceMeasures): readonly Seam[] {
+  const { eye, lash } = face;
+  const [a, b] = eye.radii;
+  const lashes = (x: number, y: number) => {
+    // Along the upper edge, thickest outside, where they end in a point.
+    const dx = (x - eyeOut) / a;
+    const outward = smoothstep(-0.9, 0.9, dx);
+    const thick = lash[0] * (0.35 + 0.65 * outward);
+    const above = b * (eyeRadius(face, x, y) - 1) - thick * smoothstep(-1.05, -0.6, dx);
+    return Math.max(above, eyeHeight + (0.28 - 0.1 * outward) * b + eye.slant * dx - y, x - eyeOut - a - lash[1]);
+  };
   return [
-    { label: 'Shine', value: inFace((x, y) => circle(x, y, eye.out + 0.0022, irisHeight + 0.3 * b, 0.0015)) },
-    {
-      label: 'Pupil',
-      value: inFace((x, y) => Math.max(circle(x, y, eye.out, irisHeight, 0.46 * irisRadius), eyeEdge(x, y))),
-    },
-    { label: 'Iris', value: inFace((x, y) => Math.max(circle(x, y, eye.out, irisHeight, irisRadius), eyeEdge(x, y))) },
-    { label: 'EyeWhite', value: inFace(eyeEdge) },
-    {
-      label: 'Lash',
-      value: inFace((x, y) =>
-        // Not round the eye's outer corner, where the face turns aside.
-        Math.max(
-          b * (eyeRadius(face, x, y - 0.0006, 1.16) - 1),
-          eyeHeight + 0.18 * b - y + eye.slant * 0.5,
-          x - eye.out - 1.02 * a,
-        ),
-      ),
-    },
-    {
-      label: 'Brow',
-      value: inFace((x, y) => {
-        const dx = x - eye.out - 0.001;
-        const middle = eyeHeight + brow.above + eye.slant * (dx / a) - 9 * dx * dx;
-        const taper = brow.thickness * (1 - 18 * Math.max(0, dx));
-        return Math.hypot(Math.max(Math.abs(dx) - 0.0145, 0), y - middle) - taper;
-      }),
-    },
+    { label: 'Socket', value: onFront(face, (x, y) => b * (eyeRadius(face, x, y) - 1)) },
+    { label: 'Lash', value: onFront(face, lashes) },
     ...mouthSeams(face, 'MouthLine', 'Lips'),
   ];
 }
 
+/** Brows; the skin along their middles is cut as well, so that thin ones stay whole. Hair lies over both. */
+export function browSeams(face: FaceMeasures): readonly Seam[] {
+  const { eye, brow } = face;
+  const long = 1.15 * eye.radii[0];
+  const away = (x: number, y: number) => {
+    const along = (x - eyeOut) / long;
+    const middle = eyeHeight + brow.above - brow.arch * (along - 0.2) ** 2 * (along < 0.2 ? 0.55 : 1.3);
+    return { along, above: y - middle, far: Math.hypot(long * Math.max(Math.abs(along) - 0.9, 0), y - middle) };
+  };
+  const brows = (x: number, y: number) => {
+    const { along, far } = away(x, y);
+    return far - brow.thickness * (1 - 0.55 * smoothstep(-0.2, 1, along));
+  };
+  return [
+    { label: 'Brow', value: onFront(face, brows) },
+    { label: 'Skin', value: onFront(face, (x, y) => Math.max(brows(x, y) - 0.005, -away(x, y).above)) },
+  ];
+}
+
+/** The floor of an eye's socket, behind the ball, to which the skin inside its opening goes. */
+export const sinkOf = (face: FaceMeasures): Sink => ({
+  label: 'Socket',
+  wall: (_, y) => (y > eyeHeight + 0.1 * face.eye.radii[1] * face.size ? 'Lash' : 'Skin'),
+  to(worldX, worldY, worldZ) {
+    const at = onAverageHead(face, worldX, worldY, worldZ);
+    const ahead = at.map((value, axis) => value - ballCentre[axis]!);
+    const scale = (ballRadius - floorDepth) / Math.hypot(...ahead);
+    const to = ahead.map((value, axis) => ballCentre[axis]! + scale * value) as unknown as Point;
+    return movedOnHead(face, [worldX, worldY, worldZ], at, to);
+  },
+});
+
+/** The radii of pupil, iris and of the dark ring around it [m]; highlights: their places on the ball, and radii. */
+const painted = { pupil: 0.0056, iris: 0.0117, ring: 0.0131 };
+const highlights = [
+  { at: [-0.0036, 0.0052], radius: 0.0028 },
+  { at: [0.0042, -0.0046], radius: 0.0013 },
+] as const;
+
+/** A ball with iris, pupil and highlights, that turns about its bone. */
+function eyeball(face: FaceMeasures, side: 1 | -1): Piece {
+  const { size } = face;
+  const larger = face.eye.radii[1] / 0.014;
+  const steps = [painted.pupil, painted.iris, painted.ring, 0.0165, 0.022, 0.0285].map((radius) => larger * radius);
+  const centre: Point = onHead(face, side, ballCentre);
+  let surface = ball(
+    centre,
+    size * ballRadius,
+    steps.map((radius) => Math.asin(radius / ballRadius)),
+    20,
+  );
+  const off = (x: number, y: number): readonly [number, number] => [
+    (x - centre[0]) / (size * larger),
+    (y - centre[1]) / (size * larger),
+  ];
+  const ahead = (z: number, value: number) => Math.max(value, centre[2] - z);
+  const seams: Seam[] = highlights.map(({ at, radius }) => ({
+    label: 'Shine',
+    value(x, y, z) {
+      const [dx, dy] = off(x, y);
+      return ahead(z, Math.hypot(dx - at[0], dy - at[1]) - radius);
+    },
+  }));
+  for (const [label, radius] of [
+    ['Pupil', painted.pupil],
+    ['Iris', painted.iris],
+    ['Limbus', painted.ring],
+  ] as const)
+    seams.push({ label, value: (x, y, z) => ahead(z, Math.hypot(...off(x, y)) - radius - 1e-5) });
+  const settled = new Set<number>();
+  for (const { value } of seams.slice(0, highlights.length)) surface = cutAlong(surface, value, settled);
+  return { surface, centre, seams, rest: 'EyeWhite', bone: side > 0 ? 'leftEye' : 'rightEye' };
+}
+
+const onHead = ({ size, width }: FaceMeasures, side: number, [x, y, z]: Point): Point => [
+  side * x * size * width,
+  headOrigin[1] + (y - headOrigin[1]) * size,
+  headOrigin[2] + (z - headOrigin[2]) * size,
+];
+
+export const eyesOf = (face: FaceMeasures): readonly Piece[] => [eyeball(face, 1), eyeball(face, -1)];
+
+/** The centre of the left eyeball. */
+export const eyeCentre = (face: FaceMeasures): Point => onHead(face, 1, ballCentre);
+
+/** Warm cheeks, nose and lids on skin; eyes under the shade of their lids. */
+export function faceTint(face: FaceMeasures, label: Label, worldX: number, worldY: number, worldZ: number): Tint {
+  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+  const [, b] = face.eye.radii;
+  const height = (y - eyeHeight) / b;
+  const shade = 1 - 0.34 * smoothstep(0.1, 0.95, height);
+  if (label === 'EyeWhite') return [shade, shade, Math.min(1, 1.02 * shade)];
+  if (label === 'Iris') {
+    const light = (0.5 + 0.75 * smoothstep(0.75, -0.75, height)) * shade;
+    return face.iris.map((value) => Math.min(1, light * value)) as unknown as Tint;
+  }
+  if (label !== 'Skin' || z < -0.04) return [1, 1, 1];
+  const round = (ox: number, oy: number, radius: number) =>
+    smoothstep(radius, 0.2 * radius, Math.hypot(x - ox, y - oy));
+  const front = smoothstep(0.02, 0.05, z);
+  const cheek = front * 0.7 * round(0.047, 1.561, 0.026);
+  const nose = front * 0.7 * round(0, 1.566, 0.017);
+  const lid = front * 0.5 * smoothstep(1.9, 1.1, eyeRadius(face, x, y)) * smoothstep(0, 0.8, height);
+  const ear = smoothstep(0.079, 0.086, x) * smoothstep(0.03, 0, z);
+  return warmed(Math.max(cheek, nose, lid, ear));
+}
+
+/** Skin through which blood shows by a share of 0 to 1. */
+export const warmed = (share: number): Tint => [1 - 0.03 * share, 1 - 0.27 * share, 1 - 0.3 * share];
+
 /** How long a triangle's edges may be there [m]: short on a face, shortest at eyes and mouth. */
 export function faceFineness(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): number {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
-  if (z < 0.03 || y < chin) return 1;
-  if (eyeRadius(face, x, y) < 1.25) return 0.0036 * face.size;
-  const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.006 && Math.abs(x - face.eye.out) < 0.02;
-  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.005 : 0.012) * face.size);
-}
-
-/** Returns the mesh fineness at the mouth alone. */
-export function mouthFineness(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): number {
-  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
-  const [wide, high] = face.mouth;
-  return z > 0.03 && Math.hypot(x / wide, (y - mouthHeight) / (1.4 * high)) < 1.1 ? 0.0029 * face.size : 1;
-}
-
-/** How far around an eye the skin goes along with its lids [eyes]. */
-const lidReach = 1.9;
-
-/** Returns the place of a face point with closed eyes: both lids on one line below the middle; null: unchanged. */
-export function closedEyes(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
-  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+  if (z < 0.02 || y < 1.49 || y > 1.66) return 1;
   const radius = eyeRadius(face, x, y);
-  if (z < 0.03 || radius >= lidReach) return null;
-  const [a, b] = face.eye.radii;
-  // A place outside goes as the edge does on its way to the middle.
-  const share = Math.max(1, radius);
-  const dx = (x - face.eye.out) / share;
-  const dy = (y - eyeHeight - (face.eye.slant * (x - face.eye.out)) / a) / share;
-  const closed = -0.45 * b * Math.sqrt(Math.max(0, 1 - (dx / a) ** 2)) + 0.03 * dy;
-  const moved = (closed - dy) * (1 - smoothstep(1, lidReach, radius));
-  return movedOnHead(face, [worldX, worldY, worldZ], [x, y, z], [x, y + moved, z]);
+  if (radius < 0.75) return 0.012;
+  if (radius < 2.1) return (radius < 1.35 ? 0.0046 : 0.009) * face.size;
+  const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.008 && Math.abs(x - eyeOut) < 0.025;
+  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.0052 : 0.012) * face.size);
 }
 
-/**
- * Jaws turn about this line, before the ears [m], so far when the mouth is open [rad]; the upper lip is raised a little
- * [m].
- */
-const jawHinge = [1.572, -0.004] as const;
-const jawTurn = 0.16;
-const lipRaise = 0.0018;
-/** What of the jaw's turn the corners of a mouth take part in, and how much narrower an open one is [share]. */
-const cornerShare = 0.42;
-const narrowing = 0.1;
-/** The range of skin that stretches above and below the lips [m], and the depth of the gap between open lips [m]. */
-const stretch = { above: 0.014, below: 0.022 };
-const depth = 0.012;
-/** Less than this is not seen [m]. */
-const unseen = 2e-4;
+/** How far the upper lid lies over the lower one when both are closed [m]. */
+const overlap = 0.0007;
+/** How far around an eye the skin goes along with its lids [eyes]. */
+const lidReach = 1.5;
 
-/**
- * What share of the jaw's turn a place takes part in, so far out of the middle and below where the lips meet [m]. Lips
- * part in an oval: the lower goes with the jaw in the middle, both meet at the corners.
- */
-function jawShare({ mouth: [wide] }: MouthWidth, x: number, below: number, isLower: boolean): number {
-  const parted = Math.sqrt(Math.max(0, 1 - (x / (lineEnd * wide - lineThickness)) ** 2));
-  if (!isLower) return cornerShare * (1 - parted) * smoothstep(-stretch.above, 0, below);
-  const lip = cornerShare + (1 - cornerShare) * parted;
-  return lip + (1 - lip) * smoothstep(0, stretch.below, below);
-}
+/** A move on the average head: how far aside, up, and out of the skin [m]; null: none. */
+type Lift = (x: number, y: number) => Point | null;
 
-/**
- * Returns the place of a face point with an open mouth: the jaw turns down and back with lips and chin; null:
- * unchanged.
- */
-export function openMouth(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
-  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
-  const [wide] = face.mouth;
-  if (z < 0 || y < neckFront || y > eyeHeight) return null;
-  const below = lipsMeetAt(Math.min(x, wide)) - y;
-  // Between the lips: 0 on the line's upper edge, 1 on its lower one. Vertices of the edges lie on them but for
-  // rounding.
-  const half = 0.9 * halfLine(face, x);
-  const between = half > 0 ? Math.max(0, Math.min(1, (below / half + 1) / 2)) : Number(below > 0);
-  const upper = jawShare(face, x, Math.min(below, 0), false);
-  const lower = jawShare(face, x, Math.max(below, 0), true);
-  const share =
-    (upper + (lower - upper) * between) * smoothstep(0, 0.05, z) * smoothstep(neckFront, neckFront + 0.035, y);
-  const nearLips = smoothstep(0.016, 0, Math.abs(below)) * (1 - smoothstep(wide, 2 * wide, x));
-  const raised = lipRaise * nearLips * (1 - smoothstep(0.3 * wide, wide, x)) * (1 - between);
-  const [sine, cosine] = [Math.sin(share * jawTurn), Math.cos(share * jawTurn)];
-  const [up, ahead] = [y - jawHinge[0], z - jawHinge[1]];
-  const to: Point = [
-    x * (1 - narrowing * nearLips),
-    jawHinge[0] + cosine * up - sine * ahead + raised,
-    jawHinge[1] + cosine * ahead + sine * up - depth * 4 * between * (1 - between),
-  ];
-  if (Math.hypot(to[0] - x, to[1] - y, to[2] - z) < unseen) return null;
-  return movedOnHead(face, [worldX, worldY, worldZ], [x, y, z], to);
+/** Lids that close by a share: both meet on a line below the middle. */
+const lidsClosed =
+  (face: FaceMeasures, upper: number, lower: number): Lift =>
+  (x, y) => {
+    const radius = eyeRadius(face, x, y);
+    if (radius >= lidReach) return null;
+    const [a, b] = face.eye.radii;
+    // A place outside goes as the edge does on its way to the middle.
+    const share = Math.max(1, radius);
+    const dx = (x - eyeOut) / share;
+    const dy = (y - eyeHeight - (face.eye.slant * (x - eyeOut)) / a) / share;
+    const open = Math.max(0, 1 - (Math.abs(dx) / a) ** 2.4) ** (1 / 2.4);
+    const meet = -0.5 * b * open + 0.03 * dy;
+    const near = 1 - smoothstep(1.15, lidReach, radius);
+    if (dy <= meet) return [0, lower * (meet - dy) * near, 0];
+    // The upper lid lies over the lower one, so that no gap is left.
+    return [0, upper * (meet - 0.09 * b * open - dy) * near, overlap * Math.max(0, upper) * near];
+  };
+
+/** Brows that rise by so much inside and outside [m]. */
+const browsRaised =
+  (face: FaceMeasures, inner: number, outer: number): Lift =>
+  (x, y) => {
+    const away = Math.abs(y - eyeHeight - face.brow.above) / 0.014;
+    const over = smoothstep(1, 0.25, away) * smoothstep(0.068, 0.05, x);
+    return over > 0 ? [0, over * (inner + (outer - inner) * smoothstep(0.012, 0.05, x)), 0] : null;
+  };
+
+/** Corners of the mouth that go aside and up by so much [m]. */
+const cornersMoved =
+  ({ mouth: [wide] }: FaceMeasures, aside: number, up: number): Lift =>
+  (x, y) => {
+    const near = smoothstep(0.022, 0.002, Math.hypot(0.8 * (x - wide), y - mouthHeight - 0.003));
+    const cheek = 0.35 * smoothstep(0.024, 0.006, Math.hypot(x - 0.044, y - 1.556));
+    return near + cheek > 0 ? [aside * near, up * Math.max(near, cheek), 0] : null;
+  };
+
+/** The shapes of a face by VRM's names; `onSkin`: lays a place onto the surface, as lids slide over eyes. */
+export function faceShapes(
+  face: FaceMeasures,
+  onSkin: (place: Point) => Point,
+): Readonly<Record<FaceShape, Displacement>> {
+  const lifted =
+    (...lifts: readonly Lift[]): Displacement =>
+    (...at) => {
+      const [x, y, z] = onAverageHead(face, ...at);
+      if (z < 0.02 || y < 1.5) return null;
+      const moves = lifts.flatMap((lift) => lift(x, y) ?? []);
+      const [aside, up, out] = [0, 1, 2].map((axis) =>
+        moves.reduce((sum, move, i) => (i % 3 === axis ? sum + move : sum), 0),
+      ) as unknown as Point;
+      if (Math.hypot(aside, up) < unseen) return null;
+      const to = onSkin(movedOnHead(face, at, [x, y, z], [x + aside, y + up, z]));
+      return [to[0], to[1], to[2] + out * face.size];
+    };
+  return {
+    blink: lifted(lidsClosed(face, 1, 1)),
+    aa: (...at) => openMouth(face, ...at),
+    happy: lifted(lidsClosed(face, 0.1, 0.5), browsRaised(face, 0.002, 0.003), cornersMoved(face, 0.0045, 0.0065)),
+    relaxed: lifted(lidsClosed(face, 0.3, 0.15), browsRaised(face, 0.001, 0), cornersMoved(face, 0.002, 0.003)),
+    surprised: lifted(lidsClosed(face, -0.16, -0.1), browsRaised(face, 0.008, 0.007)),
+  };
 }

@@ -1,13 +1,17 @@
 import type { Anatomy } from './anatomy';
 import type { Point } from './signed-distance';
+import type { Surface } from './surface';
 
 /** A material that the page recolours by its name; `Details` keeps the colours of its vertices. */
 export type MaterialName = 'Suit' | 'Accent' | 'Head' | 'Visor' | 'Skin' | 'Hair' | 'Top' | 'Bottom' | 'Details';
 
-/** What a triangle is: a material, and the colour of its vertices (linear) by which that is multiplied. */
+/** A linear colour by which a material is multiplied. */
+export type Tint = readonly [number, number, number];
+
+/** What a triangle is: a material, and the colour of its vertices. */
 interface Look {
   readonly material: MaterialName;
-  readonly tint?: readonly [number, number, number];
+  readonly tint?: Tint;
 }
 
 export const labels = {
@@ -16,16 +20,25 @@ export const labels = {
   Head: { material: 'Head' },
   Visor: { material: 'Visor' },
   Skin: { material: 'Skin' },
-  Lips: { material: 'Skin', tint: [0.86, 0.5, 0.47] },
+  Lips: { material: 'Skin', tint: [0.9, 0.56, 0.53] },
   MouthLine: { material: 'Skin', tint: [0.1, 0.035, 0.035] },
   Hair: { material: 'Hair' },
-  Brow: { material: 'Details', tint: [0.035, 0.022, 0.016] },
+  Nail: { material: 'Skin', tint: [1, 0.74, 0.72] },
+  /** Brows, trimmed edges and shoes have colours of a person. */
+  Brow: { material: 'Details' },
   Top: { material: 'Top' },
+  TopTrim: { material: 'Details' },
+  TopInside: { material: 'Top', tint: [0.2, 0.2, 0.22] },
   Bottom: { material: 'Bottom' },
-  Shoes: { material: 'Details', tint: [0.72, 0.72, 0.7] },
+  BottomTrim: { material: 'Bottom', tint: [0.62, 0.62, 0.64] },
+  BottomInside: { material: 'Bottom', tint: [0.25, 0.25, 0.28] },
+  Shoes: { material: 'Details' },
   Sole: { material: 'Details', tint: [0.9, 0.9, 0.88] },
-  EyeWhite: { material: 'Details', tint: [0.86, 0.86, 0.84] },
-  Iris: { material: 'Details', tint: [0.16, 0.085, 0.04] },
+  /** The skin in an eye's opening, which is sunk behind the ball. */
+  Socket: { material: 'Skin', tint: [0.1, 0.05, 0.05] },
+  EyeWhite: { material: 'Details', tint: [0.9, 0.9, 0.88] },
+  Limbus: { material: 'Details', tint: [0.03, 0.02, 0.016] },
+  Iris: { material: 'Details' },
   Pupil: { material: 'Details', tint: [0.012, 0.01, 0.01] },
   Lash: { material: 'Details', tint: [0.03, 0.02, 0.016] },
   Shine: { material: 'Details', tint: [1, 1, 1] },
@@ -33,7 +46,7 @@ export const labels = {
 
 export type Label = keyof typeof labels;
 
-export const tintOf = (label: Label): readonly [number, number, number] => {
+export const tintOf = (label: Label): Tint => {
   const look: Look = labels[label];
   return look.tint ?? [1, 1, 1];
 };
@@ -58,8 +71,25 @@ export interface MeshPlan {
   readonly ofHead: boolean;
 }
 
-/** Shapes that a face can take, by the names that VRM has for them: closed eyes, and a mouth that says "ah". */
-export type FaceShape = 'blink' | 'aa';
+/** Shapes that a face can take, by the names that VRM has for them. */
+export type FaceShape = 'blink' | 'aa' | 'happy' | 'relaxed' | 'surprised';
+
+/** A closed surface of its own that one bone carries, as an eyeball, and the seams between its labels. */
+export interface Piece {
+  readonly surface: Surface;
+  /** Normals point away from it [m]. */
+  readonly centre: Point;
+  readonly seams: readonly Seam[];
+  readonly rest: Label;
+  readonly bone: string;
+}
+
+/** An opening in the skin: triangles with a label go inward, and a wall joins them to the edge. */
+export interface Sink {
+  readonly label: Label;
+  readonly wall: (x: number, y: number, z: number) => Label;
+  readonly to: (x: number, y: number, z: number) => Point;
+}
 
 /** Returns the place of a skin point under a shape; null: unchanged. */
 export type Displacement = (x: number, y: number, z: number) => Point | null;
@@ -84,7 +114,19 @@ export interface Figure extends Anatomy {
    * triangles. Absent: 1 mm.
    */
   readonly shadedOver?: number;
+  /** How often long edges are halved and projected; absent: once. */
+  readonly refinements?: number;
   /** How long edges may be at a place [m]; absent: as they come. */
   readonly finer?: (x: number, y: number, z: number) => number;
   readonly shapes: Readonly<Partial<Record<FaceShape, Displacement>>>;
+  /** Whether what has a label stays under a shape; absent: nothing does. */
+  readonly holds?: (label: Label, shape: FaceShape) => boolean;
+  /**
+   * Whether places and normals are rounded to what can be seen, so that the file compresses well. Absent: as computed.
+   */
+  readonly rounded?: boolean;
+  readonly pieces?: readonly Piece[];
+  readonly sink?: Sink;
+  /** What a label's colour is multiplied by at a place, besides occlusion. Absent: neither. */
+  readonly tint?: (label: Label, x: number, y: number, z: number) => Tint;
 }

@@ -1,4 +1,4 @@
-import type { Label } from './figure';
+import type { Label, Seam } from './figure';
 import type { BodyRig } from './rig';
 import { type DistanceField, smoothBoth, smoothstep, smoothUnion } from './signed-distance';
 
@@ -10,6 +10,10 @@ export interface GarmentStyle {
     readonly sleeve: number;
     readonly hem: number;
     readonly neck: number;
+    /** How far edges stand off besides. */
+    readonly flare: number;
+    /** How full sleeves are. */
+    readonly full: number;
     /** A ribbed hem and cuffs draw loose cloth in. */
     readonly ribbed: boolean;
   };
@@ -23,6 +27,10 @@ export interface Garment {
   readonly label: Label;
   /** x ≥ 0. */
   readonly field: DistanceField;
+  /** A field that is 0 on its edges, negative inside. */
+  readonly edge?: DistanceField;
+  /** What is marked on it. */
+  readonly marks?: readonly Seam[];
 }
 
 export type Garments = readonly Garment[];
@@ -42,10 +50,21 @@ interface Undressed {
 const neckline = ({ top }: GarmentStyle, x: number, y: number, z: number): number =>
   y - 1.444 - 0.4 * Math.max(0, x - 0.06) + 0.12 * z + top.neck * smoothstep(0, 0.07, z);
 
-/** An edge as of cloth. */
-const edge = 0.005;
+/** An edge as of cloth, the thickness of cloth, and the width of a trimmed edge [m]. */
+const edge = 0.003;
+const thickness = 0.0055;
+export const trimWidth = 0.019;
+/** How steeply an opening goes in beneath its cloth. */
+const recess = 1;
 /** The upper end of trousers: below every hem [m]. */
 const waist = 1.04;
+
+/** How far cloth stands off at its edge besides its usual distance, so many metres before the edge. */
+const flare = (before: number): number => smoothstep(0.05, 0.002, before);
+
+/** A shell of cloth about a body, within a region (negative inside): beneath its edge the opening goes in. */
+const shell = (body: number, off: number, region: number): number =>
+  smoothBoth(body - off, region + recess * Math.max(0, off - thickness - body), edge);
 
 export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: Undressed): Garments {
   const { top, bottom, shoes } = style;
@@ -53,39 +72,64 @@ export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: 
   const dressed = (x: number, y: number, z: number) =>
     smoothUnion(smoothUnion(torso(x, y, z), leg(x, y, z), 0.06), arm(x, y, z), 0.07);
   const long = top.sleeve > wrist - 0.1;
-  const topField: DistanceField = (x, y, z) => {
-    if (y < top.hem - 0.15) return top.hem - y;
+  const topEdge: DistanceField = (x, y, z) => Math.max(x - top.sleeve, top.hem - y, neckline(style, x, y, z));
+  const topOff: DistanceField = (x, y, z) => {
+    const [toCuff, toHem, toNeck] = [top.sleeve - x, y - top.hem, -neckline(style, x, y, z)];
+    // A ribbed edge draws loose cloth in; others stand off.
     const drawnIn = top.ribbed
-      ? Math.max(
-          smoothstep(top.hem + 0.05, top.hem + 0.02, y),
-          long ? smoothstep(top.sleeve - 0.05, top.sleeve - 0.025, x) : 0,
-        )
+      ? Math.max(smoothstep(0.05, 0.026, toHem), long ? smoothstep(0.05, 0.026, toCuff) : 0)
       : 0;
-    const off = top.off - 0.7 * Math.max(0, top.off - 0.005) * drawnIn;
-    const region = Math.max(x - top.sleeve, top.hem - y, neckline(style, x, y, z));
-    return smoothBoth(dressed(x, y, z) - off, region, edge);
+    const loose = top.flare * Math.max(flare(toCuff), 0.7 * flare(toHem), 0.35 * flare(toNeck));
+    // Sleeves are fullest before their ends.
+    const full = top.full * smoothstep(rig.armJoints.shoulder + 0.03, rig.armJoints.shoulder + 0.15, x);
+    return top.off + full * (1 - drawnIn) + (top.ribbed ? 0.4 * loose : loose) - 0.4 * top.off * drawnIn;
   };
-  const bottomField: DistanceField = (x, y, z) => {
-    if (y > waist + 0.15) return y - waist;
-    const off = bottom.off + (bottom.cuffOff - bottom.off) * smoothstep(0.75, 0.25, y);
-    const legs = smoothUnion(torso(x, y, z), leg(x, y, z), 0.06);
-    return smoothBoth(legs - off, Math.max(y - waist, bottom.cuff - y), edge);
-  };
+  const bottomOff: DistanceField = (_, y) =>
+    bottom.off +
+    (bottom.cuffOff - bottom.off) * smoothstep(0.75, 0.25, y) +
+    0.004 * smoothstep(bottom.cuff + trimWidth + 0.003, bottom.cuff + trimWidth, y);
+  const legs: DistanceField = (x, y, z) => smoothUnion(torso(x, y, z), leg(x, y, z), 0.06);
+  const bottomEdge: DistanceField = (_, y) => bottom.cuff - y;
+  /** Toes have room. */
+  const shod: DistanceField = (x, y, z) => foot(x, y, z) - 0.008 * smoothstep(0.03, 0.12, z);
   const shoe: DistanceField = (x, y, z) => {
     if (y > 0.3) return y - 0.1;
     return smoothBoth(
-      smoothUnion(foot(x, y, z), leg(x, y, z), 0.03) - 0.007,
+      smoothUnion(shod(x, y, z), leg(x, y, z), 0.03) - 0.011,
       y - shoes - 0.25 * Math.max(0, -z - 0.02),
       edge,
     );
   };
-  const sole: DistanceField = (x, y, z) => {
-    if (y > 0.3) return y - 0.02;
-    return smoothBoth(foot(x, y, z) - 0.011, y - 0.024, 0.004);
-  };
+  const sole: DistanceField = (x, y, z) => (y > 0.3 ? y - 0.02 : smoothBoth(shod(x, y, z) - 0.0165, y - 0.03, 0.005));
   return [
-    { label: 'Top', field: topField },
-    { label: 'Bottom', field: bottomField },
+    {
+      label: 'Top',
+      field: (x, y, z) =>
+        y < top.hem - 0.15 ? top.hem - y : shell(dressed(x, y, z), topOff(x, y, z), topEdge(x, y, z)),
+      edge: topEdge,
+      marks: [
+        // Not at the hem, which lies on trousers.
+        {
+          label: 'TopInside',
+          value: (x, y, z) => Math.max(dressed(x, y, z) - topOff(x, y, z) + thickness, top.hem + 0.1 - y),
+        },
+        { label: 'TopTrim', value: (x, y, z) => -topEdge(x, y, z) - trimWidth },
+      ],
+    },
+    {
+      label: 'Bottom',
+      field(x, y, z) {
+        if (y > waist + 0.15) return y - waist;
+        return Math.max(y - waist, shell(legs(x, y, z), bottomOff(x, y, z), bottomEdge(x, y, z)));
+      },
+      marks: [
+        {
+          label: 'BottomInside',
+          value: (x, y, z) => Math.max(legs(x, y, z) - bottomOff(x, y, z) + thickness, y - 0.6),
+        },
+        { label: 'BottomTrim', value: (x, y, z) => -bottomEdge(x, y, z) - trimWidth },
+      ],
+    },
     { label: 'Shoes', field: shoe },
     { label: 'Sole', field: sole },
   ];

@@ -1,5 +1,5 @@
-// npx tsx tools/avatars/build/main.ts [-- NAME…] [--quick]: builds our own bodies, or those named; --quick: from cells
-// twice as large, for a look.
+// npx tsx tools/avatars/build/main.ts [NAME…] [--quick] [--out DIR]: builds our own bodies, or those named; --quick:
+// from cells twice as large, for a look.
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { fileURLToPath } from 'node:url';

@@ -1,6 +1,6 @@
 import { mannequinAnatomy } from './anatomy';
-import { type MouthMeasures, mouthFineness, mouthSeams, openMouth } from './faces';
 import type { Figure, Seam } from './figure';
+import { type MouthMeasures, mouthFineness, mouthSeams, openMouth } from './mouth';
 import { hipLine, makeRig } from './rig';
 import { smoothBoth } from './signed-distance';
 

@@ -19,22 +19,26 @@ import {
   shoulderGirdle,
 } from './anatomy';
 import {
-  cheeksOf,
-  closedEyes,
+  browSeams,
+  eyeCentre,
   eyesOf,
   type FaceMeasures,
   faceFineness,
   faceSeams,
+  faceShapes,
+  faceTint,
   featuresOf,
   inHead,
-  openMouth,
+  lids,
+  sinkOf,
   skullOf,
+  warmed,
 } from './faces';
-import type { Displacement, Figure, Seam } from './figure';
-import { type GarmentStyle, type Garments, garmentsOf } from './garments';
+import type { Displacement, FaceShape, Figure, Label, Seam, Tint } from './figure';
+import { type Garment, type GarmentStyle, type Garments, garmentsOf, trimWidth } from './garments';
 import { type HairStyle, hairOf } from './hair';
-import { makeRig, type RigMeasures } from './rig';
-import { type DistanceField, ellipsoid, type Point, smoothUnion } from './signed-distance';
+import { type BodyRig, makeRig, type RigMeasures } from './rig';
+import { type DistanceField, ellipsoid, type Point, smoothstep, smoothUnion } from './signed-distance';
 import { projectOnto } from './surface';
 
 /** Half width and half depth [m]. */
@@ -79,43 +83,106 @@ function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: Pe
   };
 }
 
-/**
- * The distance from a top's edges within which triangles are small [m]; less than any cloth's distance from the skin.
- */
-const atEdge = 0.0025;
+/** Half the length and width of a nail, and how far it is from the finger's tip [radii of the finger]. */
+const nail = { long: 0.95, wide: 0.68, back: 1.0 };
 
-/** Projects a displacement onto the surface: lids slide over the eyes. */
-const onSurface =
-  (body: DistanceField, displaced: Displacement): Displacement =>
-  (x, y, z) => {
-    const to = displaced(x, y, z);
-    return (
-      to &&
-      (Array.from(
-        projectOnto(body, { positions: Float32Array.from(to), indices: new Uint32Array() }).positions,
-      ) as unknown as Point)
-    );
+const nails = ({ fingers, fingerPoint }: BodyRig): DistanceField => {
+  const tips = fingers.map((finger) => ({ tip: fingerPoint(finger, 3), finger }));
+  return (x, y, z) => {
+    let nearest = 1;
+    for (const { tip, finger } of tips) {
+      const [dx, , dz] = finger.direction;
+      const flat = Math.hypot(dx, dz);
+      const along = ((x - tip[0]) * dx + (z - tip[2]) * dz) / flat + nail.back * finger.radius;
+      const aside = ((z - tip[2]) * dx - (x - tip[0]) * dz) / flat;
+      const round = Math.hypot(along / nail.long, aside / nail.wide) - finger.radius;
+      nearest = Math.min(nearest, Math.max(round, tip[1] - 0.001 - y));
+    }
+    return nearest;
   };
+};
+
+const ears: Region = {
+  ...averageEars,
+  parts: [part('head', 0.02, ellipsoid([0.0805, 1.578, -0.012], [0.0105, 0.026, 0.0165], -0.25))],
+};
+
+/** Whether triangles are small at this distance before an edge of cloth (negative) or behind it [m]. */
+const isTrimmed = (edge: number): boolean => edge > -trimWidth - 0.004 && edge < 0.006;
+/** The distance from hair over which the skin's moves fade [m]: hair stays. */
+const atHair = 0.0045;
+
+/** Returns a place projected onto a surface. */
+const onSurface =
+  (body: DistanceField) =>
+  (place: Point): Point =>
+    Array.from(
+      projectOnto(body, { positions: Float32Array.from(place), indices: new Uint32Array() }).positions,
+    ) as unknown as Point;
+
+/** Lets a displacement fade towards hair. */
+const besideHair =
+  (hair: DistanceField, displaced: Displacement): Displacement =>
+  (...from) => {
+    const share = smoothstep(0.0015, atHair, hair(...from));
+    const to = share > 0 ? displaced(...from) : null;
+    return to && (from.map((value, axis) => value + share * (to[axis]! - value)) as unknown as Point);
+  };
+
+/** Hair or a garment on both sides. */
+type Cover = Pick<Garment, 'label' | 'field' | 'marks'>;
+
+const folded =
+  (field: DistanceField): DistanceField =>
+  (x, y, z) =>
+    field(foldedX(x), y, z);
+
+/** Returns the seams of covers, and before them those of what is marked on them; `skin`: x ≥ 0. */
+function coverSeams(skin: DistanceField, covers: readonly Cover[]): readonly Seam[] {
+  const seams = covers.map(({ label, field, marks = [] }) => {
+    const own: DistanceField = (x, y, z) => {
+      let others = skin(foldedX(x), y, z);
+      for (const other of covers) if (other.field !== field) others = Math.min(others, other.field(x, y, z));
+      return field(x, y, z) - others;
+    };
+    const marked = marks.map(
+      (mark): Seam => ({
+        label: mark.label,
+        value: (x, y, z) => Math.max(own(x, y, z), mark.value(foldedX(x), y, z)),
+      }),
+    );
+    return { marked, cover: { label, value: own } };
+  });
+  return [...seams.flatMap(({ marked }) => marked), ...seams.map(({ cover }) => cover)];
+}
+
+/** Warm knuckles and fingertips. */
+function handTint({ fingers, fingerPoint }: BodyRig, x: number, y: number, z: number): Tint {
+  let warm = 0;
+  for (const finger of fingers) {
+    for (const [index, share] of [1, 0.6, 0, 0.8].entries()) {
+      const [jointX, jointY, jointZ] = fingerPoint(finger, index);
+      const away = Math.hypot(Math.abs(x) - jointX, y - jointY, z - jointZ);
+      warm = Math.max(warm, share * smoothstep(2.2 * finger.radius, 0.9 * finger.radius, away));
+    }
+  }
+  return warmed(0.6 * warm);
+}
 
 /** Returns a body with clothes, hair and a face: what to mesh, and the seams between its materials. */
 export function personOf(
   measures: PersonMeasures,
-): Pick<Figure, keyof Anatomy | 'seams' | 'finer' | 'shapes' | 'ofHead'> {
-  const rig = makeRig(measures.rig);
+  colors: Readonly<Partial<Record<Label, Tint>>>,
+): Pick<Figure, keyof Anatomy | 'seams' | 'finer' | 'shapes' | 'ofHead' | 'holds' | 'pieces' | 'sink' | 'tint'> {
   const { head: face, neck: n, feet } = measures;
+  const rig = makeRig({ ...measures.rig, eye: eyeCentre(face) });
   const torso = torsoOf(measures);
   const neck = movedRegion(averageNeck, { about: [0, 1.47, -0.01], factor: [n, 1, n] });
   const leg = legOf(measures.limbs);
   const foot = movedRegion(averageFoot, { about: [0.1, 0, 0.02], factor: [feet, feet, feet] });
   const arm = armOf(rig, measures.limbs);
   const hand = [palmOf(rig, measures.rig.hand ?? 1), ...fingersOf(rig)];
-  const heads = [
-    skullOf(face),
-    ...(face.cheeks ? [cheeksOf(face.cheeks)] : []),
-    featuresOf(face),
-    eyesOf(face),
-    averageEars,
-  ].map((region) => inHead(region, face));
+  const heads = [skullOf(face), featuresOf(face), lids, ears].map((region) => inHead(region, face));
   const skin = joined([torso, neck, ...heads, leg, foot, arm, ...hand]);
   const hair = hairOf(measures.hair, face, joined(heads.slice(0, -1)));
   const garments: Garments = garmentsOf(measures.wears, {
@@ -125,38 +192,55 @@ export function personOf(
     arm: fieldOf(arm),
     foot: fieldOf(foot),
   });
-  const covers = [{ label: 'Hair', field: hair } as const, ...garments];
+  const covers: readonly Cover[] = [
+    { label: 'Hair', field: hair },
+    ...garments.map((garment) => ({ ...garment, field: folded(garment.field) })),
+  ];
   const body = (worldX: number, y: number, z: number): number => {
     const x = foldedX(worldX);
     let distance = skin(x, y, z);
-    for (const { field } of covers) distance = smoothUnion(distance, field(x, y, z), 0.004);
+    for (const { field } of covers) distance = smoothUnion(distance, field(worldX, y, z), 0.003);
     return onFloor(distance, y);
   };
-  const collar = (z: number) => 1.452 - 0.12 * z;
-  const coverSeams = covers.map(({ label, field }): Seam => {
-    const value = (worldX: number, y: number, z: number): number => {
-      const x = foldedX(worldX);
-      let others = skin(x, y, z);
-      for (const other of covers) if (other.field !== field) others = Math.min(others, other.field(x, y, z));
-      return field(x, y, z) - others;
-    };
-    return { label, value };
-  });
-  const top = coverSeams.find(({ label }) => label === 'Top')!;
+  const isFull = measures.wears.top.full > 0.005;
+  // Below the chin, which is lower on a larger head.
+  const collar = (z: number) => 1.452 - 0.03 * (face.size - 1) - 0.12 * z;
+  const shapes = Object.entries(faceShapes(face, onSurface(body))).map(([name, shape]) => [
+    name,
+    name === 'aa' ? shape : besideHair(hair, shape),
+  ]);
   return {
     rig,
     parts: [torso, neck, ...heads, leg, foot, arm, ...hand].flatMap(({ parts }) => parts),
     body,
     seams: [
       ...faceSeams(face),
-      ...coverSeams,
+      ...coverSeams(skin, covers),
+      ...browSeams(face),
+      // No skin shows in the crease between a shoe and its sole.
+      { label: 'Sole', value: (_: number, y: number) => y - 0.05 },
+      { label: 'Nail', value: folded(nails(rig)) },
       { label: 'Skin', value: (_: number, y: number, z: number) => collar(z) - y },
     ],
-    finer: (x, y, z) => (Math.abs(top.value(x, y, z)) < atEdge ? 0.011 : faceFineness(face, x, y, z)),
-    shapes: {
-      blink: onSurface(body, (x, y, z) => closedEyes(face, x, y, z)),
-      aa: (x, y, z) => openMouth(face, x, y, z),
+    finer(x, y, z) {
+      // Edges grow most where a full sleeve is projected.
+      if (isFull && Math.abs(Math.abs(x) - rig.armJoints.elbow) < 0.05) return 0.019;
+      if (Math.abs(x) > rig.armJoints.wrist + 0.06) return 0.017;
+      // Weights of the upper arm would spread along longer edges, and pull at a cuff.
+      const ofSleeve = Math.abs(x) > rig.armJoints.elbow && Math.abs(x) < measures.wears.top.sleeve - trimWidth;
+      if (ofSleeve) return 0.04;
+      if (garments.some(({ edge }) => edge && isTrimmed(edge(Math.abs(x), y, z)))) return 0.022;
+      return faceFineness(face, x, y, z);
     },
-    ofHead: (label, [, y, z]) => label === 'Hair' || (label !== 'Top' && label !== 'Bottom' && y > collar(z)),
+    shapes: Object.fromEntries(shapes) as Record<FaceShape, Displacement>,
+    // A beard goes along with a mouth.
+    holds: (label, shape) => label === 'Hair' && !(measures.hair === 'curls' && shape === 'aa'),
+    pieces: eyesOf(face),
+    sink: sinkOf(face),
+    tint(label, x, y, z) {
+      if (label === 'Skin' && Math.abs(x) > rig.armJoints.wrist) return handTint(rig, x, y, z);
+      return colors[label] ?? faceTint(face, label, x, y, z);
+    },
+    ofHead: (label, [, y, z]) => label === 'Hair' || (!label.startsWith('Top') && y > collar(z)),
   };
 }

@@ -18,6 +18,8 @@ export interface RigMeasures {
   readonly arm?: readonly [number, number];
   /** The scale of the average hand at this stature; absent: 1. */
   readonly hand?: number;
+  /** The centre of the left eyeball; absent: the body has no eyes. */
+  readonly eye?: Point;
 }
 
 /** A rig: its bones, parents before children, and the lines that the anatomy is drawn along. */
@@ -95,7 +97,7 @@ const legs: readonly Bone[] = [
   { name: 'leftToes', parent: 'leftFoot', joint: [0.104, 0.026, 0.108] },
 ];
 
-export function makeRig({ shoulder, arm, hand = 1 }: RigMeasures = {}): BodyRig {
+export function makeRig({ shoulder, arm, hand = 1, eye }: RigMeasures = {}): BodyRig {
   const root = jointOf('leftShoulder');
   const average = jointOf('leftUpperArm');
   const [upper, lower] = arm ?? [
@@ -133,6 +135,7 @@ export function makeRig({ shoulder, arm, hand = 1 }: RigMeasures = {}): BodyRig 
       })),
     ),
     ...legs,
+    ...(eye ? [{ name: 'leftEye', parent: 'head', joint: eye }] : []),
   ];
   return {
     bones: [...trunk, ...leftSide, ...leftSide.map(mirrored)],

@@ -358,3 +358,26 @@ export function smoothOver(
     from = to.slice();
   }
 }
+
+/** Returns the largest of the connected parts of a surface: fields of hair leave crumbs. */
+export function largestPart({ positions, indices }: Surface): Surface {
+  const above = Uint32Array.from({ length: positions.length / 3 }, (_, v) => v);
+  const root = (v: number): number => {
+    let at = v;
+    while (above[at] !== at) {
+      above[at] = above[above[at]!]!;
+      at = above[at]!;
+    }
+    return at;
+  };
+  for (let t = 0; t < indices.length; t += 3) {
+    above[root(indices[t]!)] = root(indices[t + 1]!);
+    above[root(indices[t + 1]!)] = root(indices[t + 2]!);
+  }
+  const sizes = new Map<number, number>();
+  for (const v of indices) sizes.set(root(v), (sizes.get(root(v)) ?? 0) + 1);
+  if (sizes.size === 1) return { positions, indices };
+  const [largest] = [...sizes].reduce((most, part) => (part[1] > most[1] ? part : most));
+  const kept = indices.filter((_, corner) => root(indices[corner - (corner % 3)]!) === largest);
+  return compact({ positions, indices: kept });
+}

@@ -1,5 +1,7 @@
 import { type Accessor, Document, type Material, NodeIO } from '@gltf-transform/core';
 import { type FaceShape, type Figure, type Label, labels, type MaterialName, type MeshPlan, tintOf } from './figure';
+import type { BodyRig } from './rig';
+import type { Point } from './signed-distance';
 import type { Surface } from './surface';
 import type { SkinWeights } from './weights';
 
@@ -11,6 +13,8 @@ export interface Skinned {
   /** The label of each triangle, and whether it belongs to the head. */
   readonly labels: readonly Label[];
   readonly ofHead: readonly boolean[];
+  /** The share of the light that reaches each vertex; null: all of it. */
+  readonly light: Float32Array | null;
   /** How far each vertex goes for each shape of the face [m]. */
   readonly shapes: readonly { readonly name: FaceShape; readonly moves: Float32Array }[];
 }
@@ -47,7 +51,7 @@ export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8A
   for (const plan of figure.meshes) {
     const mesh = document.createMesh(plan.name);
     const parts = plan.materials
-      .map((name) => ({ name, own: ownVertices(skinned, name, plan) }))
+      .map((name) => ({ name, own: ownVertices(figure, skinned, name, plan) }))
       .filter(({ own }) => own.indices.length > 0);
     const shapes = skinned.shapes.filter(({ moves }) => parts.some(({ own }) => movesAny(own.vertices, moves)));
     for (const { name, own } of parts) {
@@ -86,7 +90,14 @@ export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8A
 const movesAny = (vertices: readonly number[], moves: Float32Array): boolean =>
   vertices.some((vertex) => moves[3 * vertex] || moves[3 * vertex + 1] || moves[3 * vertex + 2]);
 
-/** A vertex is there once for each label it has triangles of, where labels of one material differ in tint. */
+/** The colour of a vertex as bytes. */
+function bytesAt({ tint }: Figure, { surface, light }: Skinned, label: Label, vertex: number): number[] {
+  const [x, y, z] = surface.positions.subarray(3 * vertex, 3 * vertex + 3) as unknown as Point;
+  const own = tint?.(label, x, y, z) ?? [1, 1, 1];
+  return tintOf(label).map((share, channel) => Math.round(255 * share * own[channel]! * (light?.[vertex] ?? 1)));
+}
+
+/** A vertex is there once for each label it has triangles of. */
 interface OwnVertices {
   /** By their number on the surface. */
   readonly vertices: readonly number[];
@@ -99,21 +110,20 @@ interface OwnVertices {
  * The vertices of one material in one mesh. A primitive has its own: a shared buffer would be skinned once for every
  * primitive.
  */
-function ownVertices(skinned: Skinned, name: MaterialName, { ofHead }: MeshPlan): OwnVertices {
+function ownVertices(figure: Figure, skinned: Skinned, name: MaterialName, { ofHead }: MeshPlan): OwnVertices {
   const index = new Map<string, number>();
   const vertices: number[] = [];
   const tints: number[] = [];
   const indices: number[] = [];
   skinned.labels.forEach((label, t) => {
     if (labels[label].material !== name || skinned.ofHead[t] !== ofHead) return;
-    const tint = tintOf(label).map((share) => Math.round(255 * share));
     for (let corner = 0; corner < 3; corner++) {
       const vertex = skinned.surface.indices[3 * t + corner]!;
-      const key = `${vertex} ${tint}`;
+      const key = `${vertex} ${label}`;
       let own = index.get(key);
       if (own === undefined) {
         own = vertices.push(vertex) - 1;
-        tints.push(...tint, 255);
+        tints.push(...bytesAt(figure, skinned, label, vertex), 255);
         index.set(key, own);
       }
       indices.push(own);
@@ -147,6 +157,20 @@ function bytesOf(weights: Float32Array): Uint8Array {
   return bytes;
 }
 
+/** Eyes that turn on their bones as far as a target is aside, up to an angle at which pupils are still seen whole. */
+function lookAtOf({ bones }: BodyRig) {
+  const [head, eye] = ['head', 'leftEye'].map((bone) => bones.find(({ name }) => name === bone)!.joint);
+  const range = (degrees: number) => ({ inputMaxValue: degrees, outputScale: degrees });
+  return {
+    type: 'bone',
+    offsetFromHeadBone: [0, eye![1] - head![1], eye![2] - head![2]],
+    rangeMapHorizontalInner: range(16),
+    rangeMapHorizontalOuter: range(16),
+    rangeMapVerticalDown: range(12),
+    rangeMapVerticalUp: range(12),
+  };
+}
+
 interface GltfJson {
   nodes: { name: string }[];
   extensionsUsed?: string[];
@@ -160,7 +184,7 @@ interface GltfJson {
  */
 function withVrm(
   glb: Uint8Array,
-  { name, rig, meshes, shapes }: Figure,
+  { name, rig, meshes, shapes, pieces }: Figure,
   shaped: ReadonlyMap<string, readonly FaceShape[]>,
 ): Uint8Array {
   const view = new DataView(glb.buffer, glb.byteOffset, glb.byteLength);
@@ -200,6 +224,7 @@ function withVrm(
           type: ofHead ? 'thirdPersonOnly' : 'both',
         })),
       },
+      ...(pieces && { lookAt: lookAtOf(rig) }),
       ...(preset.length > 0 && { expressions: { preset: Object.fromEntries(preset) } }),
     },
   };
