@@ -3,7 +3,7 @@ import { defaultAvatar, skinTones } from 'threepoint/core';
 import { bodyLabels, palettes, skinColors } from 'threepoint/three';
 import { Button, FileButton, Group, StatusLine, Toggle } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../../bones/lazy-bones-form';
-import type { PanelPageProps } from './panel';
+import type { PanelPageProps } from './panel-actions';
 
 interface SwatchProps {
   readonly label: string;

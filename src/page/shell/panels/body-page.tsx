@@ -2,7 +2,7 @@ import { useRef } from 'preact/hooks';
 import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
 import { Button, Toggle, TypedInput } from 'threepoint-ui/controls';
 import { estimatorOrder, estimatorTexts } from '../session/estimator-texts';
-import type { PanelPageProps } from './panel';
+import type { PanelPageProps } from './panel-actions';
 
 /** Lets the user choose an estimator. An unavailable one gives the reason. */
 const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions }: PanelPageProps) => (

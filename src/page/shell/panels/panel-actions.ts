@@ -142,3 +142,9 @@ export function createPanelActions(
 
 /** What the controls can do, on the desktop and in the headset. */
 export type PanelActions = ReturnType<typeof createPanelActions>;
+
+/** What every page of the panel shows and acts on; what happens is decided elsewhere. */
+export interface PanelPageProps {
+  readonly state: PanelState;
+  readonly actions: PanelActions;
+}

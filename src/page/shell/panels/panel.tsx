@@ -2,16 +2,10 @@ import { useRef, useState } from 'preact/hooks';
 import { Button } from 'threepoint-ui/controls';
 import { AvatarPage } from './avatar-page';
 import { BodyPage } from './body-page';
-import type { PanelActions } from './panel-actions';
-import { exitLabel, type PanelState } from './panel-state';
+import type { PanelPageProps } from './panel-actions';
+import { exitLabel } from './panel-state';
 import { RecordingPage } from './recording-page';
 import { ViewPage } from './view-page';
-
-/** What every page of the panel shows and acts on; what happens is decided elsewhere. */
-export interface PanelPageProps {
-  readonly state: PanelState;
-  readonly actions: PanelActions;
-}
 
 const pages = [
   { name: 'Body', Page: BodyPage },

@@ -35,7 +35,7 @@ export function createPlayBar(activities: Activities) {
         <Fragment key={current}>{panel?.()}</Fragment>
         <p class="caption" role="status" aria-live="polite" hidden={shown === null}>
           {/* A new element is announced, even with the text of the last caption. */}
-          <span key={caption.number}>{caption.text}</span>
+          {caption.text && <span key={caption.number}>{caption.text}</span>}
         </p>
       </>,
       region,

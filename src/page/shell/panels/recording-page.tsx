@@ -1,5 +1,5 @@
 import { Button, FileButton, Group, StatusLine, Toggle } from 'threepoint-ui/controls';
-import type { PanelPageProps } from './panel';
+import type { PanelPageProps } from './panel-actions';
 import type { ExportChoice, ExportState, RecorderState } from './panel-state';
 
 const seconds = (value: number): string => `${value.toFixed(1)} s`;

@@ -1,7 +1,7 @@
 import { Button, Group, Toggle } from 'threepoint-ui/controls';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
 import { estimatorOrder } from '../session/estimator-texts';
-import type { PanelPageProps } from './panel';
+import type { PanelPageProps } from './panel-actions';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
   'third-person': 'Behind',
