@@ -6,8 +6,8 @@ export default defineConfig({
   outputDir: process.env.E2E_OUTPUT ?? 'artifacts/e2e',
   globalSetup: './e2e/global-setup.ts',
   fullyParallel: false,
-  // @realtime and @nightly play in real time, often with several pages: software rendering needs both cores for a steady
-  // frame rate there. Other tests drive their page's clock, and two files may run side by side (--workers=2).
+  // @realtime and @nightly play in real time, often with several pages: software rendering needs both cores for a
+  // steady frame rate there. Other tests drive their page's clock, and two files may run side by side (--workers=2).
   workers: 1,
   forbidOnly: Boolean(process.env.CI),
   // One test that a busy machine disturbs must not refuse a change. The summary names each test that was repeated;

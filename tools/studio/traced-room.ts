@@ -4,7 +4,7 @@ import { groups, type Opening, room, type Side, sides } from '../../src/page/stu
 /** A colour of light, linear. */
 export type Light = [red: number, green: number, blue: number];
 
-/** Where a ray ended. `patch`: −1 if nothing drawn was hit; `s`, `t`: the place on it, 0 to 1. */
+/** The end of a ray. `patch`: −1 if nothing drawn was hit; `s`, `t`: the position on it, 0 to 1. */
 export interface Hit {
   patch: number;
   s: number;
@@ -32,7 +32,7 @@ export function skyLight(y: number, out: Light): void {
 
 const boxes = groups.flat();
 
-/** Where a ray enters a box [multiples of its direction], and by which axis. */
+/** The entry of a ray into a box [multiples of its direction], and the axis of the side it enters by. */
 const entry = { at: 0, axis: 0 };
 
 /** The room as rays meet it. */

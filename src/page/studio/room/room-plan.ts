@@ -134,6 +134,13 @@ const overhead: readonly Box[] = [
   box([1.18, 3.1, 1.55], [1.22, 3.15, 3.05], painted),
 ];
 
+/** Walls and ceiling go on behind the mirror's wall, for a camera that looks at the user from there. */
+const wings: readonly Box[] = [
+  box([room.from[0] - 0.2, 0, -3.6], [room.from[0], room.to[1], room.from[2]], plaster, '+z-y+y'),
+  box([room.to[0], 0, -3.6], [room.to[0] + 0.2, room.to[1], room.from[2]], plaster, '+z-y+y'),
+  box([room.from[0], room.to[1], -3.6], [room.to[0], room.to[1] + 0.2, room.from[2]], lime, '-x+x+z'),
+];
+
 /** A bench with cushions below two pictures, at the right wall. */
 const bench: readonly Box[] = [
   box([2.62, 0.4, 0.35], [3.05, 0.445, 2.15], oak),
@@ -206,6 +213,7 @@ export const groups: readonly (readonly Box[])[] = [
   verandaFrame(veranda),
   skirting,
   overhead,
+  wings,
   bench,
   pictures,
   rug,
