@@ -58,7 +58,7 @@ test('a headset’s own body is requested by wish alone, drawn, compared, record
   await expect(overlay).toContainText(/cm from the device’s: elbows \d+\.\d, \d+\.\d/);
   await press(page, 'radio', 'Device');
   await expect(overlay).toContainText('Device ·');
-  await expect(page.locator('#about-device')).toContainText('The body that the headset itself tracks');
+  await expect(page.locator('#about-device')).toContainText('The body that the headset tracks itself');
   const download = page.waitForEvent('download');
   await press(page, 'button', 'Download');
   const { frames, estimators } = evaluated(await (await download).path(), testInfo.outputPath('evaluated.json'));
@@ -83,7 +83,7 @@ test('a headset without a body, or not asked, is reported, and the learned body 
   );
   expect((await probe(page)).estimator).toBe('device');
   await press(page, 'button', 'Exit VR');
-  await expect(page.locator('#about-device')).toContainText('The body that the headset itself tracks');
+  await expect(page.locator('#about-device')).toContainText('The body that the headset tracks itself');
   await askSwitch(page).check();
   await enterVr(page, { stepMs: null });
   await expect(page.locator('#about-device')).toContainText('Learned is used instead: the device reports no body.');

@@ -185,7 +185,7 @@ test('a page in use keeps its files; the next visit has the newer version and co
   // The host has this file no longer.
   await page.getByRole('button', { name: 'Archery' }).click();
   await page.waitForFunction(() => window.threepoint?.probe().game, undefined, { timeout: 60_000 });
-  await expect(page).toHaveTitle('threepoint');
+  await expect(page).toHaveTitle('Archery · threepoint');
 
   again.asked.length = 0;
   await visit(page);

@@ -3,7 +3,7 @@ import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import { driveTime, holdAt, pass } from '../driven-time';
 import { keepFilm } from '../film';
 import { card, choose, errors } from '../mocap-card';
-import { expect, freshTest, joint, keepPicture, open, probe, test } from '../page-fixture';
+import { expect, freshTest, keepPicture, open, test } from '../page-fixture';
 import { downloaded, recordTheActor } from '../recorded-actor';
 
 // The pictures of README.md as the page shows them now. `npm run tool -- pictures` puts them into docs/images.
@@ -13,20 +13,6 @@ freshTest.use({ viewport: { width: 1280, height: 720 } });
 const patience = { timeout: 240_000, intervals: [0] };
 
 test.beforeEach(() => test.setTimeout(600_000));
-
-test('the page: an avatar that waves before the mirror @nightly', async ({ page }) => {
-  await open(page, 'quality=high');
-  await driveTime(page);
-  // One hand above the shoulder, the other beside the hip: in a wave alone.
-  await expect
-    .poll(async () => {
-      await pass(page, 4);
-      return (await joint(page, 'rightHand'))[1] > 1.45 && (await joint(page, 'leftHand'))[1] < 1;
-    }, patience)
-    .toBe(true);
-  await pass(page, 12);
-  await keepPicture(page, 'readme-page');
-});
 
 test('archery: an archer at full draw, one target hit @nightly', async ({ page }) => {
   await open(page, 'play=archery&seed=7&quality=high&panel=off');
@@ -39,26 +25,6 @@ test('archery: an archer at full draw, one target hit @nightly', async ({ page }
     }, patience)
     .toBe(true);
   await keepPicture(page, 'readme-archery');
-});
-
-// A page of its own, from a server with rooms: a host without them says so.
-freshTest('the ball game: a ball in flight between three players @nightly', async ({ page, serve }) => {
-  freshTest.setTimeout(600_000);
-  const { origin } = await serve();
-  await page.goto(`${origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
-  // Driven frames leave no time to a request: the server answers before they start.
-  await expect(page.getByRole('button', { name: 'Play with others' })).toBeEnabled({ timeout: 120_000 });
-  await driveTime(page);
-  await holdAt<BallActivityProbe>(page, { phase: 'running', score: 2 });
-  await expect
-    .poll(async () => {
-      await pass(page, 4);
-      const { game } = await probe(page);
-      return game?.name === 'ball' && game.balls.air > 0;
-    }, patience)
-    .toBe(true);
-  await pass(page, 8);
-  await keepPicture(page, 'readme-ball');
 });
 
 test('the picture of motion capture shows our actor’s file by two methods, each with the truth @nightly', async ({
@@ -114,11 +80,13 @@ test.describe('moving pictures', () => {
   });
 });
 
+// A page of its own, from a server with rooms: a host without them says so.
 freshTest('the ball game as a moving picture @nightly', async ({ page, serve }) => {
   freshTest.setTimeout(600_000);
   await page.setViewportSize({ width: 960, height: 540 });
   const { origin } = await serve();
   await page.goto(`${origin}/?play=ball&panel=off&quality=high&estimator=ik&seed=5`);
+  // Driven frames leave no time to a request: the server answers before they start.
   await expect(page.getByRole('button', { name: 'Play with others' })).toBeEnabled({ timeout: 120_000 });
   await driveTime(page);
   await holdAt<BallActivityProbe>(page, { phase: 'running', score: 1 });

@@ -85,10 +85,11 @@ function Round({ round, archery, context }: PanelProps & { readonly round: Arche
   );
 }
 
-/** Creates archery's part of the play bar, which is empty without a round. */
-export const createArcheryPanel =
-  (archery: ArcheryControls, context: PanelContext): ActivityPanel =>
-  () => {
-    const round = archery.round();
-    return round && <Round round={round} archery={archery} context={context} />;
+/** Creates archery's part of the play bar. Between two rounds it shows the last one, so that what is unfolded stays. */
+export function createArcheryPanel(archery: ArcheryControls, context: PanelContext): ActivityPanel {
+  let shown: ArcheryRound | null = null;
+  return () => {
+    shown = archery.round() ?? shown;
+    return shown && <Round round={shown} archery={archery} context={context} />;
   };
+}
