@@ -8,13 +8,11 @@ import { scriptOf } from './tool.mjs';
 
 /** Files of docs/images by the screenshots that the nightly tests keep. */
 const pictures = {
-  'readme-page': 'page.jpg',
   'readme-archery': 'archery.jpg',
-  'readme-ball': 'ball.jpg',
   'readme-motion-in': 'ghost.jpg',
   'docs-study-experimenter': 'study-experimenter.jpg',
 };
-const films = ['film-mirror', 'film-methods', 'film-archery', 'film-ball', 'film-phone'];
+const films = ['film-mirror', 'film-archery', 'film-ball', 'film-phone'];
 
 await mainOf(import.meta.url, async () => {
   await ensureInstalled();

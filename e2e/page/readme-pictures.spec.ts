@@ -68,16 +68,6 @@ test.describe('moving pictures', () => {
     await holdAt<ArcheryProbe>(page, { score: 5 });
     await keepFilm(page, 'film-archery', 5, 640);
   });
-
-  test('a motion by IK and by the network, each with its truth @nightly', async ({ page }) => {
-    await recordTheActor(page, 6);
-    const { bytes } = await downloaded(page, 'BVH');
-    await open(page, 'emulate&quality=high&estimator=learned&actor=off&panel=off');
-    await choose(page, [{ name: 'actor.bvh', mimeType: 'text/plain', buffer: bytes }]);
-    await card(page).getByLabel('On its right').selectOption('ik');
-    await driveTime(page);
-    await keepFilm(page, 'film-methods', 5, 640);
-  });
 });
 
 // A page of its own, from a server with rooms: a host without them says so.
