@@ -52,8 +52,11 @@ export interface Avatar {
   /** Hides the avatar's head from its user's eyes; mirrors and other people still see it. */
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
-  /** Recolours the materials of the mannequin; other avatars keep theirs. Unknown names change nothing. */
-  setPalette(name: string): void;
+  /**
+   * Recolours the clothes of the project's own bodies; null: in their own colours. Other avatars keep theirs. Unknown
+   * names change nothing.
+   */
+  setPalette(name: string | null): void;
   /** Recolours the skin of the project's own people; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void;
   /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
@@ -290,7 +293,7 @@ class VrmAvatar implements Avatar {
     this.meshes.setUpperBodyOnly(on);
   }
 
-  setPalette(name: string): void {
+  setPalette(name: string | null): void {
     this.meshes.setPalette(name);
   }
 

@@ -246,7 +246,7 @@ class RemoteBody<Wanted, Id> {
   readonly placement: MutableTransform<'floor', 'floor'> = makeTransform();
   readonly #shadow: Mesh<PlaneGeometry, MeshBasicMaterial> | null;
   #fitted: Calibration | null = null;
-  #palette = '';
+  #palette: string | null = null;
   #opacity = 1;
 
   constructor(avatar: Avatar, of: Wanted, usedAt: number, shadow: boolean) {
@@ -266,7 +266,7 @@ class RemoteBody<Wanted, Id> {
     time: number,
   ): void {
     const { avatar, place } = this;
-    if (isBuiltInAvatar(this.of) && palette !== null && this.#palette !== palette) {
+    if (isBuiltInAvatar(this.of) && this.#palette !== palette) {
       avatar.setPalette(palette);
       this.#palette = palette;
     }

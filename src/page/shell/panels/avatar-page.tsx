@@ -3,6 +3,7 @@ import { defaultAvatar, skinTones } from 'threepoint/core';
 import { bodyLabels, palettes, skinColors } from 'threepoint/three';
 import { Button, FileButton, Group, StatusLine, Toggle } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../../bones/lazy-bones-form';
+import { ownColours } from '../session/settings';
 import type { PanelPageProps } from './panel-actions';
 
 interface SwatchProps {
@@ -26,6 +27,8 @@ const Swatch = ({ label, color, chosen, disabled, choose }: SwatchProps) => (
   />
 );
 
+const ownLook = { name: ownColours, label: 'Its own', color: 'linear-gradient(135deg, #1d9a86 50%, #2c3350 50%)' };
+
 /** Shows the current avatar: its name, its colours if it is built in, and the bones of a file. */
 function ShownAvatar({ state, actions }: PanelPageProps) {
   const correct = useRef<HTMLButtonElement>(null);
@@ -43,7 +46,7 @@ function ShownAvatar({ state, actions }: PanelPageProps) {
           ))}
         </Group>
         <Group label="Colours" class="swatches">
-          {palettes.map(({ name, label, color }) => (
+          {[ownLook, ...palettes].map(({ name, label, color }) => (
             <Swatch
               label={label}
               color={color}

@@ -16,6 +16,7 @@ export interface Settings extends ActivitySettings {
   readonly singleKeys: boolean;
   /** Whether the controls are open if there is space for them beside the picture. */
   readonly panel: boolean;
+  /** The colours of a built-in body; `ownColours`: those of its file. */
   readonly palette: string;
   /** The built-in avatar that is worn unless another one is. */
   readonly builtInBody: BuiltInBody;
@@ -37,6 +38,9 @@ export interface Settings extends ActivitySettings {
   /** The source of the user's measurements, in words. */
   readonly calibrationSource: string;
 }
+
+/** The value of `palette` for a body in its own colours. */
+export const ownColours = 'own';
 
 /** The body of a visitor who has not chosen one. A participant of a study has the plain one. */
 const firstBody: BuiltInBody = 'woman';
@@ -74,7 +78,7 @@ export function createSettings(
     largerText: preferences.largerText ?? false,
     singleKeys: preferences.singleKeys ?? true,
     panel: switches.panel ?? preferences.panel ?? true,
-    palette: preferences.palette ?? 'porcelain',
+    palette: preferences.palette ?? ownColours,
     builtInBody: preferences.builtInBody ?? (switches.study ? defaultAvatar : firstBody),
     skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,

@@ -14,6 +14,7 @@ import type { OwnAvatar } from 'threepoint-rooms';
 import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { SessionParts } from '../session/session-parts';
+import { ownColours } from '../session/settings';
 import { type AvatarLoader, fetchBuiltInAvatar, type UserAvatarState } from './avatar-loader';
 
 /** An avatar that was requested, until it is shown, refused or cancelled. */
@@ -105,7 +106,8 @@ export class UserAvatar {
 
   /** Applies the palette of the seat, else the user's, to a built-in avatar. */
   recolour(): void {
-    if (this.isBuiltIn) this.current?.setPalette(this.#seatPalette ?? this.#parts.settings.palette);
+    const palette = this.#seatPalette ?? this.#parts.settings.palette;
+    if (this.isBuiltIn) this.current?.setPalette(palette === ownColours ? null : palette);
   }
 
   /** Cancels the file that is loading or waits for its bones. The shown avatar stays. */

@@ -22,6 +22,26 @@ import { type SkinPart, skinParts, sortByPart } from './skin-parts';
 export const thirdPersonOnlyLayer = 10;
 const firstPersonOnlyLayer = 9;
 
+/** The materials that a palette recolours, and its colour for each. */
+const paletteParts = {
+  Suit: 'suit',
+  Accent: 'color',
+  Head: 'head',
+  Visor: 'visor',
+  Top: 'color',
+  Bottom: 'suit',
+} as const;
+
+/** Returns CSS colours of the materials that a palette recolours. */
+const colorsOf = (colorOf: (material: keyof typeof paletteParts) => string): Readonly<Record<string, string>> =>
+  recordOf(Object.keys(paletteParts) as (keyof typeof paletteParts)[], colorOf);
+
+/** Returns names and CSS colours of a material, or of those that were merged into it. */
+const coloredParts = (material: Material): (readonly [name: string, color: string])[] => {
+  const parts = material instanceof FlatPartsMaterial ? material.parts : [material as Partial<MeshStandardMaterial>];
+  return parts.map(({ name = '', color }) => [name, color ? `#${color.getHexString()}` : '']);
+};
+
 export interface AvatarMesh {
   readonly mesh: Mesh;
   readonly visibleTo: 'both' | 'others' | 'self';
@@ -118,6 +138,8 @@ export class BodyMeshes {
   readonly top: number;
   private readonly meshes: readonly AvatarMesh[];
   private readonly looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
+  /** The colours of the file's materials that a palette recolours. */
+  private readonly ownColors: Readonly<Record<string, string>>;
   private shown: VisibleParts = 'nothing';
   private upperBodyOnly = false;
   private firstPerson = false;
@@ -125,6 +147,8 @@ export class BodyMeshes {
 
   constructor(meshes: readonly AvatarMesh[], { bones }: Pick<Rig, 'bones'>) {
     this.meshes = meshes;
+    const own = new Map(meshes.flatMap(({ mesh }) => materialsOf(mesh).flatMap(coloredParts)));
+    this.ownColors = colorsOf((material) => own.get(material) ?? '');
     this.top = topOf(this.meshes, bones.get('head')?.node);
     this.showParts();
     this.showLayers();
@@ -149,18 +173,11 @@ export class BodyMeshes {
     this.showLayers();
   }
 
-  /** Recolours the materials that a palette names; an unknown palette changes nothing. */
-  setPalette(name: string): void {
+  /** Recolours the materials of a palette; null: in their own colours. An unknown palette changes nothing. */
+  setPalette(name: string | null): void {
     const palette = palettes.find((candidate) => candidate.name === name);
-    if (!palette) return;
-    this.recolour({
-      Suit: palette.suit,
-      Accent: palette.color,
-      Head: palette.head,
-      Visor: palette.visor,
-      Top: palette.color,
-      Bottom: palette.suit,
-    });
+    if (palette) this.recolour(colorsOf((material) => palette[paletteParts[material]]));
+    else if (name === null) this.recolour(this.ownColors);
   }
 
   /** Recolours the skin of this project's bodies; null: unchanged. */

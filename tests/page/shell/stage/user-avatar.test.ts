@@ -51,6 +51,18 @@ test('our body keeps its seat’s colours when another replaces it, and its tone
   expect(colourOf('Top')).toBe(clothes('porcelain'));
 });
 
+test('our body has its own colours until a seat chooses others, and afterwards', async () => {
+  const { avatar, tracker } = wardrobe();
+  await avatar.openBuiltIn(bytes());
+  const colours = () => ['Top', 'Bottom', 'Hair'].map((material) => colourOfMaterial(tracker.object, material));
+  const own = colours();
+  expect(palettes.map(({ color }) => color)).not.toContain(own[0]);
+  avatar.setSeatPalette('ember');
+  expect(colours()).toEqual([clothes('ember'), expect.not.stringContaining(own[1] ?? ''), own[2]]);
+  avatar.setSeatPalette(null);
+  expect(colours()).toEqual(own);
+});
+
 /** Bones of unknown names that all hang from the armature: neither names nor structure show a humanoid. */
 const unknownNames = (name: string) => {
   const parents = Object.fromEntries(rigJoints({}).map(({ bone }) => [bone, null]));
@@ -59,14 +71,15 @@ const unknownNames = (name: string) => {
 
 function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve(), boneMaps = noBones()) {
   const told: string[] = [];
+  const tracker = createTracker();
   const parts = fake<SessionParts>({
-    tracker: createTracker(),
-    settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
+    tracker,
+    settings: { palette: 'own', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
     notices: { show: (_: unknown, text: string) => void told.push(text) },
     onChange: () => undefined,
   });
   const avatar = new UserAvatar(parts, new AvatarLoader(boneMaps, prepare));
-  return { avatar, told };
+  return { avatar, told, tracker };
 }
 
 describe('several files requested in turn', () => {
