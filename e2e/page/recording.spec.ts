@@ -61,7 +61,7 @@ test('a recording becomes files for other programs, drawn by the chosen method @
   complaints.allow(/could not be exported/);
   await recordTheActor(page);
   const bvh = await downloaded(page, 'BVH');
-  expect(bvh.name).toBe('recording-1.bvh');
+  expect(bvh.name).toBe('recording-1-ik.bvh');
   const text = bvh.bytes.toString('utf8');
   expect(Number(/^Frames: (\d+)$/m.exec(text)?.[1])).toBeGreaterThan(30);
   expect(text).toContain('JOINT leftIndexDistal');
@@ -71,7 +71,7 @@ test('a recording becomes files for other programs, drawn by the chosen method @
     ['Avatar (GLB)', 'glb'],
   ] as const) {
     const { name, bytes } = await downloaded(page, button);
-    expect(name).toBe(`recording-1.${ending}`);
+    expect(name).toBe(`recording-1-ik.${ending}`);
     const { issues } = await validateBytes(new Uint8Array(bytes), { format: 'glb' });
     expect(issues.messages.filter(({ severity }) => severity === 0)).toEqual([]);
   }

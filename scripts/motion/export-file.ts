@@ -136,7 +136,9 @@ export async function exportFile(request: MotionRequest, work: WorkOptions = {})
     estimator: name,
     networks: network,
   });
-  const out = request.out ?? join(file, '..', `${basename(file, extname(file))}.${made.extension}`);
+  // The name says what is in the file, so that it never replaces what was recorded.
+  const stem = `${basename(file, extname(file))}-${name}${options.unit === 'cm' ? '-cm' : ''}`;
+  const out = request.out ?? join(dirname(file), `${stem}.${made.extension}`);
   if (out === file) throw new Error(`${out} would be overwritten; give another file by --out`);
   work.signal?.throwIfAborted();
   try {

@@ -42,9 +42,9 @@ describe('npm run tool -- motion', () => {
     ['glb', 'learned'],
   ])('writes a recording as %s beside it, as %s draws it', async (to, estimator) => {
     const { folder, file } = folderWith(1);
-    expect(await exportFile({ file, to, estimator })).toBe(join(folder, `mine.${to}`));
-    expect(readdirSync(folder).sort()).toEqual(['mine.json', `mine.${to}`].sort());
-    expect(readFileSync(join(folder, `mine.${to}`)).length).toBeGreaterThan(20_000);
+    expect(await exportFile({ file, to, estimator })).toBe(join(folder, `mine-${estimator}.${to}`));
+    expect(readdirSync(folder).sort()).toEqual([`mine-${estimator}.${to}`, 'mine.json']);
+    expect(readFileSync(join(folder, `mine-${estimator}.${to}`)).length).toBeGreaterThan(20_000);
   });
 
   test('writes motion capture in FBX as it would be recorded, on an avatar in FBX', async () => {
@@ -57,10 +57,12 @@ describe('npm run tool -- motion', () => {
     writeFileSync(file, new Uint8Array(fbxBinary(builtFbx({ nameOf, turns, bare: true }))));
     writeFileSync(avatar, new Uint8Array(fbxText(builtFbx({ nameOf }))));
     const made = await exportFile({ file, to: 'glb', estimator: 'ik', avatar });
-    expect(made).toBe(join(folder, 'wave.glb'));
+    expect(made).toBe(join(folder, 'wave-ik.glb'));
     const { animations } = partsOf(readFileSync(made)).json as { animations?: object[] };
     expect(animations).toHaveLength(1);
-    await expect(exportFile({ file: made, to: 'glb', estimator: 'ik' })).rejects.toThrow('would be overwritten');
+    await expect(exportFile({ file: made, to: 'glb', estimator: 'ik', out: made })).rejects.toThrow(
+      'would be overwritten',
+    );
   });
 
   test('takes unit, rate and place', async () => {

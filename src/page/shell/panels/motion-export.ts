@@ -50,7 +50,8 @@ export class MotionExport {
         signal,
         onProgress: (progress) => this.#setState({ name: stem, method: label, ...progress }),
       });
-      const file = `${stem}.${extension}`;
+      // The name says what is in the file, so that it never replaces what was recorded.
+      const file = `${stem}-${estimator}${choice === 'bvh-cm' ? '-cm' : ''}.${extension}`;
       offerDownload(file, type, new Blob([...parts], { type }));
       notices.show('info', `${file} is ready: the body as drawn by ${label}.`);
     } catch (error) {
