@@ -101,7 +101,7 @@ test('people hear each other 6 dB softer at twice the distance, nobody muted, hi
     .getByRole('button', { name: /Show . · Ben/ })
     .click();
   await expectVoices(ann);
-  await expect.poll(async () => (await probe(ann)).players[0]?.drawnAs).toBe('mannequin');
+  await expect.poll(async () => (await probe(ann)).players[0]?.drawnAs).toBe('woman');
 
   await bar(ben).getByRole('button', { name: 'Leave voice chat' }).click();
   await expectSilence(ann);
@@ -148,7 +148,7 @@ test('one of two people is muted, then hidden, by the headset’s menu; the desk
   await pressBelow(ann, 'Ben', 'Hide');
   await expectSilence(ann);
   await expect.poll(() => drawnAs(1)).toBeNull();
-  expect(await drawnAs(2)).toBe('mannequin');
+  expect(await drawnAs(2)).toBe('woman');
   await keepPicture(ann, 'voices-players-hidden-vr');
   await headset.place({ head: { position: [0, 1.6, 0.6], orientation: [0, 0, 0, 1] } });
   await keepPicture(ann, 'voices-marked-vr');
@@ -166,7 +166,7 @@ test('one of two people is muted, then hidden, by the headset’s menu; the desk
   await bar(ann)
     .getByRole('button', { name: /Show . · Ben/ })
     .click();
-  await expect.poll(() => drawnAs(1)).toBe('mannequin');
+  await expect.poll(() => drawnAs(1)).toBe('woman');
 });
 
 test('a voice comes back after the network was lost, and with the page after a reload @realtime', async ({
