@@ -105,12 +105,7 @@ function recordingActions(parts: StageParts, files: FileOpener, motionExport: Mo
       recorder.setLoop(on);
       onChange();
     },
-    setActor(on: boolean) {
-      writer.change({ actor: on });
-      body.discontinuity();
-      // Without the actor a person must hold the headset: a real one, or the emulated one.
-      if (!on) void headset.ensureEmulator().then((emulator) => emulator?.release());
-    },
+    setActor: (on: boolean) => headset.setActor(on),
     setEmulatorPanel(on: boolean) {
       void headset.emulator?.setPanelVisible(on);
       writer.change({ emulatorPanel: on });
