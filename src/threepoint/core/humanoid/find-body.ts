@@ -46,7 +46,13 @@ function bodyOf(tree: JointTree, arms: LimbPair, legs: LimbPair | null): Body | 
     return null;
   const trunk = trunkBetween(tree, armAncestors, legs);
   const limbs = new Set([arms, legs].flatMap((pair) => pair?.limbs.map(({ chain }) => chain[0]!) ?? []));
-  const above = chainToHead(tree, arms.root, new Set([...limbs, ...trunk]), trunk);
+  // Some programs let the arms hang from a joint of their own beside the neck.
+  const taken = new Set([...limbs, ...trunk]);
+  const upward = [...trunk]
+    .reverse()
+    .slice(0, -1)
+    .map((joint) => chainToHead(tree, joint, taken, trunk));
+  const above = upward.find((chain) => chain.length > 0) ?? [];
   let score = arms.score + (legs ? legs.score : 0.5);
   if (above.length > 0) score += 1 + Math.max(...above.map((joint) => tree.vote(joint, 'head')));
   if (trunk.length < 2) score -= 1;
@@ -99,7 +105,7 @@ function onFourLegs(tree: JointTree, { arms, legs, trunk }: Body): boolean {
   });
 }
 
-/** Returns the chain from the arms' joint to the head, without joints of limbs and trunk. */
+/** Returns the chain from a joint of the trunk to the head, without joints of limbs and trunk. */
 function chainToHead(
   tree: JointTree,
   root: number,

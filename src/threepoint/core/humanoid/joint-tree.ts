@@ -19,6 +19,22 @@ const limbParts: readonly Part[] = ['upperArm', 'lowerArm', 'hand', 'upperLeg', 
 
 const countBits = (mask: number): number => limbParts.reduce((sum, _, bit) => sum + ((mask >> bit) & 1), 0);
 
+/**
+ * Returns the joints of a skeleton that hangs from its head as they hang from the hips. Programs of body trackers write
+ * such files, because the headset leads.
+ */
+function hungFromHips(joints: readonly SkeletonJoint[], votes: readonly NameVotes[]): readonly SkeletonJoint[] {
+  const named = (i: number, part: Part): boolean => (votes[i]!.parts[part] ?? 0) > 0.5 && !votes[i]!.auxiliary;
+  const hips = joints.findIndex((_, i) => named(i, 'hips'));
+  const path: number[] = [];
+  for (let i = hips; joints[i] && path.length < joints.length; i = joints[i]!.parent) path.push(i);
+  if (!path.some((i) => named(i, 'head'))) return joints;
+  return joints.map((joint, i) => {
+    const at = path.indexOf(i);
+    return at < 0 ? joint : { ...joint, parent: at === 0 ? -1 : path[at - 1]! };
+  });
+}
+
 /** The tree of a skeleton's joints with lengths and the votes of the names. Joints in a cycle are left out. */
 export class JointTree {
   readonly children: readonly (readonly number[])[];
@@ -27,7 +43,7 @@ export class JointTree {
   readonly order: readonly number[];
   /** The distance of every joint to its parent. */
   readonly segments: readonly number[];
-  /** The length of the longest chain below every joint. */
+  /** The length of the longest chain below every joint, without a way to the body that is longer than the body. */
   readonly heights: readonly number[];
   /** The length of the longest chain of all. */
   readonly size: number;
@@ -37,18 +53,23 @@ export class JointTree {
   /** The children that may continue a chain. */
   readonly #chained: readonly (readonly number[])[];
 
-  constructor(readonly joints: readonly SkeletonJoint[]) {
+  readonly joints: readonly SkeletonJoint[];
+
+  constructor(given: readonly SkeletonJoint[]) {
+    this.votes = given.map(({ name }) => readJointName(name));
+    const joints = hungFromHips(given, this.votes);
+    this.joints = joints;
     const parents = joints.map(({ parent }) => parent);
     const children = childrenOf(parents);
     const order = parentsFirst(parents, children);
     this.children = children;
     this.order = order;
-    this.votes = joints.map(({ name }) => readJointName(name));
     this.segments = joints.map(({ parent, position }) =>
       joints[parent] ? distance(position, joints[parent].position) : 0,
     );
     const heights = new Array<number>(joints.length).fill(0);
     const parts = new Array<number>(joints.length).fill(0);
+    const counts = new Array<number>(joints.length).fill(1);
     const weights = joints.map(({ weight }) => weight ?? 0);
     // Ends of chains that move no skin may lie anywhere: some exporters scale them by 100.
     const isLooseEnd = (i: number): boolean =>
@@ -58,7 +79,11 @@ export class JointTree {
       const { auxiliary, parts: own } = this.votes[i]!;
       if (!auxiliary) for (const [bit, part] of limbParts.entries()) if ((own[part] ?? 0) > 0.5) parts[i]! |= 1 << bit;
       if (!children[parent]) continue;
-      if (!isLooseEnd(i)) heights[parent] = Math.max(heights[parent]!, heights[i]! + this.segments[i]!);
+      counts[parent]! += counts[i]!;
+      // The joint that carries most of the others may hang from a reference far away.
+      const segment = this.segments[i]!;
+      const isBone = segment <= heights[i]! || counts[i]! < joints.length / 2;
+      if (!isLooseEnd(i)) heights[parent] = Math.max(heights[parent]!, heights[i]! + (isBone ? segment : 0));
       parts[parent]! |= parts[i]!;
       weights[parent]! += weights[i]!;
     }

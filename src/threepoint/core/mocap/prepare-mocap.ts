@@ -22,7 +22,7 @@ import { simulateTrackers } from './simulate-trackers';
 import { acclaimMap, mappedSkeleton, type SkeletonMap } from './skeleton-map';
 import { type TruthMotion, toTruthMotion, unitOf } from './truth-motion';
 
-const { cmu, rateHz } = mocapRules;
+const { cmu, rateHz, usualRateHz } = mocapRules;
 
 /** The text of a further file that a motion file needs, with its name. */
 interface NamedText {
@@ -152,14 +152,16 @@ const withMap = (file: ImportedMotion, map: SkeletonMap): MatchedMotion => ({
 
 const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
 
-/** Returns the rate [Hz] of a file that does not state it: that of the CMU database, by the file's name. */
-function rateOf(name: string): number {
-  const found = /^0*(\d+)_0*\d+$/.exec(stemOf(name));
-  if (!found)
-    throw new Error(
-      'an AMC file does not say its frame rate; it is known of files named as the CMU database names them, as 01_02.amc. For others give “frameRate” in a skeleton map',
-    );
-  return cmu.subjectsAt60Hz.includes(Number(found[1])) ? 60 : cmu.rateHz;
+/**
+ * Returns the rate [Hz] of a file that does not state it: that of the CMU database, by the file's name, else the usual
+ * one of its format, with a note.
+ */
+function usualRate({ name, format }: MocapSource): { readonly rate: number; readonly notes: readonly string[] } {
+  const usual = format === 'amc' ? usualRateHz.amc : usualRateHz.bvh;
+  const cmuName = format === 'amc' && /^0*(\d+)_0*\d+$/.exec(stemOf(name));
+  if (cmuName) return { rate: cmu.subjectsAt60Hz.includes(Number(cmuName[1])) ? 60 : usual, notes: [] };
+  const note = `it does not state its frame rate; ${usual} frames a second are assumed. “frameRate” in a skeleton map states it`;
+  return { rate: usual, notes: [note] };
 }
 
 /** Returns the person's name from the start of the file's, as the evaluation does for files in one folder. */
@@ -176,14 +178,15 @@ export function* readTruthMotion(source: MocapSource): Generator<number, ReadMoc
   try {
     const map = source.map && readNamedText(source.map, readSkeletonMap);
     const { file, skeleton, bones, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
-    const rate = file.rateHz ?? map?.frameRate ?? source.rateHz ?? rateOf(source.name);
+    const given = file.rateHz ?? map?.frameRate ?? source.rateHz;
+    const { rate, notes: assumed } = given === undefined ? usualRate(source) : { rate: given, notes: [] };
     if (!(rate >= lowestRateHz && rate <= highestRateHz))
       throw new Error(
         `it has ${Number(rate.toPrecision(3))} frames a second; motion of ${lowestRateHz} to ${highestRateHz} is read`,
       );
     const unit = unitOf(file, skeleton);
     const motion = yield* scaleProgress(toTruthMotion(file, rate, skeleton, unit.metres), 0.75, 1);
-    const said = [...file.notes, ...notes, ...(unit.note ? [unit.note] : [])];
+    const said = [...file.notes, ...assumed, ...notes, ...(unit.note ? [unit.note] : [])];
     return { motion, bones, notes: said, doubts: doubtsOf(motion) };
   } catch (error) {
     throw faultIn(source.name, error);

@@ -35,7 +35,7 @@ export class Lines {
     return this.text.length === 0 ? 1 : Math.min(1, this.#next / this.text.length);
   }
 
-  /** Advances to the next line that is not blank; returns false if there is none. */
+  /** Advances to the next line that is neither blank nor a comment after `#`; returns false if there is none. */
   next(): boolean {
     while (this.#next <= this.text.length) {
       const feed = this.text.indexOf(this.#separator, this.#next);
@@ -44,7 +44,7 @@ export class Lines {
       if (end - this.#next > longestLine) this.fail(longestLine, 'the line does not end: this is no motion file');
       this.line = this.text.slice(this.#next, end);
       this.#next = end + 1;
-      if (this.line.trim() !== '') return true;
+      if (!/^\s*(#|$)/.test(this.line)) return true;
     }
     return false;
   }

@@ -48,7 +48,6 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
   while (lines.next()) {
     const { line } = lines;
     const begin = line.search(/\S/);
-    if (line[begin] === '#') continue;
     const found = /\S+/.exec(line)![0];
     if (found.startsWith(':')) {
       radians = radiansPerUnit[found.toUpperCase()] ?? radians;

@@ -24,7 +24,8 @@ export interface BvhJoint {
 /** The contents of a BVH file, in its own unit and axes. */
 export interface BvhMotion {
   readonly joints: readonly BvhJoint[];
-  readonly frameSeconds: number;
+  /** null: not stated. */
+  readonly frameSeconds: number | null;
   readonly frameCount: number;
   /** The number of values of a frame. */
   readonly width: number;
@@ -136,8 +137,8 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
     if (!Number.isSafeInteger(value) || value < 1) lines.fail(column, `Frames should be a count, is ${shown(text)}`);
     declared.count = value;
   } else {
-    if (!(value > 0)) lines.fail(column, `Frame Time should be seconds, is ${shown(text)}`);
-    declared.seconds = value;
+    if (!(value >= 0)) lines.fail(column, `Frame Time should be seconds, is ${shown(text)}`);
+    declared.seconds = value || null;
   }
   return true;
 }
@@ -184,7 +185,6 @@ export function* readBvh(text: string): Generator<number, BvhMotion> {
     lines.fail(1, `Frames says ${declared.count}, but the file ends after ${frameCount}`);
   if (declared.count !== null && declared.count !== frameCount)
     notes.push(`Frames says ${declared.count}, there are ${frameCount}; those were taken`);
-  if (declared.seconds === null) throw new Error('a line “Frame Time: seconds” is needed, and there is none');
   if (lines.commas) {
     if (/\d\.\d/.test(text.slice(text.search(/^\s*MOTION/im))))
       throw new Error('its numbers have both commas and points; write them with points');
@@ -272,7 +272,7 @@ export function importedBvhMotion(motion: BvhMotion, joints = motion.joints, not
   const names = joints.map(({ name }) => name);
   const parents = joints.map(({ parent }) => parent);
   return {
-    ...{ names, parents, rest, frameCount, notes, rateHz: 1 / frameSeconds },
+    ...{ names, parents, rest, frameCount, notes, rateHz: frameSeconds && 1 / frameSeconds },
     pose: (frame, target) => poseBvh(mended, frame, target),
   };
 }

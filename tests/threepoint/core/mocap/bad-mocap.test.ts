@@ -41,16 +41,18 @@ describe('a damaged AMC is refused in a sentence that says where', () => {
   ])('%s', (_, change, sentence) => {
     expect(() => prepare(acclaim, motion, change)).toThrow(sentence);
   });
+});
 
-  test('a name without a rate', () => {
-    const { files } = acclaim;
-    const renamed = {
-      ...acclaim,
-      motion: 'dance.amc',
-      files: { 'dance.amc': text, [skeletonName]: files[skeletonName]! },
-    };
-    expect(() => finishWork(prepareMocap(sourceOf(renamed)))).toThrow(/^dance\.amc: .*does not say its frame rate/);
-  });
+test('an AMC whose name tells no rate is read at 120 Hz, which is said', () => {
+  const { files } = acclaim;
+  const read = (name: string) => {
+    const renamed = { ...acclaim, motion: name, files: { [name]: files[acclaim.motion]!, [skeletonName]: files[skeletonName]! } };
+    return finishWork(prepareMocap(sourceOf(renamed)));
+  };
+  const [known, assumed] = [read('01_02.amc'), read('dance.amc')];
+  expect(assumed.clips[0]!.truth).toEqual(known.clips[0]!.truth);
+  expect(known.notes.join()).not.toMatch(/frame rate/);
+  expect(assumed.notes.join()).toMatch(/does not state its frame rate; 120 frames a second are assumed/);
 });
 
 describe('a damaged ASF is refused in a sentence', () => {

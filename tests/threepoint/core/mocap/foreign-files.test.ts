@@ -63,6 +63,17 @@ const smpl = (name: string): string =>
     .replace('Toe', 'Foot');
 
 const lines = plain.split('\n');
+
+/** Lets the hips hang from a reference that lies 8 m away at rest. */
+const underReference = (text: string): string =>
+  text
+    .replace(
+      /ROOT (Hips\n\{\n)\tOFFSET.*/,
+      `ROOT Reference\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT $1OFFSET 0 90 -800`,
+    )
+    .replace('\nMOTION', '\n}\nMOTION')
+    .replaceAll(/^(?=0\.0000 95\.)/gm, '0 0 0 ');
+
 const named: readonly (readonly [string, MadeOptions])[] = [
   ['a prefix of Mixamo', { nameOf: (name) => `mixamorig:${name}` }],
   ['names with spaces', { nameOf: (name) => name.replace(/(Left|Right)/, '$1 ') }],
@@ -73,6 +84,7 @@ const named: readonly (readonly [string, MadeOptions])[] = [
   ['metres', { unit: 0.01 }],
   ['inches', { unit: 1 / 2.54 }],
   ['six channels everywhere', { positionOf: (offset) => offset }],
+  ['the head as its root', { fromHead: true }],
 ];
 
 describe('a BVH is read alike with', () => {
@@ -100,6 +112,8 @@ describe('a BVH is read alike with', () => {
   test.each<[string, string, RegExp | null]>([
     ['a byte order mark', `\ufeff${plain}`, null],
     ['a brace on the joint’s line', plain.replaceAll(/\n\s*\{/g, ' {'), null],
+    ['comments', `# made by hand\n${plain.replace('MOTION', '# frames\nMOTION\n  # 60 of them')}`, null],
+    ['a reference far away from the hips', underReference(plain), null],
     ['lines that end with CR alone', plain.replaceAll('\n', '\r'), null],
     ['lines that end with CR and LF', plain.replaceAll('\n', '\r\n'), null],
     [
@@ -122,6 +136,15 @@ describe('a BVH is read alike with', () => {
     const { notes } = prepare(text);
     if (note) expect(notes.join('\n')).toMatch(note);
     else expect(notes).toEqual([]);
+  });
+
+  test.each([
+    ['without a frame time', plain.replace(/Frame Time.*\n/, '')],
+    ['with a frame time of nothing', plain.replace(/Frame Time.*/, 'Frame Time: 0.0')],
+  ])('twice as slow %s, which is said', (_, text) => {
+    const { clips, notes } = prepare(text);
+    expect(clips[0]!.frameCount).toBe(2 * expected.frameCount - 1);
+    expect(notes.join()).toMatch(/does not state its frame rate; 30 frames a second are assumed/);
   });
 
   test('hands that hang from level arms at rest and never in the motion, which is said', () => {
@@ -255,7 +278,6 @@ describe('what cannot be right is said', () => {
 
 describe('a BVH is refused with a sentence for', () => {
   test.each<[string, string, RegExp]>([
-    ['no frame time', plain.replace(/Frame Time.*\n/, ''), /a line “Frame Time: seconds” is needed/],
     [
       'both commas and points',
       madeBvh({ numberOf: (value) => (value === 95 ? '95,0' : value.toFixed(4)) }),

@@ -35,6 +35,22 @@ const cmuBones: readonly Bone[] = [
   ...fingerBase('Right'),
 ];
 
+const add = (a: Bone[2], b: Bone[2], sign: number): Bone[2] => [
+  a[0] + sign * b[0],
+  a[1] + sign * b[1],
+  a[2] + sign * b[2],
+];
+const trunk = bones.slice(0, 5);
+/** The trunk from the head down, as programs of body trackers write it. */
+const hungFromHead: readonly Bone[] = [
+  ['Head', null, trunk.reduce<Bone[2]>((sum, [, , offset]) => add(sum, offset, 1), [0, 0, 0])],
+  ...trunk
+    .slice(1)
+    .map(([name, parent, offset]): Bone => [parent!, name, add([0, 0, 0], offset, -1)])
+    .reverse(),
+  ...bones.slice(5),
+];
+
 /** Angles about Z, X and Y [degrees] at a time [s]: one arm hangs, the other waves. */
 function anglesAt(name: string, time: number): readonly [number, number, number] {
   if (name === 'LeftArm') return [-75, 0, 0];
@@ -59,6 +75,8 @@ export interface MadeOptions {
   readonly without?: readonly string[];
   /** The skeleton as cmuconvert writes it of the CMU database: thorax and wrists have no length. */
   readonly cmuconvert?: boolean;
+  /** The head is the root. */
+  readonly fromHead?: boolean;
   /** Angles about Z, X and Y of joints that move in another way [degrees]. */
   readonly anglesOf?: Readonly<Record<string, readonly [number, number, number]>>;
   /** The number of frames at 60 Hz (60). */
@@ -71,7 +89,8 @@ const plainNumber = (value: number): string => value.toFixed(4);
 export function madeBvh(options: MadeOptions = {}): string {
   const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [], frames: count = 60 } = options;
   const offsetOf = options.offsetOf ?? ((offset) => offset);
-  const kept = (options.cmuconvert ? cmuBones : bones).filter(([name]) => !without.includes(name));
+  const ofOptions = options.fromHead ? hungFromHead : options.cmuconvert ? cmuBones : bones;
+  const kept = ofOptions.filter(([name]) => !without.includes(name));
   const row = (values: readonly number[]) => values.map(numberOf).join(' ');
   const lengths = (values: readonly number[]) => values.map((value) => value * unit);
   const order: Bone[] = [];

@@ -124,8 +124,7 @@ describe('a BVH file', () => {
       changed(motionAt + 1, 'Frames: many'),
       new RegExp(`line ${motionAt + 2}, column 9: Frames should be a count`),
     ],
-    ['no rate', changed(motionAt + 2, ''), /“Frame Time: seconds” is needed/],
-    ['a rate of nothing', changed(motionAt + 2, 'Frame Time: 0'), /Frame Time should be seconds, is “0”/],
+    ['a negative rate', changed(motionAt + 2, 'Frame Time: -1'), /Frame Time should be seconds, is “-1”/],
     ['no frames', lines.slice(0, frame).join('\n'), /ends without a frame/],
   ])('is refused for %s, with line and column', (_, nonsense, sentence) => {
     expect(() => read(nonsense)).toThrow(sentence);
