@@ -1,6 +1,7 @@
 import { deflateSync } from 'node:zlib';
 import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
 import { expect, test } from 'vitest';
+import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
 import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
 import { readGltfMotion } from '../../../src/threepoint/avatar/file/read-gltf-motion';
 import type { BoneName } from '../../../src/threepoint/core/humanoid/bones';
@@ -114,6 +115,54 @@ test('a skin bound to chain ends a hundredfold off is read all the same', async 
     }
   }
   await expectTruth(glbOf(json, binary), 'wave.glb');
+});
+
+/** Puts each buffer view of a file into a buffer of its own, as data URLs. */
+function withDataUrls(bytes: ArrayBuffer): GltfJson {
+  const { json, binary } = partsOf(new Uint8Array(bytes));
+  Object.assign(json, {
+    buffers: json.bufferViews.map(({ byteOffset = 0, byteLength }) => ({
+      byteLength,
+      uri: `data:application/octet-stream;base64,${binary.subarray(byteOffset, byteOffset + byteLength).toString('base64')}`,
+    })),
+  });
+  for (const [i, view] of json.bufferViews.entries()) Object.assign(view, { buffer: i, byteOffset: 0 });
+  return json;
+}
+
+test.each([
+  ['glTF as text', (json: GltfJson) => new TextEncoder().encode(JSON.stringify(json)).buffer, 'wave.gltf'],
+  ['GLB', (json: GltfJson) => glbOf(json, Buffer.alloc(0)), 'wave.glb'],
+] as const)('numbers in data URLs of a %s file are read', async (_, write, name) => {
+  const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
+  await expectTruth(write(withDataUrls(glb)), name);
+});
+
+test('numbers that are not base64 are refused in a sentence', async () => {
+  const buffers = [{ uri: 'data:application/octet-stream;base64,%%%', byteLength: 4 }];
+  const text = new TextEncoder().encode(JSON.stringify({ buffers }));
+  await expect(readGltfMotion(text.buffer, 'wave.gltf')).rejects.toThrow('wave.gltf: its numbers are not base64');
+});
+
+test('a body whose numbers and pictures are in data URLs is read as the body itself', async () => {
+  const plain = await checkAvatar(
+    changed(() => undefined),
+    { name: 'a.vrm', supportedCompressions: [] },
+  );
+  const text = new TextEncoder().encode(JSON.stringify(withDataUrls(changed(() => undefined))));
+  const read = await checkAvatar(text.buffer, { name: 'a.gltf', supportedCompressions: [] });
+  const [one, other] = await Promise.all(
+    [plain, read].map(async ({ file }) => partsOf(new Uint8Array(await file.arrayBuffer())).json.accessors),
+  );
+  expect(other).toEqual(one);
+  const pictured = changed((json) => {
+    json.images = [{ uri: 'data:image/png;base64,iVBORw0KGgo=' }];
+  });
+  const { json, binary } = partsOf(new Uint8Array(await convertToGlb(pictured, 'a.vrm', 'body')));
+  const { bufferView, ...image } = json.images![0]!;
+  expect(image).toEqual({ mimeType: 'image/png' });
+  const { byteOffset = 0, byteLength } = json.bufferViews[bufferView!]!;
+  expect(binary.subarray(byteOffset, byteOffset + byteLength).toString('latin1')).toBe('\x89PNG\r\n\x1a\n');
 });
 
 test('numbers in another file are refused in a sentence', async () => {

@@ -101,7 +101,7 @@ function OtherAvatars({ actions }: Pick<PanelPageProps, 'actions'>) {
       <div class="row">
         <FileButton
           label="Open VRM, GLB or FBX"
-          accept=".vrm,.glb,.fbx"
+          accept=".vrm,.glb,.gltf,.fbx"
           open={([file]) => actions.openAvatarFile(file)}
         />
       </div>
