@@ -4,6 +4,7 @@ import { gltfFaults } from '../../../src/threepoint/avatar/file/check-avatar';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { builtRig, type RigOptions, rightArm } from './built-rig';
+import { changed } from './glb';
 import { mixamo, namings, vroid } from './rig-namings';
 import { expectBody, hold, opened, skinAt } from './worn-body';
 
@@ -129,6 +130,25 @@ describe('is refused with a sentence', () => {
     const nameOf = (bone: string) => `x${bone.length}${bone.at(-1)}q`;
     await refused({ nameOf, without: rightArm }).toThrow(
       /person\.glb: its bones could not be matched to a humanoid: .*loadAvatar\(source, \{bones:/,
+    );
+  });
+
+  test('shapes without bones', async () => {
+    const file = changed((json) => {
+      json.skins = [];
+      for (const node of json.nodes) {
+        Object.assign(node, { name: `part ${node.name.length}` });
+        for (const place of ['translation', 'rotation', 'scale', 'matrix', 'skin'])
+          delete (node as unknown as Record<string, unknown>)[place];
+      }
+      for (const { attributes } of json.meshes.flatMap(({ primitives }) => primitives)) {
+        delete attributes.JOINTS_0;
+        delete attributes.WEIGHTS_0;
+      }
+      delete (json.extensions as { VRMC_vrm?: unknown }).VRMC_vrm;
+    });
+    await expect(parseAvatar(file, 'statue.glb')).rejects.toThrow(
+      'statue.glb: it has no skeleton, only shapes; rig it',
     );
   });
 

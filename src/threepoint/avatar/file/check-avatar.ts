@@ -27,24 +27,38 @@ export interface CheckedAvatar {
 export type AvatarCheck = (bytes: ArrayBuffer, question: AvatarCheckOptions) => Promise<CheckedAvatar>;
 
 /**
- * The faults that are accepted: at most a surface looks different, and known exporters of avatars make them. These are
- * bounds that are rounded otherwise, normals and weights that are slightly off their length, and a stride where none is
- * needed, which three.js reads correctly. Extensions that the validator does not know, such as VRM's, are accepted too.
+ * The errors of the validator that are accepted, because three.js reads what they are about. All others stop a file:
+ * numbers that are not there, no numbers, or not of the form that a reader needs; nodes in a circle; skins and morph
+ * targets without the vertices they move; broken pictures.
  */
-const acceptedFaults = [
-  'ACCESSOR_MIN_MISMATCH',
-  'ACCESSOR_MAX_MISMATCH',
-  'ACCESSOR_VECTOR3_NON_UNIT',
-  'ACCESSOR_WEIGHTS_NON_NORMALIZED',
-  'ACCESSOR_INVALID_SIGN',
-  'SKIN_IBM_ACCESSOR_WITH_BYTESTRIDE',
-  'ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE',
-  'UNSUPPORTED_EXTENSION',
+const acceptedErrors = [
+  // Bounds and hints are not used; a stride is read wherever it stands; sparse numbers may come in any order.
+  ...['ACCESSOR_MIN_MISMATCH', 'ACCESSOR_MAX_MISMATCH'],
+  ...['ACCESSOR_ELEMENT_OUT_OF_MIN_BOUND', 'ACCESSOR_ELEMENT_OUT_OF_MAX_BOUND'],
+  'MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS',
+  ...['ACCESSOR_USAGE_OVERRIDE', 'BUFFER_VIEW_TARGET_OVERRIDE'],
+  ...['BUFFER_VIEW_INVALID_BYTE_STRIDE', 'SKIN_IBM_ACCESSOR_WITH_BYTESTRIDE', 'IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE'],
+  ...['MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE', 'MESH_PRIMITIVE_ACCESSOR_UNALIGNED'],
+  'ACCESSOR_SPARSE_INDICES_NON_INCREASING',
+  // A surface may look different, at most.
+  ...['ACCESSOR_VECTOR3_NON_UNIT', 'ACCESSOR_INVALID_SIGN', 'ACCESSOR_NON_CLAMPED'],
+  ...['MESH_PRIMITIVE_TOO_FEW_TEXCOORDS', 'MESH_PRIMITIVE_NO_TANGENT_SPACE'],
+  ...['MESH_PRIMITIVE_INVALID_ATTRIBUTE', 'MESH_PRIMITIVE_INDEXED_SEMANTIC_CONTINUITY'],
+  // Weights are normalised, those of one joint add up, and of a bone's matrix the first three rows count.
+  ...['ACCESSOR_WEIGHTS_NON_NORMALIZED', 'ACCESSOR_JOINTS_INDEX_DUPLICATE', 'ACCESSOR_INVALID_IBM'],
+  // The joints of a skin are found by themselves, and morph targets start at zero.
+  ...['SKIN_SKELETON_INVALID', 'SKIN_NO_COMMON_ROOT'],
+  ...['MESH_INVALID_WEIGHTS_COUNT', 'NODE_WEIGHTS_INVALID'],
+  // Browsers find out the kind of a picture by themselves.
+  ...['IMAGE_MIME_TYPE_INVALID', 'IMAGE_NON_ENABLED_MIME_TYPE', 'TEXTURE_INVALID_IMAGE_MIME_TYPE'],
+  // Extensions that are declared otherwise, or unknown to the validator, such as VRM's.
+  ...['UNSUPPORTED_EXTENSION', 'UNDECLARED_EXTENSION', 'UNUSED_EXTENSION_REQUIRED', 'NON_REQUIRED_EXTENSION'],
+  'UNEXPECTED_EXTENSION_OBJECT',
+  // Lists may be empty.
+  'EMPTY_ENTITY',
 ];
-/** Animations are not read, because poses move the avatar. */
-const unread = /^\/animations(\/|$)/;
-/** A node may have an empty list of children. */
-const mayBeEmpty = /^\/nodes\/\d+\/children$/;
+/** What is not read: animations, because poses move the avatar, and cameras. */
+const unread = /^\/(animations|cameras)(\/|$)/;
 const information = 2;
 
 /**
@@ -55,12 +69,11 @@ export async function gltfFaults(bytes: Uint8Array): Promise<readonly string[]> 
   const { issues } = await validateBytes(bytes, {
     format: 'glb',
     writeTimestamp: false,
-    severityOverrides: Object.fromEntries(acceptedFaults.map((code) => [code, information])),
+    severityOverrides: Object.fromEntries(acceptedErrors.map((code) => [code, information])),
     maxIssues: 2000,
   });
   return issues.messages
     .filter(({ severity, pointer = '' }) => severity === 0 && !unread.test(pointer))
-    .filter(({ code, pointer = '' }) => code !== 'EMPTY_ENTITY' || !mayBeEmpty.test(pointer))
     .slice(0, 20)
     .map(({ message, pointer }) => (pointer ? `${pointer}: ${message}` : message));
 }

@@ -60,6 +60,8 @@ function skinWeights(scene: Group): Map<Object3D, number> {
   return sums;
 }
 
+const noSkeleton = 'it has no skeleton, only shapes; rig it first, for example in Blender or with Mixamo';
+
 /**
  * Returns the bones of a scene at rest, and their nodes. Throws if joints have no finite positions, or all the same
  * one.
@@ -79,9 +81,12 @@ export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D>
   });
   const lost = joints.find(({ position }) => !isFiniteVec3(position));
   if (lost) throw new Error(`${name}: the joint of ${lost.name} lies nowhere`);
-  if (joints.length > 1 && joints.every(({ position }) => distance(position, joints[0]!.position) === 0))
-    throw new Error(`${name}: its joints lie all in one place: is the scene scaled to nothing?`);
-  return { nodes, joints };
+  const isSkinned = weights.size > 0;
+  if (joints.every(({ position }) => distance(position, joints[0]!.position) === 0)) {
+    const reason = isSkinned ? 'its joints lie all in one place: is the scene scaled to nothing?' : noSkeleton;
+    throw new Error(`${name}: ${reason}`);
+  }
+  return { nodes, joints, isSkinned };
 }
 
 /**
@@ -89,11 +94,11 @@ export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D>
  * that fails.
  */
 function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
-  const { nodes, joints } = skeletonOf(scene, name);
+  const { nodes, joints, isSkinned } = skeletonOf(scene, name);
   const match = matchHumanoid(joints);
   const problem = humanoidProblem(match);
   if (!problem) return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
-  if (joints.every((joint) => joint.name === '')) throw new Error(`${name}: no humanoid in the file: it has no bones`);
+  if (!isSkinned && Object.keys(match.map).length === 0) throw new Error(`${name}: ${noSkeleton}`);
   const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
   throw new UnknownBonesError(`${name}: ${problem}. ${advice}`, fileBones(joints, match.map));
 }
