@@ -1,3 +1,4 @@
+import fc from 'fast-check';
 import { add, distance, fromAxisAngle, multiply, rotate, up, type Vec3, vec3, wrapAngle } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import type { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
@@ -66,6 +67,38 @@ describe('legs', () => {
         expect(distance(knee, ankle)).toBeCloseTo(proportions.lower, 6);
       }
     });
+  });
+
+  test('keep knees and ankles over the floor while a person walks, turns, squats and kneels', () => {
+    const number = (min: number, max: number) => fc.double({ min, max, noNaN: true });
+    const goal = fc.record({
+      ...{ x: number(-1, 1), z: number(-1, 1), yaw: number(-3, 3) },
+      ...{ height: number(0.12, 0.97), back: number(-0.1, 0.45) },
+    });
+    const property = fc.property(fc.array(goal, { minLength: 2, maxLength: 6 }), (goals) => {
+      const posture = createLegs();
+      const person = { x: 0, z: 0, yaw: 0, height: 0.97, back: 0.05 };
+      for (const next of goals) {
+        for (let frame = 0; frame < 1.5 * rateHz; frame++) {
+          for (const key of ['x', 'z', 'yaw', 'height', 'back'] as const) person[key] += (next[key] - person[key]) / 15;
+          const { x, z, yaw, height, back } = person;
+          const at = (side: number, y: number, behind: number) =>
+            add(rotate(fromAxisAngle(up, yaw), vec3(side, y, behind)), vec3(x, 0, z));
+          const orientation = fromAxisAngle(up, yaw);
+          const hips = { position: at(0, height, back), orientation };
+          const head = { position: at(0, height + 0.6, 0), orientation };
+          posture.update(
+            { hips, head, leftHand: at(-0.2, height, -0.3), rightHand: at(0.2, height, -0.3) },
+            1 / rateHz,
+          );
+          for (const { knee, ankle } of Object.values(posture.legs)) {
+            expect(knee.y).toBeGreaterThan(0.05);
+            expect(ankle.y).toBeGreaterThan(proportions.ankleHeight - 0.01);
+          }
+        }
+      }
+    });
+    fc.assert(property, { seed: 5, numRuns: 60 });
   });
 
   test('step in turn while a person walks', () => {

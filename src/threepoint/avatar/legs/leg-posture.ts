@@ -1,6 +1,6 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
 import { sideSign } from '../../core/body/skeleton';
-import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
+import { type ElbowCircle, elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
 import { Gait } from '../../core/estimation/gait/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
 import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
@@ -24,11 +24,13 @@ import {
   copyVec3,
   cross,
   distance,
+  dot,
   forward,
   length,
   lerp,
   type MutableVec3,
   normalise,
+  reject,
   right,
   scale,
   setVec3,
@@ -70,6 +72,8 @@ interface MutableLegPose extends LegPose {
 
 /** The largest distance of hip and ankle [fraction of the leg's length]: a knee that snaps straight is visible. */
 const longestReach = 0.999;
+/** The least height of a knee's joint over the floor [m]. */
+const kneeHeight = 0.06;
 /** The largest displacement of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
 /**
@@ -99,6 +103,8 @@ const trackedToes = vec3(0, 0, 0);
 const estimated = makePose<'floor'>();
 const pole = vec3(0, 0, 0);
 const bend = vec3(0, 0, 0);
+const highest = vec3(0, 0, 0);
+const aside = vec3(0, 0, 0);
 const line = vec3(0, 0, 0);
 const nod = quat(0, 0, 0, 1);
 const hinge = vec3(0, 0, 0);
@@ -114,6 +120,22 @@ const fallbacks: readonly [Vec3, Vec3] = [levelForward, up];
 function aimDown(direction: Vec3, hinge: Vec3, target: MutableQuat): Quat {
   normalise(scale(direction, -1, axisY), up, axisY);
   return fromAxes(hinge, axisY, cross(hinge, axisY, axisZ), target);
+}
+
+/**
+ * Turns the direction of a knee on its circle up, as little as keeps the knee on the floor: of a squatting or kneeling
+ * person. A knee straight below its circle goes outward.
+ */
+function keepAboveFloor({ axis, centre, radius }: ElbowCircle, bend: MutableVec3, side: Side): void {
+  if (centre.y + radius * bend.y >= kneeHeight) return;
+  const steep = length(reject(up, axis, highest));
+  if (steep < 1e-6) return;
+  scale(highest, 1 / steep, highest);
+  cross(axis, highest, aside);
+  const outward = dot(bend, aside) || sideSign(side) * dot(aside, rotate(level, right, hinge));
+  const cosine = Math.min(1, (kneeHeight - centre.y) / (radius * steep));
+  const sine = Math.sign(outward) * Math.sqrt(1 - cosine * cosine);
+  addScaled(scale(highest, cosine, bend), aside, sine, bend);
 }
 
 /**
@@ -230,7 +252,8 @@ export class LegPosture {
     if (trackedWeight > 0) lerp(toes, rotate(foot, forward, trackedToes), trackedWeight, toes);
     normalise(add(toes, levelForward, pole), levelForward, pole);
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
-    elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbacks, bend), knee);
+    keepAboveFloor(circle, poleAcross(circle.axis, pole, fallbacks, bend), side);
+    elbowOnCircle(circle, bend, knee);
     // Both bones lie in the plane across the hinge, which is defined even where a thigh points to its knee's pole.
     cross(circle.axis, bend, hinge);
     aimDown(subtract(knee, hip, line), hinge, leg.thigh);
