@@ -101,8 +101,10 @@ export class BallView {
   }
 
   /** Plays and captions the events since the last frame, and writes them on the board. Call it after `show`. */
-  playEvents(events: readonly BallEvent[], { cues }: Pick<BallFrame, 'cues'>): void {
+  playEvents(happened: readonly BallEvent[], { cues: played, simulated }: Pick<BallFrame, 'cues' | 'simulated'>): void {
     if (!this.#shown) return;
+    const events = simulated ? happened.filter(({ type }) => type !== 'refused') : happened;
+    const cues = simulated ? played.filter(({ type }) => type !== 'slipped') : played;
     const { state, pageTime, attendants: people, me, palms, opening } = this.#shown;
     for (const event of events) {
       const text = eventLine(event, people);
