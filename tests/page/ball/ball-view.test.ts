@@ -3,6 +3,7 @@ import { identity, vec3, zero } from 'threepoint/math';
 import { ballRules } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
 import { type BallScene, BallView } from '../../../src/page/ball/ball-view';
+import type { SeatFrame } from '../../../src/page/people/match/match-frame';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();
@@ -22,6 +23,7 @@ const scene = (time: number, pageTime: number, me: number | null = null): BallSc
   readyByItself: false,
   voices: { markOf: () => 'none', levelOf: () => 0 },
   hidden: new Set(),
+  isThere: () => true,
   head: { position: vec3(0, 1.6, 0), orientation: identity },
 });
 
@@ -37,6 +39,28 @@ test('captions a refusal for users who play, and not for those who watch a built
     });
     expect(captions).toEqual(simulated ? [] : ['The ball slipped away', 'Too far away']);
   }
+});
+
+test('basket and name appear with the holder’s body, and the basket outlasts a holder who leaves', () => {
+  const view = new BallView({ quality: 'low', balls: 20, onCaption: () => undefined });
+  const court = view.placed({ position: zero, orientation: identity }).object;
+  const holder: SeatFrame = {
+    ...{ name: 'Cal', bot: false, presence: 'here', me: false, station: 2, ready: true, opacity: 1 },
+    head: vec3(0, 1.6, -5),
+  };
+  const shown = (attendant: SeatFrame | null, isThere: boolean, phase: BallScene['state']['phase']) => {
+    const { state, ...rest } = scene(1, 1, 0);
+    const attendants = [null, null, attendant];
+    view.show({ ...rest, state: { ...state, phase }, attendants, isThere: (seat) => seat !== 2 || isThere });
+    const labels = court.getObjectByName('names')?.children.filter(({ visible }) => visible) ?? [];
+    return { names: labels.length, basket: court.getObjectByName('basket')?.visible };
+  };
+  expect(shown(null, false, 'ready')).toEqual({ names: 0, basket: false });
+  expect(shown(holder, false, 'ready')).toEqual({ names: 0, basket: false });
+  expect(shown(holder, false, 'running')).toEqual({ names: 0, basket: false });
+  expect(shown(holder, true, 'running')).toEqual({ names: 1, basket: true });
+  expect(shown({ ...holder, presence: 'gone' }, false, 'running')).toEqual({ names: 0, basket: true });
+  expect(shown(null, false, 'over')).toEqual({ names: 0, basket: true });
 });
 
 test('a catch shows for a moment, and not again at that second of the next match', () => {

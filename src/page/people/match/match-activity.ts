@@ -97,6 +97,8 @@ export abstract class MatchActivity<
   readonly #parts: MatchParts<Game, Frame, Play>;
   /** In a room with other people everyone presses Ready, also who lets a simulated player play. */
   readonly readyByItself: () => boolean;
+  readonly #isThere = (seat: number): boolean =>
+    seat === this.play.newest?.me || this.#bodies.drawnAs(seat) !== null || this.blocked.hidden.has(seat);
   readonly #bodies: RoomBodies;
   readonly #menu: PeopleMenu;
   /** The width up to which the bar lies over the picture. */
@@ -212,6 +214,7 @@ export abstract class MatchActivity<
       readyByItself: this.readyByItself(),
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
+      isThere: this.#isThere,
     });
     view.playEvents?.(newest.resumed ? none : newest.events, newest);
   }
