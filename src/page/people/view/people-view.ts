@@ -13,7 +13,7 @@ import { createNameLabels, type NameLabels } from './name-labels';
 export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Game>, 'state' | 'secondsLeft' | 'me'> {
   /** By player; null: the seat is free. */
   readonly attendants: readonly (SeatFrame | null)[];
-  /** The page's time [s], and whether it is still in the room. */
+  /** The page's time [s], and whether it is connected to the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;
   /** The user is ready without being asked. */
