@@ -12,13 +12,13 @@ function notices() {
   return { ...list, texts: () => drawn.map(({ text }) => text) };
 }
 
-test('the same notice is shown once, and at most three at a time', () => {
+test('notices are shown once each, at most three at a time', () => {
   const { show, texts } = notices();
   for (const text of ['one', 'two', 'two', 'three', 'four']) show('warning', text);
   expect(texts()).toEqual(['two', 'three', 'four']);
 });
 
-test('a notice takes the place of an older one about its subject, and leaves when that is over', () => {
+test('a notice replaces the older one about its subject, and leaves when that is over', () => {
   const { show, withdraw, texts } = notices();
   show('error', 'a.vrm could not be shown: it has no head.', 'avatar');
   show('error', 'VR could not be entered.', 'session');
