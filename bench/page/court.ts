@@ -91,6 +91,7 @@ export class Court {
       readyByItself: true,
       voices: { markOf: () => 'none', levelOf: () => 0 },
       hidden: new Set<number>(),
+      isThere: () => true,
       paused: false,
       head: nowhere,
     };

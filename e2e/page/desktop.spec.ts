@@ -39,6 +39,18 @@ freshTest('the note about a missing headset leaves by itself, and the picture gr
   await keepPicture(page, 'zoomed-page');
 });
 
+test('the keyboard opens the details of the methods for researchers, which are folded at first', async ({ page }) => {
+  await load(page, 'quality=low&estimator=ik&panel=on');
+  await page.getByRole('tab', { name: 'Body' }).click();
+  const precise = page.getByText('Six joints in closed form');
+  await expect(page.getByText('Calculated from how joints bend')).toBeVisible();
+  await expect(precise).toBeHidden();
+  await page.getByText('Details of the methods').focus();
+  await page.keyboard.press('Enter');
+  await expect(precise).toBeVisible();
+  await keepPicture(page, 'details-of-methods');
+});
+
 /** Returns the box of the avatar's joints in the window [CSS pixels]. */
 const bodyBox = async (page: Page) => (await probe(page)).avatar.box;
 

@@ -16,7 +16,7 @@ import { joinStudy } from './shell/stage/join-study';
 
 /** Shows uncaught errors as notices. */
 function reportFaults(notices: Notices): void {
-  const wentWrong = (text: string) => notices.show('error', `Something went wrong: ${firstLine(text)}`);
+  const wentWrong = (text: string) => notices.show('error', `Something went wrong: ${firstLine(text)}`, 'fault');
   window.addEventListener('error', ({ message }) => wentWrong(message));
   window.addEventListener('unhandledrejection', ({ reason }) => wentWrong(reasonOf(reason)));
 }

@@ -179,6 +179,28 @@ export const Sentences = ({ sentences, ...attributes }: SentencesProps) => (
   </ul>
 );
 
+interface DetailsProps {
+  /** What the details are about, such as "the methods"; it follows "Details of". */
+  readonly of: string;
+  /** Terms and their precise sentences. */
+  readonly entries: readonly (readonly [term: string, sentence: string])[];
+}
+
+/** Precise sentences for researchers, folded away until they are opened. */
+export const Details = ({ of, entries }: DetailsProps) => (
+  <details class="details">
+    <summary>Details of {of}</summary>
+    <dl>
+      {entries.map(([term, sentence]) => (
+        <>
+          <dt>{term}</dt>
+          <dd>{sentence}</dd>
+        </>
+      ))}
+    </dl>
+  </details>
+);
+
 interface TickProps extends Pick<InputHTMLAttributes, 'name' | 'checked' | 'defaultChecked' | 'required' | 'onChange'> {
   readonly label: string;
 }

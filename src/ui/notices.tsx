@@ -11,51 +11,64 @@ export interface Notice {
 
 /** Milliseconds that an information stays: long enough to read twice. */
 const infoDurationMs = 6000;
-const maxNotices = 4;
+const maxNotices = 3;
 
-/** Sentences for the user, in the region given; trouble is announced at once, the rest politely. */
-export function createNotices(region: HTMLElement) {
-  const list = region.appendChild(document.createElement('div'));
-  /** The level of each sentence, and the timer that takes an information away. */
-  const shown = new Map<string, { readonly level: NoticeLevel; leaving?: ReturnType<typeof setTimeout> }>();
+/** Creates the list of what the user is notified of. `onChange` receives it after each change, oldest first. */
+export function createNoticeList(onChange: (notices: readonly Notice[]) => void) {
+  /** By subject, oldest first, with the timer that takes an information away. */
+  const shown = new Map<string, Notice & { readonly leaving: ReturnType<typeof setTimeout> | undefined }>();
+  const current = (): readonly Notice[] => [...shown.values()].map(({ level, text }) => ({ level, text }));
 
-  function showAll(): void {
-    const notices = [...shown].map(([text, { level }]) => (
-      <div key={text} class={`notice ${level}`} role={level === 'info' ? 'status' : 'alert'}>
-        <p>{text}</p>
-        <Button label="×" aria-label="Close this notice" class="quiet icon" onClick={() => withdraw(text)} />
-      </div>
-    ));
-    render(notices, list);
+  function remove(subject: string): void {
+    clearTimeout(shown.get(subject)?.leaving);
+    shown.delete(subject);
   }
 
-  function withdraw(text: string): void {
-    clearTimeout(shown.get(text)?.leaving);
-    shown.delete(text);
-    showAll();
+  function withdraw(subject: string): void {
+    if (!shown.has(subject)) return;
+    remove(subject);
+    onChange(current());
   }
 
   return {
     /**
-     * Shows a sentence. The same sentence twice is shown once; information leaves by itself, trouble stays until closed
-     * or over.
+     * Shows a sentence, in place of the one about the same subject (default: the sentence), which is no longer true. An
+     * information leaves by itself; a warning or error stays until it is closed, withdrawn or one of the oldest.
      */
-    show(level: NoticeLevel, text: string): void {
-      const notice = shown.get(text) ?? { level };
-      shown.set(text, notice);
+    show(level: NoticeLevel, text: string, subject: string = text): void {
+      remove(subject);
+      const leaving = level === 'info' ? setTimeout(() => withdraw(subject), infoDurationMs) : undefined;
+      shown.set(subject, { level, text, leaving });
       const oldest = shown.keys().next().value;
-      if (shown.size > maxNotices && oldest !== undefined) withdraw(oldest);
-      else showAll();
-      if (notice.level !== 'info') return;
-      // A repeated notice starts its time again.
-      clearTimeout(notice.leaving);
-      notice.leaving = setTimeout(() => withdraw(text), infoDurationMs);
+      if (shown.size > maxNotices && oldest !== undefined) remove(oldest);
+      onChange(current());
     },
-    /** Removes a notice that is no longer true. */
+    /** Removes the notice about a subject, which is no longer true. */
     withdraw,
-    /** What is on the screen now, oldest first. */
-    current: (): readonly Notice[] => [...shown].map(([text, { level }]) => ({ level, text })),
+    /** Removes the notice with this sentence. */
+    close(text: string): void {
+      for (const [subject, notice] of shown) if (notice.text === text) withdraw(subject);
+    },
+    /** Returns what is on the screen now, oldest first. */
+    current,
   };
+}
+
+/** Creates the sentences for the user in a region of the page; trouble is announced at once, the rest politely. */
+export function createNotices(region: HTMLElement): Omit<ReturnType<typeof createNoticeList>, 'close'> {
+  const drawn = region.appendChild(document.createElement('div'));
+  const list = createNoticeList((notices) =>
+    render(
+      notices.map(({ level, text }) => (
+        <div key={text} class={`notice ${level}`} role={level === 'info' ? 'status' : 'alert'}>
+          <p>{text}</p>
+          <Button label="×" aria-label="Close this notice" class="quiet icon" onClick={() => list.close(text)} />
+        </div>
+      )),
+      drawn,
+    ),
+  );
+  return list;
 }
 
 export type Notices = ReturnType<typeof createNotices>;

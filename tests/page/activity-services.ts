@@ -83,7 +83,7 @@ export function activityServices(address = '?seed=5&quality=low') {
     avatar: { isBuiltIn: true, worn: defaultAvatar },
     fetchBuiltInAvatar,
     server: new ServerPresence('http://127.0.0.1:9', () => undefined),
-    notices: { show: (level, text) => void notices.push({ level, text }) },
+    notices: { show: (level, text) => void notices.push({ level, text }), withdraw: () => undefined },
     study,
     onCaption: (text) => void captions.push(text),
     onChange: () => undefined,

@@ -5,9 +5,9 @@ import { messageEvent, protocolVersion } from 'threepoint-rooms/host';
 import type { ConnectionStatus } from 'threepoint-rooms/room';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { RoomTokens } from '../../src/relay/access/room-tokens';
-import { atRack, fists, holding, opening, releaseOf } from '../rooms/client/people';
+import { atRack, fists, holding, opening, releaseOf, shownAt } from '../rooms/client/people';
 import { testSecret } from '../server/started-server';
-import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
+import { arrive, pause, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 import { personOfTest } from './until-finished';
 
 let server: RunningRelay;
@@ -67,6 +67,19 @@ describe('a relay', () => {
     ann.connection.leave();
     await until('the seat free', () => ben.connection.room?.seats[seat] === null, 2);
     expect(ann.connection.status).toMatchObject({ phase: 'ended', reason: 'left' });
+  });
+
+  test('receives every pose that a slow page sends at once', async () => {
+    const ann = personOfTest(server.url, 'slow-page', 'Ann');
+    const ben = personOfTest(server.url, 'slow-page', 'Ben');
+    await until('a pose of ann', () => ben.poses.length > 0);
+    ann.freeze();
+    await pause(0.2);
+    const before = ben.poses.length;
+    const time = ann.now();
+    for (let i = 5; i >= 0; i--)
+      ann.connection.sendPose(time - i / 30, shownAt(ann.connection, ann.seat, fists(opening)));
+    await until('six poses', () => ben.poses.length === before + 6, 2);
   });
 
   test('makes a room as the first to come asks for it, and as no one after', async () => {

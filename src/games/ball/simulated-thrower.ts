@@ -50,6 +50,9 @@ const flightSeconds = 0.86;
 const betweenThrows = 0.75;
 /** Scatter of the throws' targets [m]. */
 const scatter = 0.14;
+/** The share of throws that go astray, as people's do, and how far beside the basket [m]: out of its holder's reach. */
+const strayShare = 1 / 8;
+const strayBeside = 1.1;
 
 const rise = vec3(0, 0, 0);
 
@@ -153,6 +156,8 @@ class Thrower implements BallBot {
     const side = at.x < 0 ? 'left' : 'right';
     this.#throwing = side;
     const target = add(basket, vec3(scatter * this.#chance(), 0, scatter * this.#chance()));
+    const luck = this.#chance();
+    if (Math.abs(luck) < strayShare) target.x += Math.sign(luck) * strayBeside;
     const reach = moves.reaching(side, at);
     const ready = moves.carrying(side, basket);
     const velocityFrom = (start: Vec3) =>

@@ -74,7 +74,7 @@ export interface ActivityServices {
   readonly avatar: { readonly isBuiltIn: boolean; readonly worn: OwnAvatar };
   fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
   readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
-  readonly notices: Pick<Notices, 'show'>;
+  readonly notices: Pick<Notices, 'show' | 'withdraw'>;
   /** The study that the user takes part in; `run`: null without one. */
   readonly study: { readonly run: Pick<StudyRun, 'idle' | 'paused'> | null };
   onCaption(text: string): void;

@@ -13,7 +13,7 @@ import {
   rotationForRound,
 } from 'threepoint-games/ball';
 import type { SeatedGame } from '../people/match/seated-game';
-import type { DisplayedMatch } from '../people/view/displayed-match';
+import { type DisplayedMatch, presentPlayers } from '../people/view/displayed-match';
 import { waitingLine } from './view/match-texts';
 
 /** How a player without a headset plays, by role. */
@@ -32,9 +32,11 @@ const hints: Readonly<Record<'mouse' | 'touch', Readonly<Record<BallRole, string
 
 /** Returns which role a match lacks. Roles move on between two matches alone. */
 function lackedRole(match: DisplayedMatch<BallGame['state']>): string | null {
-  const { state, players } = match;
-  const taken = players.flatMap((person, player) => (person ? (state.players[player]?.station ?? []) : []));
-  if (rotationForRound(taken, state.rotate && state.phase === 'over') !== null) return null;
+  const { state } = match;
+  const present = presentPlayers(match);
+  const taken = present.flatMap((player) => state.players[player]?.station ?? []);
+  const isFull = present.length === state.players.length || !state.options.everySeat;
+  if (isFull && rotationForRound(taken, state.rotate && state.phase === 'over') !== null) return null;
   return waitingLine({ ...match, state: { ...state, phase: 'ready' } });
 }
 

@@ -12,7 +12,7 @@ import { createZoneRing } from './court/zone-ring';
 import type { BallFrame, Palms } from './match/ball-frame';
 import { BallSounds } from './sound/ball-sounds';
 import { createAimArc } from './view/aim-arc';
-import { Balls } from './view/balls';
+import { Balls, type InHand } from './view/balls';
 import { type Boards, createBoards } from './view/boards';
 import { CatchPopups } from './view/catch-popups';
 import { eventLine, waitingLine } from './view/match-texts';
@@ -67,6 +67,7 @@ export class BallView {
     this.people = new PeopleView(ballGame, quality);
     this.#sounds = new BallSounds(onCaption);
     this.sound = this.#sounds.stage;
+    this.#basket.object.visible = false;
     const standing = [this.#balls, this.#basket, this.#boards, this.#pops];
     this.#court.object.add(
       ...standing.map(({ object }) => object),
@@ -101,8 +102,10 @@ export class BallView {
   }
 
   /** Plays and captions the events since the last frame, and writes them on the board. Call it after `show`. */
-  playEvents(events: readonly BallEvent[], { cues }: Pick<BallFrame, 'cues'>): void {
+  playEvents(happened: readonly BallEvent[], { cues: played, simulated }: Pick<BallFrame, 'cues' | 'simulated'>): void {
     if (!this.#shown) return;
+    const events = simulated ? happened.filter(({ type }) => type !== 'refused') : happened;
+    const cues = simulated ? played.filter(({ type }) => type !== 'slipped') : played;
     const { state, pageTime, attendants: people, me, palms, opening } = this.#shown;
     for (const event of events) {
       const text = eventLine(event, people);
@@ -119,11 +122,21 @@ export class BallView {
     disposeTree(this.#court.object);
   }
 
-  #showBalls({ state, time, palms, opening: held, aim }: BallScene): void {
+  #showBalls(scene: BallScene): void {
+    const { state, time, palms, opening: held, aim, isThere } = scene;
     const opening = held ?? state.basket;
     this.#basket.show(opening);
+    this.#basket.object.visible = this.#hasBasket(scene);
     this.#arc.show(aim, opening);
-    this.#balls.show(state, time, (player, side) => palms[player]?.[side] ?? null, opening);
+    const inHand: InHand = (player, side) => (isThere(player) && palms[player]?.[side]) || null;
+    this.#balls.show(state, time, inHand, this.#basket.object.visible ? opening : null);
+  }
+
+  /** Returns whether the basket is shown: from when its holder is there, until the end of a match that they leave. */
+  #hasBasket({ state, attendants, isThere }: BallScene): boolean {
+    const holder = state.players.findIndex(({ role }) => role === 'holder');
+    if (isThere(holder)) return true;
+    return state.phase !== 'ready' && (this.#basket.object.visible || attendants[holder] === null);
   }
 
   /** Returns the line of the board: the last event, or what the match waits for. */

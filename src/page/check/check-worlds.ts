@@ -76,6 +76,7 @@ export class CheckWorlds {
       readyByItself: true,
       voices: { markOf: () => 'none', levelOf: () => 0 },
       hidden: new Set<number>(),
+      isThere: () => true,
       paused: false,
     };
     const [own, ...others] = avatars;

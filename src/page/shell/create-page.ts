@@ -142,15 +142,15 @@ const sessionLost = 'The graphics device was lost, and VR has ended. Your game c
 function handleLostGraphics({ stage, notices, headset, timing }: StageParts): void {
   const canvas = stage.renderer.domElement;
   canvas.addEventListener('webglcontextlost', () => {
-    notices.show('warning', headset.worn ? sessionLost : pictureLost);
+    if (headset.worn) notices.show('warning', sessionLost, 'session');
+    else notices.show('warning', pictureLost, 'graphics');
     // What the headset shows was drawn by the lost device; a session cannot be given another one.
     headset.exit();
   });
   canvas.addEventListener('webglcontextrestored', () => {
     stage.studio.restore();
     timing.reset();
-    notices.withdraw(pictureLost);
-    notices.show('info', 'The graphics device is back.');
+    notices.show('info', 'The graphics device is back.', 'graphics');
   });
 }
 
@@ -169,7 +169,7 @@ function connectParts(page: Page): void {
   tracker.addEventListener('fallback', ({ estimator, reason }) => {
     const { label } = estimatorTexts[estimator];
     const text = `${label} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`;
-    notices.show('warning', text);
+    notices.show('warning', text, 'estimator');
   });
   tracker.addEventListener('discontinuity', () => {
     degradation.reset();

@@ -105,7 +105,7 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   fail(error: unknown): void {
     const text = firstLine(reasonOf(error));
-    if (text !== this.#lastFault) this.#parts.notices.show('error', `A frame could not be drawn: ${text}`);
+    if (text !== this.#lastFault) this.#parts.notices.show('error', `A frame could not be drawn: ${text}`, 'frame');
     this.#lastFault = text;
   }
 

@@ -103,7 +103,8 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
   }
 
   protected transmitPose(bytes: Uint8Array): void {
-    if (this.#isJoined) this.#socket.volatile.emit(poseEvent, bytes);
+    // Not volatile: of the poses of one slow frame, socket.io would drop all but the first.
+    if (this.#isJoined) this.#socket.emit(poseEvent, bytes);
   }
 
   get #isJoined(): boolean {

@@ -68,6 +68,14 @@ describe('bots', () => {
     expect(events.flatMap((event) => (event.type === 'refused' ? [event.reason] : []))).toEqual([]);
   });
 
+  it('miss now and then: between one throw in twenty and one in five', { tags: ['full'] }, () => {
+    const matches = [1, 2, 3, 4, 5, 6].map((match) => play({ seed: 100 * match, rateHz: 60 }));
+    const missed = matches.reduce((sum, { state }) => sum + state.options.balls - state.score, 0) / (6 * 20);
+    console.log(`missed ${(100 * missed).toFixed(0)} % of 120 throws`);
+    expect(missed).toBeGreaterThan(0.05);
+    expect(missed).toBeLessThan(0.2);
+  });
+
   it('play the same match again from the same seed, and another one from another', () => {
     const [first, again, other] = [play({}), play({}), play({ seed: 2 })];
     expect(again.events).toEqual(first.events);

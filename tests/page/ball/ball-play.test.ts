@@ -122,12 +122,21 @@ describe('one person with two bots', () => {
     expect(player.newest?.bodies).toHaveLength(3);
   });
 
-  it('built-in players throw as well where pictures come four times a second', { tags: ['full'] }, () => {
-    const { player, until, events } = page({ seat: 0, rateHz: 4 });
-    until(() => player.probe()?.phase === 'over', 110);
-    expect(player.probe()?.end).toBe('balls');
-    expect(player.probe()?.score).toBeGreaterThanOrEqual(6);
-    expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
+  it('built-in players throw as often at 5, 10 and 60 pictures a second', { tags: ['full'] }, () => {
+    const played = [5, 10, 60].map((rateHz) => {
+      const { player, until, events } = page({ seat: 0, rateHz });
+      until(() => player.probe()?.phase === 'over', 110);
+      const happened = (type: BallEvent['type']) => events.filter((event) => event.type === type).length;
+      return {
+        thrown: happened('thrown'),
+        refused: happened('refused'),
+        secondsLeft: player.probe()?.secondsLeft ?? 0,
+      };
+    });
+    for (const { thrown, refused, secondsLeft } of played) {
+      expect({ thrown, refused }).toEqual({ thrown: 20, refused: 0 });
+      expect(Math.abs(secondsLeft - (played[2]?.secondsLeft ?? 0))).toBeLessThan(1.5);
+    }
   });
 
   it('stands still in a pause, and the match goes on afterwards unchanged', () => {

@@ -49,8 +49,8 @@ const withReady = (...ready: boolean[]): BallState => ({
 
 describe('the board', () => {
   it('says who is missing, then who is waited for', () => {
-    expect(waitingLine(standing([null, null, person('cal')]))).toBe('Waiting for a thrower');
-    expect(waitingLine(standing([person('ann'), null, null]))).toBe('Waiting for a basket holder');
+    expect(waitingLine(standing([null, null, person('cal')], withReady()))).toBe('Waiting for a thrower');
+    expect(waitingLine(standing([person('ann'), null, null], withReady()))).toBe('Waiting for a basket holder');
     const all = [person('ann'), person('ben'), person('cal')];
     expect(waitingLine(standing(all, withReady(true, false, false)))).toBe('Waiting for 2 players');
     expect(waitingLine(standing(all, withReady(true, true, false)))).toBe('Waiting for one player');
@@ -59,7 +59,7 @@ describe('the board', () => {
   it('beside the player: says who is waited for, by name, and what to press', () => {
     const all = [person('ann', { me: true }), person('Max', { bot: true, station: 1 }), person('cal', { station: 2 })];
     const told = (...ready: boolean[]) => waitingSentence(ballGame, standing(all, withReady(...ready)));
-    expect(waitingSentence(ballGame, standing([person('ann', { me: true }), null, null]))).toBe(
+    expect(waitingSentence(ballGame, standing([person('ann', { me: true }), null, null], withReady()))).toBe(
       'Waiting for a basket holder.',
     );
     expect(told(false, true, true)).toBe('Waiting for you: press Ready.');
@@ -77,6 +77,23 @@ describe('the board', () => {
     expect(waitingSentence(ballGame, standing(throwers, { ...over, rotate: true }))).toBe(
       'Waiting for you: press Play again.',
     );
+  });
+
+  it('waits for nobody who has left, although the seat is held for them', () => {
+    const gone = person('Ben', { station: 1, presence: 'gone' });
+    const people = [person('ann', { me: true }), gone, person('cal', { station: 2 })];
+    const without = (seat: number, state: BallState): BallState => ({
+      ...state,
+      players: state.players.map((player, i) => (i === seat ? { ...player, present: false } : player)),
+    });
+    const state = without(1, withReady(true, false, false));
+    expect(waitingSentence(ballGame, standing(people, state))).toBe('Waiting for 3 · cal.');
+    expect(waitingLine(standing(people, state))).toBe('Waiting for one player');
+    const noHolder = standing(people, without(2, withReady(true, true, false)));
+    expect(waitingSentence(ballGame, noHolder)).toBe('Waiting for a basket holder.');
+    expect(waitingLine(noHolder)).toBe('Waiting for a basket holder');
+    const allSeats = { ...state, options: { ...state.options, everySeat: true } };
+    expect(waitingSentence(ballGame, standing(people, allSeats))).toBe('Waiting for all players.');
   });
 
   it('speaks to the player of their own throws', () => {

@@ -14,6 +14,8 @@ export interface BallFrame extends MatchFrame<BallGame> {
   /** The basket where its holder's hands had it last; null: where the state has it. Arena frame. */
   readonly opening: Opening | null;
   readonly cues: readonly BallCue[];
+  /** A built-in player moved the user's body: what the match refuses is not the user's mistake. */
+  readonly simulated: boolean;
   readonly held: Readonly<Record<Side, number | null>>;
   /** How the ball in the own hand would fly, arena frame; null: no one aims it with a mouse. */
   readonly aim: Launch | null;

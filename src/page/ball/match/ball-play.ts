@@ -128,6 +128,7 @@ export class BallPlay extends MatchPlay<BallGame, BallFrame> {
       palms,
       opening,
       cues: joined(missed.cues, played?.cues),
+      simulated: missed.botPlayed,
       haptics: joined(missed.haptics, shared.haptics),
       held: played?.held ?? emptyHands,
       aim: this.#simulated.aim,

@@ -58,6 +58,7 @@ export class SimulatedPlayer {
   #actedAt: number | null = null;
   #cues: readonly BallCue[] = none;
   #haptics: readonly HapticPulse[] = none;
+  #botPlayed = false;
 
   constructor(options: SimulatedPlayerOptions, calibration: Calibration, sight: BotKnowledge) {
     this.#options = options;
@@ -85,6 +86,7 @@ export class SimulatedPlayer {
     const view = connection.room;
     if (!view?.match || view.mySeat === null) return null;
     this.#steering = this.#options.steering?.() ?? null;
+    this.#botPlayed = this.#steering === null;
     const { bot, replaced } = this.#player(view, view.mySeat);
     if (replaced) {
       // The move from the previous hands to these is not a throw.
@@ -96,11 +98,12 @@ export class SimulatedPlayer {
     return simulatedInput(bot, time, connection.room?.match ?? view.match, view.mySeat, this.#sight);
   }
 
-  /** Returns cues and haptics of the moments between two pictures, once. */
-  takeMissed(): { readonly cues: readonly BallCue[]; readonly haptics: readonly HapticPulse[] } {
-    const missed = { cues: this.#cues, haptics: this.#haptics };
+  /** Returns cues and haptics of the moments between two pictures, and whether a bot played in this one, once. */
+  takeMissed() {
+    const missed = { cues: this.#cues, haptics: this.#haptics, botPlayed: this.#botPlayed };
     this.#cues = none;
     this.#haptics = none;
+    this.#botPlayed = false;
     return missed;
   }
 

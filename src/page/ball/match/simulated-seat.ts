@@ -16,6 +16,7 @@ import {
   type BallInput,
   type BallRoomView,
   type BallState,
+  ballClientPolicy,
   createSimulatedHolder,
   createSimulatedThrower,
   holderStation,
@@ -122,7 +123,9 @@ export function stepSimulated(
 ): BallGestureFrame | null {
   const seen = connection.room;
   if (!seen?.match || seen.mySeat === null) return null;
-  const { frame, buttons } = simulatedInput(player, moment, seen.match, seen.mySeat, sight);
+  // The player decides by the time of the moment: by that of the picture, its turns to throw would pass between two.
+  const state = ballClientPolicy.at(seen.match, moment + seen.matchClockOffset);
+  const { frame, buttons } = simulatedInput(player, moment, state, seen.mySeat, sight);
   const { pose } = estimator.update(frame);
   connection.sendPose(moment, { jump: false, pose, fingers: fingersFromButtons(buttons) });
   return playFrame(connection, gestures, frame, buttons);

@@ -38,7 +38,7 @@ import type { Quality } from '../../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
 
 /** Returns the position of a ball in a hand, or null if the hand is not tracked. */
-type InHand = (player: number, side: 'left' | 'right') => Vec3 | null;
+export type InHand = (player: number, side: 'left' | 'right') => Vec3 | null;
 
 /** The looks of the balls of the first rack and of the second. They differ in brightness and in the number of bands. */
 const looks = [
@@ -162,7 +162,7 @@ export class Balls {
     this.object.add(...this.#meshes, this.#shadows.object);
   }
 
-  /** Shows the balls at a time of the match [s]. */
+  /** Shows the balls at a time of the match [s]. `opening`: that of the basket, null while it is not shown. */
   show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void {
     this.#perRack = ballsPerRack(state.options.balls);
     let caught = 0;
@@ -171,7 +171,7 @@ export class Balls {
       let position: Vec3 | null;
       if (place.on === 'hand') position = inHand(place.player, place.side);
       else if (place.on === 'basket') {
-        position = caught < maxInBasket ? this.#inBasket(caught, opening ?? state.basket) : null;
+        position = opening && caught < maxInBasket ? this.#inBasket(caught, opening) : null;
         caught += 1;
       } else position = ballPosition(state, ball, time);
       // The event of the catch arrives later: until then the ball stays in the basket.

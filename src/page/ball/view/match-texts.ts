@@ -1,5 +1,10 @@
 import type { BallEvent, BallState } from 'threepoint-games/ball';
-import { type DisplayedMatch, type DisplayedPlayer, markedName } from '../../people/view/displayed-match';
+import {
+  type DisplayedMatch,
+  type DisplayedPlayer,
+  markedName,
+  presentPlayers,
+} from '../../people/view/displayed-match';
 
 /** Returns the line of the board for an event; null: none. */
 export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | null)[]): string | null {
@@ -24,10 +29,12 @@ export function eventLine(event: BallEvent, people: readonly (DisplayedPlayer | 
 }
 
 /** Returns the line of the board while nothing happens. */
-export function waitingLine({ state, players }: DisplayedMatch<BallState>): string {
+export function waitingLine(match: DisplayedMatch<BallState>): string {
+  const { state } = match;
   if (state.phase === 'running') return 'Catch them in the basket';
   if (state.phase === 'over') return state.end === 'time' ? 'Time is up' : 'All balls thrown';
-  const there = players.flatMap((person, player) => (person ? [player] : []));
+  const there = presentPlayers(match);
+  if (state.options.everySeat && there.length < state.players.length) return 'Waiting for all players';
   const roles = new Set(there.map((player) => state.players[player]?.role));
   if (!roles.has('thrower')) return 'Waiting for a thrower';
   if (!roles.has('holder')) return 'Waiting for a basket holder';

@@ -97,6 +97,8 @@ export abstract class MatchActivity<
   readonly #parts: MatchParts<Game, Frame, Play>;
   /** In a room with other people everyone presses Ready, also who lets a simulated player play. */
   readonly readyByItself: () => boolean;
+  readonly #isThere = (seat: number): boolean =>
+    seat === this.play.newest?.me || this.#bodies.drawnAs(seat) !== null || this.blocked.hidden.has(seat);
   readonly #bodies: RoomBodies;
   readonly #menu: PeopleMenu;
   /** The width up to which the bar lies over the picture. */
@@ -208,17 +210,18 @@ export abstract class MatchActivity<
       attendants: this.#named(newest.players),
       head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? stage.view.pose,
       pageTime: time,
-      inRoom: !this.#ended,
+      inRoom: this.#joined,
       readyByItself: this.readyByItself(),
       voices: this.voices.seats,
       hidden: this.blocked.hidden,
+      isThere: this.#isThere,
     });
     view.playEvents?.(newest.resumed ? none : newest.events, newest);
   }
 
   point({ origin, direction }: Ray, press: boolean): PointerTarget | null {
     const { sheet } = this.#parts.view.people.lobby;
-    const hit = this.#ended ? null : sheet.buttonAt(origin, direction);
+    const hit = this.#joined ? sheet.buttonAt(origin, direction) : null;
     sheet.setHovered(hit?.id ?? null);
     if (!hit) return null;
     if (press) this.#press(hit.id);
@@ -292,9 +295,9 @@ export abstract class MatchActivity<
     this.#parts.view.dispose();
   }
 
-  /** This page is no longer in the room. */
-  get #ended(): boolean {
-    return this.play.status.phase === 'ended';
+  /** This page is in the room, and connected to it. */
+  get #joined(): boolean {
+    return this.play.status.phase === 'joined';
   }
 
   /** Turns the place of the game around the user, after every change of seat. */

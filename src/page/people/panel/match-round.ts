@@ -20,7 +20,7 @@ export interface MatchRound {
   readonly paused: boolean;
   /** A sentence about what the match waits for; null: it waits for nothing. */
   readonly waiting: string | null;
-  /** The quality of the connection in words; null: the room is in this page. */
+  /** The quality of the connection in words; null: it is lost, or the room is in this page. */
   readonly connection: string | null;
   /** Why this page is no longer in the room; null: it is in the room. */
   readonly ended: string | null;
@@ -55,8 +55,11 @@ export function matchRound<Game extends HostedGame>(
   { play, frame, players, readyByItself, voices }: MatchRoundParts<Game>,
 ): MatchRound {
   const { state, secondsLeft, me, spectators, paused } = frame;
-  const ended = play.status.phase === 'ended';
-  const delay = play.room?.responseTime ?? null;
+  const { phase } = play.status;
+  const ended = phase === 'ended';
+  // Without a connection the state is outdated, and the banner says so.
+  const joined = phase === 'joined';
+  const delay = joined ? (play.room?.responseTime ?? null) : null;
   const roleOf = (seat: number) => game.roles[game.stationOf(state, seat)] ?? '';
   const hint = (touch: boolean) => (me === null ? null : game.hint(state, me, touch));
   const { score, of } = game.figures(state);
@@ -68,8 +71,8 @@ export function matchRound<Game extends HostedGame>(
     remainder: game.remainder(state),
     secondsLeft,
     paused,
-    waiting: ended ? null : waitingSentence(game, standing),
-    connection: delay === null || ended ? null : connectionText(delay),
+    waiting: joined ? waitingSentence(game, standing) : null,
+    connection: delay === null ? null : connectionText(delay),
     ended: ended ? (bannerText(play.status) ?? 'The connection has ended.') : null,
     rules: game.rules(state),
     hints: { mouse: hint(false), touch: hint(true) },

@@ -17,6 +17,10 @@ export interface DisplayedMatch<State extends MatchState = MatchState> {
   readonly readyByItself: boolean;
 }
 
+/** Returns the players that the match can wait for. The seat of one who has left is held, but no match waits for it. */
+export const presentPlayers = ({ state, players }: DisplayedMatch): readonly number[] =>
+  players.flatMap((person, player) => (person && state.players[player]?.present ? [player] : []));
+
 /** The displayed name of the user if none was given. */
 export const ownName = 'You';
 

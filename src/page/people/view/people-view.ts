@@ -13,7 +13,7 @@ import { createNameLabels, type NameLabels } from './name-labels';
 export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Game>, 'state' | 'secondsLeft' | 'me'> {
   /** By player; null: the seat is free. */
   readonly attendants: readonly (SeatFrame | null)[];
-  /** The page's time [s], and whether it is still in the room. */
+  /** The page's time [s], and whether it is connected to the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;
   /** The user is ready without being asked. */
@@ -21,6 +21,8 @@ export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Ga
   readonly voices: Pick<SeatVoices, 'markOf' | 'levelOf'>;
   /** The seats of the players that the user has hidden. */
   readonly hidden: ReadonlySet<number>;
+  /** Whether a player's body is drawn, or would be if the user had not hidden it. Names appear with the bodies. */
+  isThere(seat: number): boolean;
 }
 
 /** Picks what labels show of a player; a label is redrawn when any of it changes. */
@@ -63,11 +65,14 @@ export class PeopleView<Game extends HostedGame> {
     disposeTree(this.#names.object);
   }
 
-  #showNames({ attendants, voices, hidden }: PeopleScene<Game>, people: readonly (DisplayedPlayer | null)[]): void {
+  #showNames(
+    { attendants, voices, hidden, isThere }: PeopleScene<Game>,
+    people: readonly (DisplayedPlayer | null)[],
+  ): void {
     this.#names.show(
       attendants.map((attendant, player) => {
         const person = people[player];
-        if (!attendant?.head || !person || person.me || hidden.has(player)) return null;
+        if (!attendant?.head || !person || person.me || hidden.has(player) || !isThere(player)) return null;
         const { head, opacity } = attendant;
         return { person, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };
       }),

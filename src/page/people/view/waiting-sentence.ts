@@ -1,6 +1,6 @@
 import type { HostedGame } from 'threepoint-rooms/room';
 import type { SeatedGame } from '../match/seated-game';
-import { type DisplayedMatch, markedName } from './displayed-match';
+import { type DisplayedMatch, markedName, presentPlayers } from './displayed-match';
 
 const listed = (names: readonly string[]): string =>
   names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
@@ -14,7 +14,7 @@ export function waitingSentence<Game extends HostedGame>(
   if (state.phase === 'running') return null;
   const lack = game.lacks(match);
   if (lack !== null) return `${lack}.`;
-  const idle = players.flatMap((person, player) => (person && !state.players[player]?.ready ? [player] : []));
+  const idle = presentPlayers(match).filter((player) => !state.players[player]?.ready);
   const names = idle.flatMap((player) => (player !== me && players[player] ? [markedName(players[player])] : []));
   const press = state.phase === 'over' ? 'Play again' : 'Ready';
   if (me !== null && !readyByItself && idle.includes(me))

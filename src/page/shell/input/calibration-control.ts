@@ -30,7 +30,7 @@ export class CalibrationControl {
   /** Measures the user, or reports what is missing. */
   start(): void {
     const missing = this.#missing();
-    if (missing) this.#parts.notices.show('info', missing);
+    if (missing) this.#parts.notices.show('info', missing, 'calibration');
     else this.begin();
   }
 
@@ -47,7 +47,7 @@ export class CalibrationControl {
     const underWay = this.#step?.kind === 'countdown' || this.#step?.kind === 'measuring';
     const missing = underWay ? this.#missing() : null;
     if (missing) {
-      this.#parts.notices.show('info', missing);
+      this.#parts.notices.show('info', missing, 'calibration');
       this.cancel();
     }
     this.#guide.observe(frame);

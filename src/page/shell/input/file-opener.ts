@@ -49,7 +49,7 @@ export class FileOpener {
     const { avatar, notices, mocap } = this.#parts;
     const outcome = await avatar.open(source);
     if (outcome === 'motion') await mocap.open([source]);
-    else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`);
+    else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`, 'avatar');
   }
 
   /**
@@ -59,7 +59,7 @@ export class FileOpener {
   async applyBones(bones: BoneMap | null): Promise<void> {
     const { avatar, notices } = this.#parts;
     const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
-    if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`);
+    if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`, 'avatar');
   }
 
   /** Shows the page's avatar, also after a reload. */
@@ -80,9 +80,10 @@ export class FileOpener {
     try {
       recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)), requestNumber);
       this.replay();
+      notices.withdraw('recording');
     } catch (error) {
       const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
-      notices.show('error', `${name} could not be replayed: ${reason}`);
+      notices.show('error', `${name} could not be replayed: ${reason}`, 'recording');
     }
   }
 

@@ -1,8 +1,16 @@
 import { useRef } from 'preact/hooks';
 import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
-import { Button, Toggle, TypedInput } from 'threepoint-ui/controls';
+import { Button, Details, Toggle, TypedInput } from 'threepoint-ui/controls';
 import { estimatorOrder, estimatorTexts } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
+
+const methodDetails = estimatorOrder.map((name) => [estimatorTexts[name].label, estimatorTexts[name].details] as const);
+
+const measureDetails = [
+  ['Height', 'Gives the eye height, of which the offsets of trunk and head are ratios.'],
+  ['Arm span', 'Gives the arm length from shoulder to wrist: half the span without shoulder girdle and hands.'],
+  ['Forearm', 'Places the elbow half-way between this measure and the average share of the arm.'],
+] as const;
 
 /** Lets the user choose an estimator. An unavailable one gives the reason. */
 const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions }: PanelPageProps) => (
@@ -31,6 +39,7 @@ const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions 
         </label>
       );
     })}
+    <Details of="the methods" entries={methodDetails} />
   </fieldset>
 );
 
@@ -93,6 +102,7 @@ function Measures({ state, actions }: PanelPageProps) {
         <Button label="Calibrate" class="primary" onClick={() => actions.calibrate()} />
         <Button label="Reset" aria-label="Reset calibration" onClick={() => actions.resetCalibration()} />
       </div>
+      <Details of="the measures" entries={measureDetails} />
     </section>
   );
 }

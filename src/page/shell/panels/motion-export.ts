@@ -53,9 +53,10 @@ export class MotionExport {
       // The name says what is in the file, so that it never replaces what was recorded.
       const file = `${stem}-${estimator}${choice === 'bvh-cm' ? '-cm' : ''}.${extension}`;
       offerDownload(file, type, new Blob([...parts], { type }));
-      notices.show('info', `${file} is ready: the body as drawn by ${label}.`);
+      notices.show('info', `${file} is ready: the body as drawn by ${label}.`, 'export');
     } catch (error) {
-      if (!signal.aborted) notices.show('error', `${stem} could not be exported: ${firstLine(reasonOf(error))}`);
+      if (!signal.aborted)
+        notices.show('error', `${stem} could not be exported: ${firstLine(reasonOf(error))}`, 'export');
     } finally {
       this.#setState(null);
     }

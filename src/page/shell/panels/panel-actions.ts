@@ -33,7 +33,7 @@ function bodyActions({ store, body, notices, userCalibration }: StageParts, meas
         ...(forearmCm !== null && { forearm: forearmCm / 100 }),
       };
       const complaint = calibrationProblem(calibration);
-      if (complaint) notices.show('warning', complaint);
+      if (complaint) notices.show('warning', complaint, 'calibration');
       else userCalibration.calibrateForGood(calibration, 'by hand');
     },
     resetCalibration: () => userCalibration.resetCalibration(),

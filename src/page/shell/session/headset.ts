@@ -227,6 +227,7 @@ export class Headset {
       this.#listener?.refused();
       return;
     }
+    this.#context.notices.withdraw('session');
     this.#listener?.entered();
   }
 
@@ -293,6 +294,6 @@ export class Headset {
   }
 
   #showError(sentence: string): void {
-    this.#context.notices.show('error', sentence);
+    this.#context.notices.show('error', sentence, 'session');
   }
 }

@@ -174,10 +174,11 @@ export class Activities {
     try {
       this.#current = await activity.load(this.#context());
       this.#name = activity.name;
+      notices.withdraw('activity');
       const { sound } = this.#current;
       if (sound) this.#cancelSound = unlockSound(sound, settings.sound, notices);
     } catch (error) {
-      notices.show('error', `${activity.place} could not be opened: ${firstLine(reasonOf(error))}`);
+      notices.show('error', `${activity.place} could not be opened: ${firstLine(reasonOf(error))}`, 'activity');
     }
     this.#arriving = false;
   }

@@ -24,12 +24,17 @@ export class PassthroughHost {
     const { headset, notices } = this.#parts;
     const session = headset.passthrough;
     this.#leave();
+    notices.withdraw('passthrough');
     if (!session) return;
     try {
       const { PassthroughRoom } = await import('../../passthrough/passthrough-room');
       if (headset.passthrough === session) this.#room = new PassthroughRoom(this.#roomOptions(session));
     } catch (error) {
-      notices.show('error', `Your room could not be shown: ${firstLine(reasonOf(error))}. The usual world is shown.`);
+      notices.show(
+        'error',
+        `Your room could not be shown: ${firstLine(reasonOf(error))}. The usual world is shown.`,
+        'passthrough',
+      );
     }
   }
 

@@ -168,7 +168,7 @@ export class UserAvatar {
       };
     } catch (error) {
       const text = `The bones of ${name} could not be read: ${reasonFor(name, error)}. Open the file again.`;
-      this.#parts.notices.show('error', text);
+      this.#parts.notices.show('error', text, 'avatar');
     } finally {
       this.#parts.onChange();
     }
@@ -269,21 +269,28 @@ export class UserAvatar {
       this.#waiting = { name, joints, bones, confidence, ...asked, checked };
       this.#pending = `${name} is waiting for its bones to be mapped.`;
       const how = 'Map them by hand: Controls, Avatar, Bones of this file.';
-      notices.show('error', `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`);
+      notices.show(
+        'error',
+        `${name} could not be shown. Its bones could not be matched to a humanoid. ${how}`,
+        'avatar',
+      );
       return;
     }
-    notices.show('error', `${name} could not be shown: ${reasonFor(name, error)}`);
+    notices.show('error', `${name} could not be shown: ${reasonFor(name, error)}`, 'avatar');
     if (isNewest) this.#pending = isBuiltIn ? null : `${name} could not be shown.`;
   }
 
   #show({ avatar, ...state }: UserAvatarState, name: string, turn: number): void {
-    const { tracker, settings } = this.#parts;
+    const { tracker, settings, notices } = this.#parts;
     tracker.setAvatar(avatar);
     this.#name = name;
     this.#state = state;
     this.#shown = turn;
     this.#waiting = null;
-    if (turn === this.#requested) this.#pending = null;
+    if (turn === this.#requested) {
+      this.#pending = null;
+      notices.withdraw('avatar');
+    }
     this.recolour();
     if (typeof state.worn === 'string') avatar.setSkinTone(skinToneOf(state.worn));
     avatar.setUpperBodyOnly(settings.upperBodyOnly);

@@ -57,6 +57,7 @@ export class UserCalibration {
     this.#parts.notices.show(
       'info',
       `You stand ${centimetres} cm taller than your calibration. You may want to calibrate again.`,
+      'calibration',
     );
   }
 

@@ -65,7 +65,10 @@ function files() {
     files: new FileOpener(
       fake<StageParts>({
         recorder,
-        notices: { show: (level: Notice['level'], text: string) => void notices.push({ level, text }) },
+        notices: {
+          show: (level: Notice['level'], text: string) => void notices.push({ level, text }),
+          withdraw: () => undefined,
+        },
         avatar: {
           name: 'robot.vrm',
           async open(source: string | File) {

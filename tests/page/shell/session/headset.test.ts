@@ -65,7 +65,7 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   const context = fake<PageContext>({
     switches: { emulate: false },
     settings: { actor: true, emulatorPanel: false, deviceBody: false },
-    notices: { show: (_: unknown, text: string) => void told.push(text) },
+    notices: { show: (_: unknown, text: string) => void told.push(text), withdraw: () => undefined },
   });
   const renderer = { xr: { setSession: draw, getReferenceSpace: () => new EventTarget() } };
   const headset = new Headset(
@@ -146,7 +146,7 @@ test('the emulated headset is installed once, however often it is asked for whil
   const context = fake<PageContext>({
     switches: { emulate: false },
     settings: { actor: true, emulatorPanel: false, deviceBody: false },
-    notices: { show: (_: unknown, text: string) => expect(text).toBeNull() },
+    notices: { show: (_: unknown, text: string) => expect(text).toBeNull(), withdraw: () => undefined },
   });
   const headset = new Headset(
     context,

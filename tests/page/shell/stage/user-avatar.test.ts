@@ -36,7 +36,7 @@ test('our body keeps its seat’s colours when another replaces it, and its tone
   const parts = fake<SessionParts>({
     tracker,
     settings: { palette: 'porcelain', upperBodyOnly: false, builtInBody: 'woman', skinTone: 'dark' },
-    notices: { show: (_: unknown, text: string) => expect(text).toBeNull() },
+    notices: { show: (_: unknown, text: string) => expect(text).toBeNull(), withdraw: () => undefined },
     onChange: () => undefined,
   });
   const avatar = new UserAvatar(parts, new AvatarLoader(noBones(), () => Promise.resolve()));
@@ -75,7 +75,7 @@ function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.r
   const parts = fake<SessionParts>({
     tracker,
     settings: { palette: 'own', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
-    notices: { show: (_: unknown, text: string) => void told.push(text) },
+    notices: { show: (_: unknown, text: string) => void told.push(text), withdraw: () => undefined },
     onChange: () => undefined,
   });
   const avatar = new UserAvatar(parts, new AvatarLoader(boneMaps, prepare));

@@ -1,0 +1,48 @@
+import { nothingPressed } from 'threepoint/core';
+import { createBallLoopbackHost } from 'threepoint-games/ball';
+import type { ConnectionStatus } from 'threepoint-rooms/room';
+import { expect, test } from 'vitest';
+import { ballGame } from '../../../src/page/ball/ball-game';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { matchRound } from '../../../src/page/people/panel/match-round';
+import { visitor } from '../../rooms/client/people';
+
+test('a panel describes the connection only while it stands, and waits for nobody without it', () => {
+  const host = createBallLoopbackHost();
+  const play = new BallPlay({
+    connect: (joining, time) => host.connect(joining, time),
+    visitor: visitor('Ann'),
+    bots: () => false,
+    readyByItself: () => false,
+    seed: 1,
+  });
+  for (const time of [1, 2]) play.begin(time);
+  const frame = play.follow(2, null, nothingPressed);
+  const { room } = play;
+  if (!frame || !room) throw new Error('Ann is not in the room');
+  const described = (status: ConnectionStatus) => {
+    const { connection, waiting, ended } = matchRound(ballGame, {
+      play: { status, room: { ...room, responseTime: 0.008 } },
+      frame,
+      players: frame.players,
+      readyByItself: false,
+      voices: {
+        state: {
+          ...{ phase: 'none', muted: true, relay: false, relayOnly: false },
+          ...{ message: null, microphoneMissing: false },
+        },
+        seats: { voiceOf: () => ({ voice: 'none', link: 'none', silenced: false, hidden: false }) },
+      },
+    });
+    return { connection, waiting, ended };
+  };
+  const status = { phase: 'joined', attempt: 0, retryIn: null, reason: null } as const;
+  expect(described(status)).toEqual({
+    connection: 'Connection good, 8 ms',
+    waiting: 'Waiting for a basket holder.',
+    ended: null,
+  });
+  const nothing = { connection: null, waiting: null, ended: null };
+  expect(described({ ...status, phase: 'reconnecting', attempt: 1, retryIn: 2 })).toEqual(nothing);
+  expect(described({ ...status, phase: 'ended', reason: 'left' })).toEqual({ ...nothing, ended: 'You left the room.' });
+});
