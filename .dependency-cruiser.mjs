@@ -210,9 +210,10 @@ export default {
     },
     {
       name: 'shell-knows-activities-by-registry',
-      comment: 'A new game is one line of shell/activity-registry.ts: no other file of the shell names a game.',
+      comment:
+        'A new game is one line of shell/activity-registry.ts: no other file of the shell or the headset check names a game.',
       severity: 'error',
-      from: { path: '^src/page/(shell|activity)/', pathNot: '^src/page/shell/activity-registry\\.ts$' },
+      from: { path: '^src/page/(shell|activity|check)/', pathNot: '^src/page/shell/activity-registry\\.ts$' },
       to: { path: `^src/page/(?!(?:${floors}|mocap|studio)/)[^/]+/` },
     },
     {
