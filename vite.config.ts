@@ -71,6 +71,8 @@ export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
   plugins: [policyInPages, packageCollector(packages), packageList],
+  // The emulator's panel brings a version of three.js of its own; it draws with ours.
+  resolve: { dedupe: ['three'] },
   server: {
     host: '127.0.0.1',
     port: 5173,
