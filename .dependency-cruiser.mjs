@@ -122,7 +122,7 @@ const knownStudyRooms = Object.keys(studyRooms).map((room) =>
   room === 'model' ? `model/(${Object.keys(modelRooms).join('|')})` : room,
 );
 /** The folders of the page that are no activity. */
-const floors = 'activity|bones|check|emulator|offline|passthrough|people|scene|shell';
+const floors = 'activity|bones|check|embed|emulator|offline|passthrough|people|scene|shell';
 
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
@@ -210,9 +210,10 @@ export default {
     },
     {
       name: 'shell-knows-activities-by-registry',
-      comment: 'A new game is one line of shell/activity-registry.ts: no other file of the shell names a game.',
+      comment:
+        'A new game is one line of shell/activity-registry.ts: no other file of the shell or the headset check names a game.',
       severity: 'error',
-      from: { path: '^src/page/(shell|activity)/', pathNot: '^src/page/shell/activity-registry\\.ts$' },
+      from: { path: '^src/page/(shell|activity|check)/', pathNot: '^src/page/shell/activity-registry\\.ts$' },
       to: { path: `^src/page/(?!(?:${floors}|mocap|studio)/)[^/]+/` },
     },
     {
@@ -230,11 +231,20 @@ export default {
       to: { path: '^src/page/', pathNot: '^src/page/$1/' },
     },
     {
-      name: 'check-is-a-page',
-      comment: 'The headset check is a page and a build of its own: no other page imports it or pays for it.',
+      name: 'pages-apart',
+      comment:
+        'The headset check and the example to embed are pages of their own: no other page imports or pays for them.',
       severity: 'error',
-      from: { path: '^src/', pathNot: '^src/page/check/' },
-      to: { path: '^src/page/check/' },
+      from: { path: '^src/(?!page/(check|embed)/)' },
+      to: { path: '^src/page/(check|embed)/' },
+    },
+    {
+      name: 'embed-is-a-stranger',
+      comment:
+        'The page /embed shows code that anyone can write: it imports packages by their entries, and no room of the page.',
+      severity: 'error',
+      from: { path: '^src/page/embed/' },
+      to: { path: '^src/page/(?!embed/)' },
     },
     {
       name: 'three-draws',

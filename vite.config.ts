@@ -43,12 +43,12 @@ const decodersWithoutNode: Plugin = {
 };
 
 /**
- * The pages of a build. The headset check is a build of its own (scripts/build.mjs): a page that shares its chunks
- * would split those of the others.
+ * The pages of a build. The headset check and the example to embed are a build of their own (scripts/build.mjs): a page
+ * that shares its chunks would split those of the others.
  */
 const pages =
-  process.env.THREEPOINT_BUILD_PAGES === 'check'
-    ? { input: ['check.html'], first: false }
+  process.env.THREEPOINT_BUILD_PAGES === 'apart'
+    ? { input: ['check.html', 'embed.html'], first: false }
     : { input: ['index.html', 'results.html', 'experimenter.html', 'withdraw.html', '404.html'], first: true };
 
 const packages = new Set<string>();
@@ -71,6 +71,8 @@ export default defineConfig({
   // The page can be served from any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
   base: './',
   plugins: [policyInPages, packageCollector(packages), packageList],
+  // The emulator's panel brings a version of three.js of its own; it draws with ours.
+  resolve: { dedupe: ['three'] },
   server: {
     host: '127.0.0.1',
     port: 5173,

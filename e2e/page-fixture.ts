@@ -238,8 +238,9 @@ export function collectErrors(page: Page, home: string): { readonly errors: read
   const errors: string[] = [];
   const onConsole = (message: ConsoleMessage) => {
     // A blocked resource is a console error too, so this includes violations of the policy. Chromium only warns of a
-    // call that the graphics device refuses, after which a part of the picture stays black.
-    if (message.type() === 'error' || /GL_INVALID|WebGL: INVALID/.test(message.text()))
+    // call that the graphics device refuses, after which a part of the picture stays black. three.js warns of a second
+    // copy of itself, whose objects the first one does not know.
+    if (message.type() === 'error' || /GL_INVALID|WebGL: INVALID|Multiple instances/.test(message.text()))
       errors.push(`console: ${message.text()} (${message.location().url})`);
   };
   const onError = (error: Error) => errors.push(`exception: ${error.stack ?? error.message}`);

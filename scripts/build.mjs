@@ -11,6 +11,7 @@ import { filesUnder, isStamped, sourceHash } from './source-hash.mjs';
 const sources = [
   'index.html',
   'check.html',
+  'embed.html',
   'results.html',
   'experimenter.html',
   'withdraw.html',
@@ -111,7 +112,7 @@ export async function build({ base, out, filesFrom = usual.filesFrom } = usual) 
   await buildPages('all');
   const inServiceWorker = await buildServiceWorker(out);
   // After the service worker, whose list is what the other pages load.
-  await buildPages('check');
+  await buildPages('apart');
   const list = join(out, packagesFile);
   writeLicences(out, [...inServiceWorker, ...JSON.parse(readFileSync(list, 'utf8'))]);
   rmSync(list);

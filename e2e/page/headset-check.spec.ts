@@ -62,7 +62,7 @@ const wear = (page: Page) =>
   );
 
 /** The steps of which pictures are kept. */
-const pictured: ReadonlySet<string> = new Set(['Noise at rest', 'Lost hands', 'Frames: archery', 'Frames: ball court']);
+const pictured: ReadonlySet<string> = new Set(['Noise at rest', 'Lost hands', 'Frames: Archery', 'Frames: Ball game']);
 
 /** Runs the check to its end; returns the titles of its steps. */
 async function walk(page: Page): Promise<readonly string[]> {
@@ -81,7 +81,7 @@ async function walk(page: Page): Promise<readonly string[]> {
 test('a headset check measures the emulator’s known noise and losses and writes a valid file @full', async ({
   page,
 }, testInfo) => {
-  await page.goto('/check?emulate&quality=low&pace=0.2');
+  await page.goto('/check?emulate&quality=low&pace=0.25');
   const start = page.getByRole('button', { name: 'Start in the emulated headset' });
   await expect(start).toBeEnabled({ timeout: 60_000 });
   await keepPicture(page, 'headset-check-start');
@@ -98,9 +98,9 @@ test('a headset check measures the emulator’s known noise and losses and write
     'Noise at rest',
     'Lost hands',
     'Body tracking',
-    'Frames: mirror',
-    'Frames: archery',
-    'Frames: ball court',
+    'Frames: Mirror',
+    'Frames: Archery',
+    'Frames: Ball game',
     'Done',
   ]);
   await endDrivenTime(page);
@@ -108,11 +108,12 @@ test('a headset check measures the emulator’s known noise and losses and write
   const card = page.getByRole('region', { name: 'Your card' });
   await expect(card).toContainText('Nothing has been sent.');
   await expect(card).toBeFocused();
+  await expect(card).not.toContainText(/too few|Not measured/);
   await page.setViewportSize({ width: 960, height: 2200 });
   await keepPicture(page, 'headset-check-card');
   await page.setViewportSize({ width: 390, height: 1200 });
   await keepPicture(page, 'headset-check-card-narrow');
-  await expect(page.getByRole('button', { name: 'Check again' })).toBeEnabled();
+  await expect(page.getByRole('button', { name: 'Measure again' })).toBeEnabled();
   const download = page.waitForEvent('download');
   await card.getByRole('button', { name: 'Download the file' }).click();
   const file = testInfo.outputPath('headset-check.json');
@@ -120,12 +121,12 @@ test('a headset check measures the emulator’s known noise and losses and write
 
   const report = readHeadsetReport(readFileSync(file, 'utf8'));
   expect(report.device).toMatchObject({ emulated: true, profiles: ['meta-quest-touch-plus'] });
-  expect(report.session).toMatchObject({ complete: true, ratesHz: [72, 80, 90, 120] });
+  expect(report.session).toMatchObject({ complete: true, rateHz, rateReported: false, ratesHz: [72, 80, 90, 120] });
+  expect(report.unmeasured).toEqual([]);
   expect(report.features.modes).toEqual(['inline', 'immersive-vr', 'immersive-ar']);
   expect(report.features.granted).toContain('local-floor');
   const [head, left, right] = report.noise;
   const off = (measured: number, known: number) => Math.abs(measured / known - 1);
-  expect(off(head!.rateHz, rateHz)).toBeLessThan(0.05);
   expect(off(head!.positionMm.frame, noise.headMm)).toBeLessThan(0.3);
   expect(off(head!.rotationDegrees.frame, noise.headDegrees)).toBeLessThan(0.3);
   for (const hand of [left!, right!]) {
@@ -144,11 +145,11 @@ test('a headset check measures the emulator’s known noise and losses and write
     expect(openEnd).toBe(false);
   }
   expect(report.frameTimes).toHaveLength(3 * 5);
-  for (const { estimator, drawnBy, missed, frames, work } of report.frameTimes) {
+  for (const { estimator, drawnBy, missed, work } of report.frameTimes) {
     expect(drawnBy).toBe(estimator);
-    expect(frames).toBeGreaterThan(20);
+    expect(work.frames).toBeGreaterThan(20);
     // The time stamps again: a steady frame may seem late.
-    expect(missed).toBeLessThan(frames);
+    expect(missed).toBeLessThan(work.frames);
     expect(work.p50Ms).toBeGreaterThan(0);
   }
   expect(report.latency.displayAhead).not.toBeNull();

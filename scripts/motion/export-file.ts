@@ -1,9 +1,20 @@
-import { closeSync, existsSync, fsyncSync, openSync, readFileSync, renameSync, rmSync, writeSync } from 'node:fs';
+import {
+  closeSync,
+  existsSync,
+  fsyncSync,
+  openSync,
+  readFileSync,
+  renameSync,
+  rmSync,
+  statSync,
+  writeSync,
+} from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { type EstimatorName, estimatorNames, parseRecording, type Replayable, reasonOf } from 'threepoint/core';
 import { isGltfMotion } from 'threepoint/files';
 import { type MotionFormat, type MotionWriter, motionFormats, type WorkOptions } from 'threepoint/motion';
 import { recordingOf } from '../../src/page/mocap/simulated-recording';
+import { isTable, purposeOfTable } from '../../src/page/mocap/table-files';
 import { writeMotionFile } from '../../src/threepoint/api/write-motion-file';
 import { createAvatarMotionWriter } from '../../src/threepoint/avatar/avatar-motion-writer';
 import type { NetworkName } from '../../src/threepoint/core/estimation/estimators';
@@ -88,11 +99,18 @@ const isMocap = (path: string): boolean => /\.bvh$/i.test(path) || isGltfMotion(
 async function recordingIn(path: string): Promise<Replayable> {
   const bytes = readGiven(path, 'motion');
   try {
+    if (isTable(path)) throw new Error(purposeOfTable(bytes.toString('utf8')));
     return isMocap(path) ? await simulatedRecording(path, bytes) : parseRecording(bytes.toString('utf8'));
   } catch (error) {
     const reason = reasonOf(error);
     throw new Error(reason.startsWith(basename(path)) ? reason : `${basename(path)}: ${reason}`);
   }
+}
+
+/** Whether two paths lead to the same file, by whatever names of folders and links. */
+function isSameFile(path: string, other: string): boolean {
+  const [one, two] = [path, other].map((each) => statSync(each, { bigint: true, throwIfNoEntry: false }));
+  return one !== undefined && one.dev === two?.dev && one.ino === two.ino;
 }
 
 /**
@@ -136,10 +154,10 @@ export async function exportFile(request: MotionRequest, work: WorkOptions = {})
     estimator: name,
     networks: network,
   });
-  // The name says what is in the file, so that it never replaces what was recorded.
   const stem = `${basename(file, extname(file))}-${name}${options.unit === 'cm' ? '-cm' : ''}`;
   const out = request.out ?? join(dirname(file), `${stem}.${made.extension}`);
-  if (out === file) throw new Error(`${out} would be overwritten; give another file by --out`);
+  const source = [file, request.avatar].find((given) => given && isSameFile(out, given));
+  if (source) throw new Error(`${source} would be overwritten; give another file by --out`);
   work.signal?.throwIfAborted();
   try {
     writeWhole(out, made.parts);

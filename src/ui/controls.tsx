@@ -92,6 +92,34 @@ export const Chooser = ({ name, choices, chosen = '', choose }: ChooserProps) =>
   </Labelled>
 );
 
+interface ReplayTimelineProps {
+  /** The accessible name of the slider. */
+  readonly name: string;
+  readonly paused: boolean;
+  /** The position and the length [s]. */
+  readonly seconds: number;
+  readonly duration: number;
+  readonly setPaused: (on: boolean) => void;
+  readonly seek: (seconds: number) => void;
+}
+
+/** Plays and pauses a replay, shows its position and lets the user seek. */
+export const ReplayTimeline = ({ name, paused, seconds, duration, setPaused, seek }: ReplayTimelineProps) => (
+  <div class="timeline">
+    <Button label={paused ? 'Play' : 'Pause'} onClick={() => setPaused(!paused)} />
+    <input
+      type="range"
+      min={0}
+      max={duration}
+      step={0.01}
+      aria-label={name}
+      value={seconds}
+      onInput={({ currentTarget }) => seek(currentTarget.valueAsNumber)}
+    />
+    <span class="time">{`${seconds.toFixed(1)} / ${duration.toFixed(1)} s`}</span>
+  </div>
+);
+
 interface FileFieldProps {
   readonly label: string;
   /** The accessible name. */

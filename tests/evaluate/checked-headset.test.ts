@@ -17,7 +17,6 @@ const noiseOf = (tracker: 'head' | 'left' | 'right', mm: number, degrees: number
   tracker,
   source: tracker === 'head' ? 'headset' : 'hand',
   frames: 1000,
-  rateHz: 72,
   repeated: 0,
   positionMm: levels(mm),
   rotationDegrees: levels(degrees),

@@ -1,8 +1,8 @@
 import { spawnSync } from 'node:child_process';
-import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { actorFrame, defaultCalibration, writeRecording } from 'threepoint/core';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, onTestFinished, test } from 'vitest';
 import { exportFile, writeWhole } from '../../scripts/motion/export-file';
 import { FileReaderProcess } from '../../scripts/motion/reader-process';
 import { directoryWith } from '../temporary-directory';
@@ -87,6 +87,32 @@ describe('npm run tool -- motion', () => {
     const { folder, file } = folderWith(1);
     await expect(exportFile({ file, ...request })).rejects.toThrow(sentence);
     expect(readdirSync(folder)).toEqual(['mine.json']);
+  });
+
+  test('refuses a table by what it is, the one that it wrote and any other', async () => {
+    const { folder, file } = folderWith(1);
+    const table = await exportFile({ file, to: 'csv', estimator: 'ik' });
+    await expect(exportFile({ file: table, to: 'bvh' })).rejects.toThrow(
+      /^mine-ik.csv: it is a table of joint positions, for spreadsheets and statistics/,
+    );
+    const other = join(folder, 'trials.csv');
+    writeFileSync(other, 'simulated,participant,trial\n');
+    await expect(exportFile({ file: other, to: 'bvh' })).rejects.toThrow(/^trials.csv: it is a table of a study/);
+  });
+
+  test('never writes over the motion or the avatar that it reads, by any path to them', async () => {
+    const { folder, file } = folderWith(1);
+    const link = `${folder}-link`;
+    symlinkSync(folder, link);
+    onTestFinished(() => rmSync(link));
+    const avatar = join(folder, 'mine-ik.glb');
+    copyFileSync('public/avatars/mannequin.vrm', avatar);
+    const before = readFileSync(avatar);
+    const motion = { file, estimator: 'ik' };
+    await expect(exportFile({ ...motion, to: 'bvh', out: join(link, 'mine.json') })).rejects.toThrow('overwritten');
+    await expect(exportFile({ ...motion, to: 'glb', avatar })).rejects.toThrow(`${avatar} would be overwritten`);
+    expect(readFileSync(file, 'utf8')).toBe(recorded(1));
+    expect(readFileSync(avatar).equals(before)).toBe(true);
   });
 
   test('refuses a damaged recording with the line', async () => {

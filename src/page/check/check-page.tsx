@@ -1,6 +1,6 @@
 import { render } from 'preact';
 import type { WebGLRenderer } from 'three';
-import { firstLine, reasonOf } from 'threepoint/core';
+import { createPageClock, firstLine, type PageClock, reasonOf } from 'threepoint/core';
 import { BodyTracker } from 'threepoint/three';
 import { describeXrSupport } from 'threepoint/webxr';
 import { createEnterButton, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
@@ -59,12 +59,14 @@ async function prepareHeadset(
 /** Creates the tracker of the user's body and loads its networks. */
 async function createTracker(
   renderer: WebGLRenderer,
+  clock: PageClock,
   { avatar, scene }: CheckWorlds,
   onProblem: (sentence: string) => void,
 ) {
   const timing = new FrameTiming(() => performance.now());
   const tracker = new BodyTracker(renderer, {
     avatar,
+    clock,
     deviceBody: true,
     estimator: 'ik',
     networks: createNetworkLoader({
@@ -95,10 +97,15 @@ async function start(): Promise<void> {
   const show = (label: string, sentence: string | null, enabled: boolean) =>
     button.show({ label, passthroughLabel: null, sentence, enabled });
   show('Loading …', null, false);
-  const [{ emulated, sentence }, file] = await Promise.all([prepareHeadset(emulate), fetchBuiltInAvatar('mannequin')]);
-  const worlds = await CheckWorlds.create(renderer, quality, file);
+  const [{ emulated, sentence }, mannequin] = await Promise.all([
+    prepareHeadset(emulate),
+    fetchBuiltInAvatar('mannequin'),
+  ]);
   const remarks: string[] = [...switches.complaints, ...(sentence ? [sentence] : [])];
-  const { tracker, timing } = await createTracker(renderer, worlds, (problem) => remarks.push(problem));
+  const onProblem = (problem: string) => void remarks.push(problem);
+  const clock = createPageClock(() => performance.now());
+  const worlds = await CheckWorlds.create({ renderer, quality, clock, mannequin, onProblem });
+  const { tracker, timing } = await createTracker(renderer, clock, worlds, onProblem);
   const offer = (label: string) => show(label, remarks.join(' ') || null, true);
 
   async function run(): Promise<void> {
@@ -122,7 +129,7 @@ async function start(): Promise<void> {
         render(<ResultCard key={report} report={report} />, result);
         result.hidden = false;
         result.focus();
-        offer('Check again');
+        offer('Measure again');
       },
     });
     try {

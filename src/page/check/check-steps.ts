@@ -1,5 +1,6 @@
 import type { EstimatorName } from 'threepoint/core';
-import { type WorldName, worldNames } from './headset-report';
+import { activities, home } from '../shell/activity-registry';
+import type { WorldName } from './headset-report';
 
 /** The quantity that the frames of a step measure. */
 export type MeasuredQuantity =
@@ -24,20 +25,11 @@ const step = (
   measured: MeasuredQuantity | null,
 ): CheckStep => ({ title, sentence, leadSeconds, seconds, measured });
 
-const worlds: Readonly<Record<WorldName, Pick<CheckStep, 'title' | 'sentence'>>> = {
-  mirror: {
-    title: 'Frames: mirror',
-    sentence: 'This is the mirror. Look around slowly and move your arms.',
-  },
-  archery: {
-    title: 'Frames: archery',
-    sentence: 'This is the archery range. Look around slowly and move your arms.',
-  },
-  ball: {
-    title: 'Frames: ball court',
-    sentence: 'This is the ball court with three players. Look around slowly and move your arms.',
-  },
-};
+/** The worlds in which frames are measured, in their order: the mirror, and every activity of the page. */
+export const worlds: readonly { readonly name: WorldName; readonly title: string; readonly place: string }[] = [
+  { name: home, title: 'Mirror', place: 'The mirror' },
+  ...activities,
+];
 
 /** The leads of the first estimator in a world, whose materials are compiled then, and of the others [s]. */
 const [worldLead, estimatorLead] = [4, 0.7];
@@ -57,9 +49,13 @@ const bodyStep = step('Body tracking', 'Move your arms slowly: to your hips, ahe
   kind: 'body',
 });
 
-const worldSteps = (world: WorldName, estimators: readonly EstimatorName[]): readonly CheckStep[] =>
+const worldSteps = (
+  { name: world, title, place }: (typeof worlds)[number],
+  estimators: readonly EstimatorName[],
+): readonly CheckStep[] =>
   estimators.map((estimator, index) => ({
-    ...worlds[world],
+    title: `Frames: ${title}`,
+    sentence: `This is ${place[0]!.toLowerCase()}${place.slice(1)}. Look around slowly and move your arms.`,
     leadSeconds: index === 0 ? worldLead : estimatorLead,
     seconds: framesSeconds,
     measured: { kind: 'frames', world, estimator },
@@ -71,5 +67,5 @@ const lastStep = step('Done', 'Thank you. Take the headset off: the page shows y
 export function remainingSteps(deviceBody: boolean): readonly CheckStep[] {
   const estimators: readonly EstimatorName[] = ['learned', 'ik', 'paper', 'hands-only'];
   const measured = deviceBody ? [...estimators, 'device' as const] : estimators;
-  return [...(deviceBody ? [bodyStep] : []), ...worldNames.flatMap((world) => worldSteps(world, measured)), lastStep];
+  return [...(deviceBody ? [bodyStep] : []), ...worlds.flatMap((world) => worldSteps(world, measured)), lastStep];
 }

@@ -1,102 +1,126 @@
-import { type Camera, Group, type WebGLRenderer } from 'three';
+import { type Camera, Scene, type WebGLRenderer } from 'three';
 import {
   actorFrame,
-  createEstimator,
+  defaultAvatar,
   defaultCalibration,
   nothingPressed,
-  type PoseEstimator,
+  type PageClock,
   type TrackingFrame,
 } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
-import { composeTransforms, invertTransform } from 'threepoint/math';
+import { forward, rotate } from 'threepoint/math';
 import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
-import { ballRules, defaultBallOptions, stations } from 'threepoint-games/ball';
-import { ArcheryPlay } from '../archery/archery-play';
-import { type ArcheryView, createArcheryView } from '../archery/archery-view';
-import { type BallScene, BallView } from '../ball/ball-view';
+import { pageFolder, ServerPresence } from 'threepoint-ui';
+import type { Activity, OpenActivity } from '../activity/activity';
+import type { ActivityContext } from '../activity/activity-context';
 import type { Quality } from '../scene/renderer';
-import type { Surroundings } from '../scene/surroundings';
+import type { Surroundings, SurroundingsHost } from '../scene/surroundings';
+import { activities, home } from '../shell/activity-registry';
+import { createSettings, SettingsWriter } from '../shell/session/settings';
+import { readSwitches } from '../shell/session/switches';
+import { fetchBuiltInAvatar } from '../shell/stage/avatar-loader';
 import { Mirrors } from '../studio/mirrors';
 import { createStudio, type Studio } from '../studio/studio';
 import type { WorldName } from './headset-report';
 
-const archerySettings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
-/** The offset between the other players in the actor's performance [s]. */
-const actorOffset = 7;
+/** The layout of every round, so that all checks draw the same. */
+const layoutSeed = 7;
 
-const silent = () => undefined;
-
-/** Another player of the ball court, moved by the built-in actor. */
-interface OtherPlayer {
-  readonly avatar: Avatar;
-  readonly estimator: PoseEstimator;
+interface CheckWorldsOptions {
+  readonly renderer: WebGLRenderer;
+  readonly quality: Quality;
+  readonly clock: PageClock;
+  /** The file of the body that the user and the other players have. */
+  readonly mannequin: ArrayBuffer;
+  onProblem(sentence: string): void;
 }
 
-/** The worlds of the page without a game in progress: mirror, archery with the bow, ball court for three. */
+/** An open activity, with its objects and surroundings apart from those of the other worlds. */
+interface ActivityWorld extends SurroundingsHost {
+  readonly activity: OpenActivity;
+  readonly surroundings: Surroundings | null;
+}
+
+/** Enters an activity as the page does, for a user who starts no round. */
+async function openActivity(activity: Activity, options: CheckWorldsOptions): Promise<ActivityWorld> {
+  const { quality, clock, mannequin, onProblem } = options;
+  const ignore = () => undefined;
+  const host = {
+    scene: new Scene(),
+    surroundings: null as Surroundings | null,
+    setSurroundings(surroundings: Surroundings | null) {
+      host.surroundings = surroundings;
+    },
+  };
+  const { switches } = readSwitches('');
+  const settings = createSettings(switches, { preferences: { sound: false } }, null);
+  const { head } = actorFrame(0, defaultCalibration);
+  const context: ActivityContext = {
+    quality,
+    clock,
+    settings,
+    writer: new SettingsWriter(settings, { remember: ignore }, ignore),
+    switches,
+    stage: {
+      studio: host,
+      view: {
+        pose: head,
+        rayThrough: () => ({ origin: head.position, direction: rotate(head.orientation, forward) }),
+      },
+    },
+    pointer: () => null,
+    // Rounds start as for a simulated player, so that nobody has to press Ready and bots play.
+    headset: { worn: false, emulator: null },
+    body: { calibration: defaultCalibration },
+    avatar: { isBuiltIn: true, worn: defaultAvatar },
+    fetchBuiltInAvatar: (name) => (name === defaultAvatar ? Promise.resolve(mannequin) : fetchBuiltInAvatar(name)),
+    server: new ServerPresence(pageFolder(), ignore),
+    notices: { show: (_, text) => onProblem(text) },
+    study: { run: null },
+    onCaption: ignore,
+    onChange: ignore,
+    layout: { seed: layoutSeed },
+    place: null,
+    inputSource: 'headset',
+    chooseInput: ignore,
+    setSound: ignore,
+    reopen: ignore,
+    placeCamera: ignore,
+  };
+  return Object.assign(host, { activity: await activity.load(context) });
+}
+
+/** The worlds of the page: the mirror, and every activity of the registry. */
 export class CheckWorlds {
   readonly avatar: Avatar;
   readonly #renderer: WebGLRenderer;
   readonly #studio: Studio;
   readonly #mirrors: Mirrors;
-  readonly #archery: ArcheryView;
-  readonly #archeryPlay: ArcheryPlay;
-  readonly #ball: BallView;
-  readonly #court: Surroundings;
-  readonly #ballScene: Omit<BallScene, 'time' | 'pageTime' | 'head'>;
-  readonly #others: readonly OtherPlayer[];
-  readonly #otherBodies = new Group();
-  #world: WorldName = 'mirror';
+  readonly #activities: ReadonlyMap<WorldName, ActivityWorld>;
+  /** null: the mirror. */
+  #world: ActivityWorld | null = null;
 
-  private constructor(renderer: WebGLRenderer, quality: Quality, avatars: readonly [Avatar, Avatar, Avatar]) {
+  private constructor(
+    { renderer, quality }: CheckWorldsOptions,
+    avatar: Avatar,
+    opened: ReadonlyMap<WorldName, ActivityWorld>,
+  ) {
     this.#renderer = renderer;
     this.#studio = createStudio(renderer, quality);
     this.#mirrors = new Mirrors(quality);
-    this.#archeryPlay = new ArcheryPlay(
-      defaultCalibration,
-      () => archerySettings,
-      () => 7,
-    );
-    this.#archery = createArcheryView({
-      quality,
-      distances: this.#archeryPlay.targets.map(({ distance }) => distance),
-      onCaption: silent,
-    });
-    this.#ball = new BallView({ quality, balls: defaultBallOptions.balls, onCaption: silent });
-    const floorFromArena = invertTransform(stations[0]!);
-    this.#court = this.#ball.placed(floorFromArena);
-    this.#ballScene = {
-      state: ballRules.start(['a', 'b', 'c'], 1),
-      attendants: [null, null, null],
-      palms: [],
-      me: null,
-      opening: null,
-      aim: null,
-      secondsLeft: defaultBallOptions.seconds,
-      inRoom: true,
-      readyByItself: true,
-      voices: { markOf: () => 'none', levelOf: () => 0 },
-      hidden: new Set<number>(),
-      isThere: () => true,
-      paused: false,
-    };
-    const [own, ...others] = avatars;
-    this.avatar = own;
-    this.#others = others.map((avatar, index) => {
-      const { position, orientation } = composeTransforms(floorFromArena, stations[index + 1]!);
-      avatar.object.position.copy(position);
-      avatar.object.quaternion.copy(orientation);
-      this.#otherBodies.add(avatar.object);
-      return { avatar, estimator: createEstimator('ik', defaultCalibration) };
-    });
-    this.#studio.scene.add(this.#mirrors.object, this.#archery.bow, this.#otherBodies);
-    own.setFirstPerson(true);
-    this.show('mirror');
+    this.#activities = opened;
+    this.avatar = avatar;
+    this.#studio.scene.add(this.#mirrors.object);
+    avatar.setFirstPerson(true);
+    this.show(home);
   }
 
-  /** Builds the worlds and three bodies from the file of the built-in avatar. */
-  static async create(renderer: WebGLRenderer, quality: Quality, file: ArrayBuffer): Promise<CheckWorlds> {
-    const avatar = async () => createAvatarBetweenFrames(await parseAvatar(file, 'mannequin.vrm'));
-    const worlds = new CheckWorlds(renderer, quality, [await avatar(), await avatar(), await avatar()]);
+  /** Loads the body and all activities. Rejects with a reason. */
+  static async create(options: CheckWorldsOptions): Promise<CheckWorlds> {
+    const avatar = await createAvatarBetweenFrames(await parseAvatar(options.mannequin, 'mannequin.vrm'));
+    const opened = new Map<WorldName, ActivityWorld>();
+    for (const activity of activities) opened.set(activity.name, await openActivity(activity, options));
+    const worlds = new CheckWorlds(options, avatar, opened);
     await worlds.#studio.openWindows();
     return worlds;
   }
@@ -105,30 +129,27 @@ export class CheckWorlds {
     return this.#studio.scene;
   }
 
-  show(world: WorldName): void {
+  show(name: WorldName): void {
+    this.#world?.scene.removeFromParent();
+    const world = this.#activities.get(name) ?? null;
     this.#world = world;
-    const place = { mirror: null, archery: this.#archery.range, ball: this.#court }[world];
-    this.#studio.setSurroundings(place);
-    this.#mirrors.place(world === 'archery' ? 'right' : null);
-    this.#mirrors.setVisible(world !== 'ball');
-    this.#archery.bow.visible = world === 'archery';
-    this.#otherBodies.visible = world === 'ball';
+    this.#studio.setSurroundings(world?.surroundings ?? null);
+    if (world) this.scene.add(world.scene);
+    const side = world?.activity.mirrorSide ?? null;
+    this.#mirrors.place(side);
+    this.#mirrors.setVisible(world === null || side !== null);
   }
 
   /** Updates the world to a time [s] around this user. */
   update(time: number, frame: TrackingFrame): void {
     const { x, z } = frame.head.position;
     this.#studio.follow(x, z);
-    if (this.#world === 'archery') {
-      const { state, bow, time: matchTime } = this.#archeryPlay.follow(frame, nothingPressed);
-      this.#archery.show(state, bow, matchTime, frame.head);
-    }
-    if (this.#world !== 'ball') return;
-    this.#ball.show({ ...this.#ballScene, time, pageTime: time, head: frame.head });
-    this.#others.forEach(({ avatar, estimator }, index) => {
-      const acted = { ...actorFrame(time + actorOffset * index, defaultCalibration), time };
-      avatar.setPose(estimator.update(acted).pose, time);
-    });
+    if (!this.#world) return;
+    const { activity } = this.#world;
+    activity.begin?.(time);
+    activity.update(frame, nothingPressed);
+    activity.show(time, frame);
+    this.#studio.setSurroundings(this.#world.surroundings);
   }
 
   /** Draws the world at a time [s]. */

@@ -2,6 +2,7 @@ import type { WebGLRenderer } from 'three';
 import type { BodyTracker } from 'threepoint/three';
 import type { TrackedSession } from 'threepoint/webxr';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
+import { home } from '../shell/activity-registry';
 import type { FrameTiming } from '../shell/session/frame-timing';
 import { enterSession, OfferedFeatures } from './check-session';
 import { type CheckStep, remainingSteps } from './check-steps';
@@ -11,7 +12,7 @@ import { Measurements } from './measurements';
 import { StepCaption } from './step-caption';
 import { StepSequence } from './step-sequence';
 
-/** The frame rates of the emulated headset, and of a headset that reports none [Hz]. */
+/** The assumed frame rates of the emulated headset, and of a headset that reports none [Hz]. */
 const emulatedRateHz = 60;
 const usualRateHz = 72;
 
@@ -98,13 +99,13 @@ export class HeadsetCheck {
   }
 
   #frame(xr: XRSession, timestampMs: number, frame: XRFrame): void {
-    const { worlds, emulated, renderer } = this.#options;
+    const { worlds, renderer } = this.#options;
     const startMs = performance.now();
     const { body } = this.#tracker;
     const time = body.tick(timestampMs);
     if (Number.isNaN(this.#startedAt)) this.#startedAt = time;
     this.#time = time;
-    this.#timing.setRate(emulated ? emulatedRateHz : (xr.frameRate ?? usualRateHz));
+    this.#timing.setRate(this.#rateOf(xr).rateHz);
     this.#timing.begin(time * 1000);
     const tracked = this.#tracker.read(frame, time);
     this.#timing.mark('tracking');
@@ -153,12 +154,19 @@ export class HeadsetCheck {
     this.#caption.write(current.sentence, `${current.title} · ${seconds} s`, number / steps.length);
   }
 
+  /** The rate at which the device wants frames. The emulated ones follow the window, whatever the emulator reports. */
+  #rateOf({ frameRate }: XRSession): Pick<HeadsetReport['session'], 'rateHz' | 'rateReported'> {
+    const assumed = this.#options.emulated ? emulatedRateHz : usualRateHz;
+    const rateReported = frameRate !== undefined && !this.#options.emulated;
+    return { rateHz: rateReported ? frameRate : assumed, rateReported };
+  }
+
   async #finish(xr: XRSession, offered: OfferedFeatures): Promise<void> {
     const { renderer, emulated, onReport } = this.#options;
     renderer.setAnimationLoop(null);
     this.#speaker.stop();
     this.#caption.dispose();
-    this.#options.worlds.show('mirror');
+    this.#options.worlds.show(home);
     onReport({
       format: reportFormat,
       version: reportVersion,
@@ -166,7 +174,7 @@ export class HeadsetCheck {
       session: {
         seconds: Number.isNaN(this.#startedAt) ? 0 : this.#time - this.#startedAt,
         complete: this.#sequence.over,
-        rateHz: xr.frameRate ?? null,
+        ...this.#rateOf(xr),
         ratesHz: offered.ratesHz,
         views: this.#views,
       },

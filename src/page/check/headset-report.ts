@@ -9,17 +9,19 @@ import {
   ValidationError,
 } from 'threepoint/core';
 import * as v from 'valibot';
+import { placeNames } from '../shell/activity-registry';
 
 /** The first field of each file. */
 export const reportFormat = 'threepoint-headset-check';
 /** The version of the format that this page writes and reads. */
-export const reportVersion = 1;
+export const reportVersion = 2;
 /** The longest file that is read [bytes]; a usual one has 8 kB. */
 const longestReport = 1_000_000;
 
-export const worldNames = ['mirror', 'archery', 'ball'] as const;
-export type WorldName = (typeof worldNames)[number];
+/** A place of the page in which frames are measured. */
+export type WorldName = (typeof placeNames)[number];
 export const trackerNames = ['head', 'left', 'right'] as const;
+export type TrackerName = (typeof trackerNames)[number];
 
 /** Values over these are no measurement of a person at rest, and no frame of a page. */
 const [maxMm, maxDegrees, maxMs] = [1000, 180, 600_000];
@@ -39,11 +41,13 @@ const noise = v.strictObject({
   tracker: v.picklist(trackerNames),
   source: v.picklist(['headset', 'controller', 'hand']),
   frames: count,
-  rateHz: rate,
   repeated: share,
   positionMm: levels(maxMm),
   rotationDegrees: levels(maxDegrees),
 });
+
+/** A tracker without a measured noise, and in how many frames it was seen. `moved`: it was not at rest. */
+const unmeasured = v.strictObject({ tracker: v.picklist(trackerNames), frames: count, moved: v.boolean() });
 
 /** The losses of one hand, in ascending order; `openEnd`: it was lost at the end, for an unknown time. */
 const losses = v.strictObject({
@@ -58,7 +62,7 @@ const losses = v.strictObject({
 });
 
 const quantiles = v.pipe(
-  v.strictObject({ p50Ms: numberBetween(-maxMs, maxMs), p95Ms: numberBetween(-maxMs, maxMs) }),
+  v.strictObject({ frames: count, p50Ms: numberBetween(0, maxMs), p95Ms: numberBetween(0, maxMs) }),
   v.check(({ p50Ms, p95Ms }) => p50Ms <= p95Ms, 'expected a median (p50Ms) that is no greater than p95Ms'),
 );
 
@@ -68,15 +72,13 @@ const quantiles = v.pipe(
  */
 const frameTimes = v.pipe(
   v.strictObject({
-    world: v.picklist(worldNames),
+    world: v.picklist(placeNames),
     estimator: v.picklist(estimatorNames),
     drawnBy: v.picklist(estimatorNames),
-    rateHz: rate,
-    frames: count,
     missed: count,
     work: quantiles,
   }),
-  v.check(({ frames, missed }) => missed <= frames, 'expected no more missed frames than frames'),
+  v.check(({ work, missed }) => missed <= work.frames, 'expected no more missed frames than frames'),
 );
 
 /**
@@ -93,12 +95,13 @@ const bodyTracking = v.pipe(
 );
 
 /**
- * The file that a headset check writes, in version 1 of its format. Unknown fields and other versions are refused.
+ * The file that a headset check writes, in version 2 of its format. Unknown fields and other versions are refused.
  *
- * A rate, a latency or granted features are null where the browser does not report them. `latency.displayAhead` is the
- * predicted display time minus the frame's start; `callbackDelay` is the time from the frame's time stamp to its start.
- * Neither is the time from a movement to its picture, because a page does not know the sensors' share. The emulator
- * reports 0.
+ * `session.rateHz` is the rate against which frames are late; it is assumed where the browser does not report it. A
+ * latency is null where the browser reports none or its median is negative; granted features are null where it reports
+ * none. `latency.displayAhead` is the predicted display time minus the frame's start; `callbackDelay` is the time
+ * from the frame's time stamp to its start. Neither is the time from a movement to its picture, because a page does not
+ * know the sensors' share.
  */
 const report = v.strictObject({
   format: v.literal(reportFormat, `expected "${reportFormat}"`),
@@ -107,7 +110,8 @@ const report = v.strictObject({
   session: v.strictObject({
     seconds: numberBetween(0, 3600),
     complete: v.boolean(),
-    rateHz: v.nullable(rate),
+    rateHz: rate,
+    rateReported: v.boolean(),
     ratesHz: list(rate, 40),
     views: integerBetween(0, 8),
   }),
@@ -121,12 +125,13 @@ const report = v.strictObject({
     list(noise, trackerNames.length),
     v.check((all) => unique(all.map(({ tracker }) => tracker)), 'expected each tracker once'),
   ),
+  unmeasured: list(unmeasured, trackerNames.length),
   losses: v.pipe(
     list(losses, 2),
     v.check((all) => unique(all.map(({ hand }) => hand)), 'expected each hand once'),
   ),
   frameTimes: v.pipe(
-    list(frameTimes, worldNames.length * estimatorNames.length),
+    list(frameTimes, placeNames.length * estimatorNames.length),
     v.check((all) => unique(all.map((row) => `${row.world} ${row.estimator}`)), 'expected each pair once'),
   ),
   bodyTracking,

@@ -5,7 +5,7 @@ import type { InputKind } from 'threepoint/webxr';
 import { type FrameSummary, quantilesIn } from '../shell/session/frame-timing';
 import { DeviceDifference } from '../shell/stage/device-difference';
 import type { MeasuredQuantity } from './check-steps';
-import type { HeadsetReport, WorldName } from './headset-report';
+import { type HeadsetReport, type TrackerName, trackerNames, type WorldName } from './headset-report';
 import { TrackerNoise } from './tracker-noise';
 import { TrackingLosses } from './tracking-losses';
 
@@ -21,7 +21,11 @@ export class Measurements {
   readonly #body: Pick<Body, 'calibration' | 'estimator'>;
   readonly #noise = { head: new TrackerNoise(), left: new TrackerNoise(), right: new TrackerNoise() };
   readonly #losses = { left: new TrackingLosses(), right: new TrackingLosses() };
-  readonly #noiseKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
+  readonly #noiseSources: Record<TrackerName, 'headset' | InputKind> = {
+    head: 'headset',
+    left: 'none',
+    right: 'none',
+  };
   readonly #lossKinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
   #compared = 0;
   /** Every frame has the same share in the mean. */
@@ -54,14 +58,10 @@ export class Measurements {
   }
 
   /** Adds the frame times of a world and an estimator, if there are any. */
-  addFrameTimes(
-    world: WorldName,
-    estimator: EstimatorName,
-    { p50Ms, p95Ms, missed, frames, rateHz }: FrameSummary,
-  ): void {
+  addFrameTimes(world: WorldName, estimator: EstimatorName, { p50Ms, p95Ms, missed, frames }: FrameSummary): void {
     if (frames === 0) return;
     const drawnBy = this.#body.estimator;
-    this.#frameTimes.push({ world, estimator, drawnBy, rateHz, frames, missed, work: { p50Ms, p95Ms } });
+    this.#frameTimes.push({ world, estimator, drawnBy, missed, work: { frames, p50Ms, p95Ms } });
   }
 
   #addNoise({ time, tracked, kinds }: CheckFrame): void {
@@ -71,7 +71,7 @@ export class Measurements {
       const hand = tracked[`${side}Hand`];
       if (!hand || !isTracked(hand)) continue;
       this.#noise[side].add(time, hand);
-      this.#noiseKinds[side] = kinds[side];
+      this.#noiseSources[side] = kinds[side];
     }
   }
 
@@ -98,10 +98,17 @@ export class Measurements {
   /** Returns the figures; `bodyComplaint`: why the device reports no body. */
   figures(
     bodyComplaint: string | null,
-  ): Pick<HeadsetReport, 'latency' | 'noise' | 'losses' | 'frameTimes' | 'bodyTracking'> {
+  ): Pick<HeadsetReport, 'latency' | 'noise' | 'unmeasured' | 'losses' | 'frameTimes' | 'bodyTracking'> {
+    const noise = this.#noiseFigures();
     return {
       latency: { displayAhead: quantilesOf(this.#ahead), callbackDelay: quantilesOf(this.#delays) },
-      noise: this.#noiseFigures(),
+      noise,
+      unmeasured: trackerNames
+        .filter((name) => noise.every(({ tracker }) => tracker !== name))
+        .map((tracker) => {
+          const { frames, moved } = this.#noise[tracker];
+          return { tracker, frames, moved };
+        }),
       losses: sides.flatMap((hand) => {
         const losses = this.#losses[hand].losses();
         const source = this.#lossKinds[hand];
@@ -114,15 +121,11 @@ export class Measurements {
   }
 
   #noiseFigures(): HeadsetReport['noise'] {
-    const head = this.#noise.head.figures();
-    return [
-      ...(head ? [{ tracker: 'head' as const, source: 'headset' as const, ...head }] : []),
-      ...sides.flatMap((tracker) => {
-        const figures = this.#noise[tracker].figures();
-        const source = this.#noiseKinds[tracker];
-        return figures && source !== 'none' ? [{ tracker, source, ...figures }] : [];
-      }),
-    ];
+    return trackerNames.flatMap((tracker) => {
+      const figures = this.#noise[tracker].figures();
+      const source = this.#noiseSources[tracker];
+      return figures && source !== 'none' ? [{ tracker, source, ...figures }] : [];
+    });
   }
 
   #bodyFigures(complaint: string | null): HeadsetReport['bodyTracking'] {
@@ -136,8 +139,10 @@ export class Measurements {
   }
 }
 
-/** Returns median and 95th percentile; null: there is no value. */
+/** Returns median and 95th percentile; null: there is no value, or the median is no latency, because it is negative. */
 function quantilesOf(values: readonly number[]): HeadsetReport['latency']['displayAhead'] {
-  if (values.length === 0) return null;
-  return quantilesIn(Float64Array.from(values).sort(), values.length);
+  const frames = values.length;
+  if (frames === 0) return null;
+  const quantiles = quantilesIn(Float64Array.from(values).sort(), frames);
+  return quantiles.p50Ms < 0 ? null : { frames, ...quantiles };
 }

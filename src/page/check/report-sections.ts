@@ -1,6 +1,7 @@
 import { estimatedJoints } from 'threepoint/core';
 import { jointLabels } from '../shell/stage/device-difference';
-import type { HeadsetReport } from './headset-report';
+import { worlds } from './check-steps';
+import type { HeadsetReport, WorldName } from './headset-report';
 import { histogramEdgesMs, histogramOf } from './tracking-losses';
 
 interface ReportSection {
@@ -11,13 +12,18 @@ interface ReportSection {
 }
 
 const trackers = { head: 'Head', left: 'Left hand', right: 'Right hand' } as const;
-const worlds = { mirror: 'Mirror', archery: 'Archery', ball: 'Ball court' } as const;
+/** A figure of fewer frames is not shown. */
+const fewestFrames = 30;
 
 const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
 const capitalised = (label: string): string => label.charAt(0).toUpperCase() + label.slice(1);
 const listed = (names: readonly string[]): string => names.join(', ') || 'none';
-const times = (quantiles: { readonly p50Ms: number; readonly p95Ms: number } | null): string =>
-  quantiles ? `${quantiles.p50Ms.toFixed(1)} ms, p95 ${quantiles.p95Ms.toFixed(1)} ms` : 'not reported by this browser';
+const framesText = (frames: number): string => `${frames} ${frames === 1 ? 'frame' : 'frames'}`;
+/** Returns a figure with the number of its frames, or that they are too few. */
+const counted = (figure: string, frames: number): string =>
+  frames < fewestFrames ? `too few: ${framesText(frames)}` : `${figure} (${framesText(frames)})`;
+const times = ({ p50Ms, p95Ms }: { readonly p50Ms: number; readonly p95Ms: number }): string =>
+  `${p50Ms.toFixed(1)} ms, p95 ${p95Ms.toFixed(1)} ms`;
 
 /** Returns the parts of the card, each figure with its unit. */
 export const reportSections = (report: HeadsetReport): readonly ReportSection[] => [
@@ -29,9 +35,20 @@ export const reportSections = (report: HeadsetReport): readonly ReportSection[] 
   bodySection(report),
 ];
 
+const latencyText = (quantiles: HeadsetReport['latency']['displayAhead']): string =>
+  quantiles ? counted(times(quantiles), quantiles.frames) : 'not known: this browser reports no usable time';
+const titleOf = (world: WorldName): string => worlds.find(({ name }) => name === world)?.title ?? world;
+const notMeasured = (reason: string): string => `Not measured: ${reason}. Measure again.`;
+/** Returns the lines; without one, the reason for it. */
+const orNotMeasured = (
+  lines: ReportSection['lines'],
+  { label, reason }: { readonly label: string; readonly reason: string },
+): ReportSection['lines'] => (lines.length > 0 ? lines : [{ label, value: notMeasured(reason) }]);
+
 function aboutDevice({ device, session, features }: HeadsetReport): ReportSection {
   const { granted, asked, modes } = features;
-  const rates = session.ratesHz.length > 0 ? `, offers ${session.ratesHz.join(', ')} Hz` : ', offers no choice';
+  const { rateHz, rateReported, ratesHz } = session;
+  const rates = ratesHz.length > 0 ? `, offers ${ratesHz.join(', ')} Hz` : ', offers no choice';
   return {
     title: device.emulated ? 'Device (emulated)' : 'Device',
     lines: [
@@ -43,7 +60,7 @@ function aboutDevice({ device, session, features }: HeadsetReport): ReportSectio
         label: 'Features refused',
         value: granted ? listed(asked.filter((name) => !granted.includes(name))) : 'unknown',
       },
-      { label: 'Frame rate', value: session.rateHz ? `${session.rateHz} Hz${rates}` : `not reported${rates}` },
+      { label: 'Frame rate', value: `${rateHz} Hz${rateReported ? '' : ' (assumed)'}${rates}` },
       {
         label: 'Duration',
         value: `${session.seconds.toFixed(0)} s${session.complete ? '' : ', ended early: later figures are missing'}`,
@@ -53,20 +70,26 @@ function aboutDevice({ device, session, features }: HeadsetReport): ReportSectio
   };
 }
 
-function noiseSection({ noise }: HeadsetReport): ReportSection {
+function noiseSection({ noise, unmeasured }: HeadsetReport): ReportSection {
+  const measured = noise.flatMap(({ tracker, source, frames, positionMm, rotationDegrees, repeated }) => {
+    const position = `${positionMm.frame.toFixed(3)} mm by frame, ${positionMm.slow.toFixed(3)} mm at 0.1 s; sway ${positionMm.sway.toFixed(1)} mm`;
+    const rotation = `${rotationDegrees.frame.toFixed(4)}° by frame, ${rotationDegrees.slow.toFixed(4)}° at 0.1 s; sway ${rotationDegrees.sway.toFixed(2)}°`;
+    const name = `${trackers[tracker]} (${source})`;
+    return [
+      { label: `${name}, position`, value: counted(position, frames) },
+      { label: `${name}, rotation`, value: counted(rotation, frames) },
+      { label: `${name}, repeated positions`, value: counted(percent(repeated), frames) },
+    ];
+  });
   return {
     title: 'Noise at rest',
-    lines: noise.flatMap(({ tracker, source, positionMm, rotationDegrees, rateHz, repeated }) => [
-      {
-        label: `${trackers[tracker]} (${source}), position`,
-        value: `${positionMm.frame.toFixed(3)} mm by frame, ${positionMm.slow.toFixed(3)} mm at 0.1 s; sway ${positionMm.sway.toFixed(1)} mm`,
-      },
-      {
-        label: `${trackers[tracker]} (${source}), rotation`,
-        value: `${rotationDegrees.frame.toFixed(4)}° by frame, ${rotationDegrees.slow.toFixed(4)}° at 0.1 s; sway ${rotationDegrees.sway.toFixed(2)}°`,
-      },
-      { label: `${trackers[tracker]}, samples`, value: `${rateHz.toFixed(1)} Hz, ${percent(repeated)} repeated` },
-    ]),
+    lines: [
+      ...measured,
+      ...unmeasured.map(({ tracker, frames, moved }) => ({
+        label: trackers[tracker],
+        value: notMeasured(moved ? 'you moved' : `seen in ${framesText(frames)} only`),
+      })),
+    ],
     note: 'Standard deviation by axis, from second differences. Sway is the person and not counted; tremor is counted.',
   };
 }
@@ -78,12 +101,15 @@ function lossSection({ losses }: HeadsetReport): ReportSection {
       .join(', ');
   return {
     title: 'Lost hands',
-    lines: losses.map(({ hand, source, lengthsMs, observedSeconds, openEnd }) => ({
-      label: `${trackers[hand]} (${source})`,
-      value:
-        `Losses in ${observedSeconds.toFixed(0)} s: ${bars(lengthsMs) || 'none'}` +
-        `${openEnd ? '; lost at the end' : ''}`,
-    })),
+    lines: orNotMeasured(
+      losses.map(({ hand, source, lengthsMs, observedSeconds, openEnd }) => ({
+        label: `${trackers[hand]} (${source})`,
+        value:
+          `Losses in ${observedSeconds.toFixed(0)} s: ${bars(lengthsMs) || 'none'}` +
+          `${openEnd ? '; lost at the end' : ''}`,
+      })),
+      { label: 'Hands', reason: 'no hand was seen' },
+    ),
     note: 'A loss lasts until the hand is seen again, so it includes the time that the person hid it.',
   };
 }
@@ -98,10 +124,13 @@ function rangeOf(bar: number): string {
 function frameSection({ frameTimes }: HeadsetReport): ReportSection {
   return {
     title: 'Frames by world and estimator',
-    lines: frameTimes.map(({ world, estimator, drawnBy, rateHz, frames, missed, work }) => ({
-      label: `${worlds[world]}, ${estimator}${drawnBy === estimator ? '' : ` (drawn by ${drawnBy})`}`,
-      value: `${times(work)}; ${missed} of ${frames} late at ${rateHz.toFixed(0)} Hz`,
-    })),
+    lines: orNotMeasured(
+      frameTimes.map(({ world, estimator, drawnBy, missed, work }) => ({
+        label: `${titleOf(world)}, ${estimator}${drawnBy === estimator ? '' : ` (drawn by ${drawnBy})`}`,
+        value: counted(`${times(work)}; ${missed} late`, work.frames),
+      })),
+      { label: 'Frames', reason: 'the check ended before' },
+    ),
     note: 'Work of the page’s thread in a frame. The graphics device works on after it: late frames count both.',
   };
 }
@@ -110,8 +139,8 @@ function latencySection({ latency }: HeadsetReport): ReportSection {
   return {
     title: 'Latency',
     lines: [
-      { label: 'From a frame’s start to its display', value: times(latency.displayAhead) },
-      { label: 'From a frame’s time stamp to its start', value: times(latency.callbackDelay) },
+      { label: 'From a frame’s start to its display', value: latencyText(latency.displayAhead) },
+      { label: 'From a frame’s time stamp to its start', value: latencyText(latency.callbackDelay) },
     ],
     note:
       'The display time is the browser’s prediction, for which poses are predicted as well. It is not the time from a ' +
@@ -126,9 +155,9 @@ function bodySection({ bodyTracking }: HeadsetReport): ReportSection {
     lines: distances
       ? estimatedJoints.map((joint) => ({
           label: capitalised(jointLabels[joint]),
-          value: `${distances[joint].toFixed(1)} cm`,
+          value: counted(`${distances[joint].toFixed(1)} cm`, frames),
         }))
       : [{ label: 'Not compared', value: complaint ?? 'the device reports no body' }],
-    note: distances ? `Mean distance over ${frames} frames of the learned body. Neither of the two is the truth.` : '',
+    note: distances ? 'Mean distance of the learned body. Neither of the two is the truth.' : '',
   };
 }

@@ -41,18 +41,14 @@ export const ResultCard = ({ report }: { readonly report: HeadsetReport }) => (
     {reportSections(report).map(({ title, lines, note }) => (
       <section>
         <h3>{title}</h3>
-        {lines.length > 0 ? (
-          <dl>
-            {lines.map(({ label, value }) => (
-              <>
-                <dt>{label}</dt>
-                <dd>{value}</dd>
-              </>
-            ))}
-          </dl>
-        ) : (
-          <p>Not measured.</p>
-        )}
+        <dl>
+          {lines.map(({ label, value }) => (
+            <>
+              <dt>{label}</dt>
+              <dd>{value}</dd>
+            </>
+          ))}
+        </dl>
         {note && <p class="soft">{note}</p>}
       </section>
     ))}

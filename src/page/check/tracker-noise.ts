@@ -1,5 +1,6 @@
 import {
   conjugate,
+  length,
   median,
   multiply,
   type Pose,
@@ -18,6 +19,8 @@ const fewestWindows = 4;
 const fewestInWindow = 8;
 /** A second difference counts where both of its intervals deviate from the lag by less than this share of a frame. */
 const intervalTolerance = 0.35;
+/** A tracker is at rest if its median speed over `slowLag` is lower: by direction [m/s], and by turning [rad/s]. */
+const [restSpeed, restTurn] = [0.1, 0.5];
 
 /** The standard deviations of one quantity, by axis or by component of a rotation vector. */
 interface NoiseLevels {
@@ -32,8 +35,6 @@ interface NoiseLevels {
 /** The noise of one tracker at rest. */
 export interface NoiseFigures {
   readonly frames: number;
-  /** The rate of the samples [Hz]. */
-  readonly rateHz: number;
   /** The share of frames that repeat the position of the frame before exactly. */
   readonly repeated: number;
   readonly positionMm: NoiseLevels;
@@ -59,16 +60,24 @@ export class TrackerNoise {
     this.#orientations.push({ ...orientation });
   }
 
-  /** Returns the figures; null: too few frames at a steady rate, two seconds are needed. */
+  /** The number of frames in which the tracker was seen. */
+  get frames(): number {
+    return this.#times.length;
+  }
+
+  /** Whether the tracker moved for most of the time. A glance aside is no such movement. */
+  get moved(): boolean {
+    return this.#medianSpeed(this.#moved) > restSpeed || this.#medianSpeed(this.#turned) > restTurn;
+  }
+
+  /** Returns the figures; null: it moved, or too few frames at a steady rate, of which two seconds are needed. */
   figures(): NoiseFigures | null {
     const times = this.#times;
-    if (times.length < 3) return null;
-    const interval = median(times.slice(1).map((time, index) => time - times[index]!));
+    if (times.length < 3 || this.moved) return null;
+    const interval = this.#interval;
     if (!(interval > 0)) return null;
-    const moved = (from: number, to: number) => subtract(this.#positions[to]!, this.#positions[from]!);
-    const turned = (from: number, to: number) => rotationFrom(this.#orientations[from]!, this.#orientations[to]!);
-    const position = this.#levels(moved, interval);
-    const rotation = this.#levels(turned, interval);
+    const position = this.#levels(this.#moved, interval);
+    const rotation = this.#levels(this.#turned, interval);
     if (!position || !rotation) return null;
     const repeats = this.#positions.filter(({ x, y, z }, index) => {
       const before = this.#positions[index - 1];
@@ -76,11 +85,27 @@ export class TrackerNoise {
     });
     return {
       frames: times.length,
-      rateHz: 1 / interval,
       repeated: repeats.length / (times.length - 1),
       positionMm: scaled(position, 1000),
       rotationDegrees: scaled(rotation, 180 / Math.PI),
     };
+  }
+
+  readonly #moved: Change = (from, to) => subtract(this.#positions[to]!, this.#positions[from]!);
+  readonly #turned: Change = (from, to) => rotationFrom(this.#orientations[from]!, this.#orientations[to]!);
+
+  /** The median time from a frame to the next [s]. */
+  get #interval(): number {
+    const times = this.#times;
+    return median(times.slice(1).map((time, index) => time - times[index]!));
+  }
+
+  /** Returns the median speed over `slowLag` [1/s]; 0 without frames that far apart. */
+  #medianSpeed(change: Change): number {
+    const times = this.#times;
+    const lag = Math.max(1, Math.round(slowLag / this.#interval));
+    const speeds = times.slice(lag).map((time, from) => length(change(from, from + lag)) / (time - times[from]!));
+    return speeds.length > 0 ? median(speeds) : 0;
   }
 
   #levels(change: Change, interval: number): NoiseLevels | null {

@@ -8,7 +8,7 @@ import {
   threePointNames,
 } from 'threepoint/core';
 import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
-import { Button, type Choice, Chooser, StatusLine } from 'threepoint-ui/controls';
+import { Button, type Choice, Chooser, ReplayTimeline, StatusLine } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../bones/lazy-bones-form';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { ClipMean } from './clip-means';
@@ -167,23 +167,6 @@ interface OpenedProps {
   readonly state: CardState;
 }
 
-/** Shows the position in the clip, and lets the user seek. */
-const Timeline = ({ state: { paused, seconds, duration }, actions }: Omit<OpenedProps, 'labels'>) => (
-  <div class="timeline">
-    <Button label={paused ? 'Play' : 'Pause'} aria-pressed={paused} onClick={() => actions.setPaused(!paused)} />
-    <input
-      type="range"
-      min={0}
-      max={duration}
-      step={0.01}
-      aria-label="Time of the clip in seconds"
-      value={seconds}
-      onInput={({ currentTarget }) => actions.seek(currentTarget.valueAsNumber)}
-    />
-    <span class="time">{`${seconds.toFixed(1)} / ${duration.toFixed(1)} s`}</span>
-  </div>
-);
-
 /** Lets the user choose the clip, the methods and the place of the truth. */
 function Choices({ labels, state, actions }: OpenedProps) {
   const [first, second] = state.methods;
@@ -268,7 +251,14 @@ function Card({ labels, actions, reading, skeleton, state }: CardProps) {
             <h2>{state.clips[state.clip]}</h2>
             <Button label="Close" class="quiet" onClick={() => actions.close()} />
           </div>
-          <Timeline state={state} actions={actions} />
+          <ReplayTimeline
+            name="Time of the clip in seconds"
+            paused={state.paused}
+            seconds={state.seconds}
+            duration={state.duration}
+            setPaused={(on) => actions.setPaused(on)}
+            seek={(seconds) => actions.seek(seconds)}
+          />
           <ErrorTable labels={labels} methods={state.methods} />
           <Doubts methods={state.methods} doubts={state.doubts} />
           <Unmeasured labels={labels} methods={state.methods} />

@@ -9,9 +9,9 @@ import {
   reasonOf,
   type TrackingFrame,
 } from 'threepoint/core';
-import type { WorkProgress } from 'threepoint/motion';
+import { mocapRateHz, type PreparedMocap, type WorkProgress } from 'threepoint/motion';
 import type { Avatar } from 'threepoint/three';
-import { fileNameOf, type Notices } from 'threepoint-ui';
+import { fileNameOf, formatSentence, type Notices } from 'threepoint-ui';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
@@ -66,6 +66,13 @@ interface OpenClip extends ReadMocap {
   readonly truth: Truth;
   readonly meter: ErrorMeter;
   readonly means: ClipMeans;
+}
+
+/** Returns the name, the person, the length and the rate of a motion that was opened, as a sentence. */
+function loadedText(name: string, { clips, rateHz }: PreparedMocap): string {
+  const seconds = clips.reduce((sum, { frameCount }) => sum + frameCount, 0) / mocapRateHz;
+  const pieces = clips.length > 1 ? ` in ${clips.length} pieces` : '';
+  return `${name} is open: one person, ${seconds.toFixed(1)} s at ${Number(rateHz.toPrecision(3))} Hz${pieces}.`;
 }
 
 /** Returns the public addresses of files; null: they are files of this device. */
@@ -139,7 +146,7 @@ export class MocapView {
       this.#show({ name: motion, sources, ...read }, request);
       if (bones && read.map.hash !== null) boneMaps.store(read.map.hash, bones);
       this.#bones.close();
-      for (const note of read.prepared.notes) notices.show('info', `${motion}: ${note}.`);
+      notices.show('info', [loadedText(motion, read.prepared), ...read.prepared.notes.map(formatSentence)].join(' '));
       if (others.length > 0)
         notices.show('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
     } catch (error) {

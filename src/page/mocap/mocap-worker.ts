@@ -4,6 +4,7 @@ import { isGltfMotion, readGltfMotion } from 'threepoint/files';
 import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/motion';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
+import { isTable, purposeOfTable } from './table-files';
 
 /** A request to the worker: the files to read. */
 export type MocapRequest = MocapFiles & GivenBones;
@@ -41,6 +42,7 @@ const named = (file: MocapFile, bytes: ArrayBuffer) => ({
 async function sourceOf({ motion, skeleton, map }: MocapFiles) {
   const name = fileNameOf(motion);
   const bytes = await bytesOf(motion);
+  if (isTable(name)) throw new Error(purposeOfTable(named(motion, bytes).text));
   const skeletonBytes = skeleton ? await bytesOf(skeleton) : bytes;
   const hash = map ? null : await sha256Base64Url(skeletonBytes);
   const mapped = map ? { map: named(map, await bytesOf(map)) } : {};

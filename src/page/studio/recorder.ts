@@ -22,6 +22,8 @@ export class Recorder {
   #loop = true;
   #recording: Replayable | null = null;
   #name: string | null = null;
+  /** The name of its download, which is never that of a file that was opened. */
+  #fileName = '';
   #frames: TrackingFrame[] = [];
   #about: Omit<Replayable, 'frames'> = { device: '', rateHz: 60, calibration: null };
   /** The time of the last request for a frame of the replay; null: none yet. */
@@ -113,6 +115,7 @@ export class Recorder {
       this.#recording = { ...this.#about, frames: this.#frames };
       this.#count += 1;
       this.#name = `recording-${this.#count}.json`;
+      this.#fileName = this.#name;
     }
     this.#frames = [];
     this.#mode = 'idle';
@@ -194,10 +197,11 @@ export class Recorder {
     this.#newest = requestNumber;
     this.#recording = recording;
     this.#name = name;
+    this.#fileName = `${name.replace(/\.json$/i, '')}-tracking.json`;
   }
 
   /** Returns the file of the current recording, or null without one. */
   file(): { readonly name: string; readonly text: string } | null {
-    return this.#recording && this.#name ? { name: this.#name, text: writeRecording(this.#recording) } : null;
+    return this.#recording && { name: this.#fileName, text: writeRecording(this.#recording) };
   }
 }

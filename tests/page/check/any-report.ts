@@ -5,16 +5,18 @@ import {
   reportFormat,
   reportVersion,
   trackerNames,
-  worldNames,
   writeHeadsetReport,
 } from '../../../src/page/check/headset-report';
+import { placeNames } from '../../../src/page/shell/activity-registry';
 
 const between = (min: number, max: number) => fc.double({ min, max, noNaN: true });
 const words = fc.string({ minLength: 1, maxLength: 30 }).map((text) => `x${text.trim()}`);
 const levels = (most: number) => fc.record({ frame: between(0, most), slow: between(0, most), sway: between(0, most) });
-const quantiles = fc.tuple(between(-5, 100), between(0, 100)).map(([p50Ms, more]) => ({ p50Ms, p95Ms: p50Ms + more }));
+const quantiles = fc
+  .tuple(fc.integer({ min: 100, max: 500 }), between(0, 100), between(0, 100))
+  .map(([frames, p50Ms, more]) => ({ frames, p50Ms, p95Ms: p50Ms + more }));
 const ascending = fc.array(between(0, 5000), { maxLength: 40 }).map((lengths) => lengths.sort((a, b) => a - b));
-const pairs = worldNames.flatMap((world) => estimatorNames.map((estimator) => ({ world, estimator })));
+const pairs = placeNames.flatMap((world) => estimatorNames.map((estimator) => ({ world, estimator })));
 const joints = fc.record(
   Object.fromEntries(estimatedJoints.map((joint) => [joint, between(0, 60)])) as Record<
     (typeof estimatedJoints)[number],
@@ -30,7 +32,8 @@ export const anyReport: fc.Arbitrary<HeadsetReport> = fc.record({
   session: fc.record({
     seconds: between(0, 200),
     complete: fc.boolean(),
-    rateHz: fc.option(between(30, 144)),
+    rateHz: between(30, 144),
+    rateReported: fc.boolean(),
     ratesHz: fc.array(between(30, 144), { maxLength: 5 }),
     views: fc.integer({ min: 0, max: 2 }),
   }),
@@ -47,13 +50,16 @@ export const anyReport: fc.Arbitrary<HeadsetReport> = fc.record({
           tracker: fc.constant(tracker),
           source: fc.constantFrom('headset' as const, 'controller' as const, 'hand' as const),
           frames: fc.nat(5000),
-          rateHz: between(30, 144),
           repeated: between(0, 1),
           positionMm: levels(20),
           rotationDegrees: levels(5),
         }),
       ),
     ),
+  ),
+  unmeasured: fc.array(
+    fc.record({ tracker: fc.constantFrom(...trackerNames), frames: fc.nat(5000), moved: fc.boolean() }),
+    { maxLength: 3 },
   ),
   losses: fc.subarray(['left', 'right'] as const).chain((hands) =>
     fc.tuple(
@@ -75,8 +81,6 @@ export const anyReport: fc.Arbitrary<HeadsetReport> = fc.record({
           world: fc.constant(row.world),
           estimator: fc.constant(row.estimator),
           drawnBy: fc.constantFrom(...estimatorNames),
-          rateHz: between(30, 144),
-          frames: fc.integer({ min: 100, max: 500 }),
           missed: fc.nat(100),
           work: quantiles,
         }),

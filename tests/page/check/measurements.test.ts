@@ -97,7 +97,33 @@ test('latencies are median and 95th percentile; a browser without display times 
   const { measurements } = wornBody();
   expect(measurements.figures(null).latency).toEqual({ displayAhead: null, callbackDelay: null });
   for (let ms = 1; ms <= 100; ms++) measurements.addLatency(undefined, ms);
-  expect(measurements.figures(null).latency).toEqual({ displayAhead: null, callbackDelay: { p50Ms: 51, p95Ms: 96 } });
+  expect(measurements.figures(null).latency).toEqual({
+    displayAhead: null,
+    callbackDelay: { frames: 100, p50Ms: 51, p95Ms: 96 },
+  });
   measurements.addLatency(22, 1);
-  expect(measurements.figures(null).latency.displayAhead).toEqual({ p50Ms: 22, p95Ms: 22 });
+  expect(measurements.figures(null).latency.displayAhead).toEqual({ frames: 1, p50Ms: 22, p95Ms: 22 });
+});
+
+test('a latency whose median is negative is not known', () => {
+  const { measurements } = wornBody();
+  for (const aheadMs of [-3, -2, -1, 4]) measurements.addLatency(aheadMs, 1);
+  expect(measurements.figures(null).latency.displayAhead).toBeNull();
+});
+
+test('trackers that moved or were not seen have a reason instead of a noise', () => {
+  const { measurements } = wornBody();
+  for (let row = 0; row < 600; row++) {
+    const tracked: TrackingFrame = { ...actorFrame(0, calibration), time: row / 60, rightHand: null };
+    const { position, orientation } = tracked.leftHand!;
+    const moving = { ...position, x: position.x + 0.2 * Math.sin(row / 10) };
+    const leftHand = { position: moving, orientation, tracking: 'tracked' as const };
+    measurements.add({ time: tracked.time, tracked: { ...tracked, leftHand }, pose: null, kinds }, { kind: 'noise' });
+  }
+  const { noise, unmeasured } = measurements.figures(null);
+  expect(noise.map(({ tracker, frames }) => [tracker, frames])).toEqual([['head', 600]]);
+  expect(unmeasured).toEqual([
+    { tracker: 'left', frames: 600, moved: true },
+    { tracker: 'right', frames: 0, moved: false },
+  ]);
 });

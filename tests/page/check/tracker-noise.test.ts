@@ -71,8 +71,8 @@ test('white noise in is the same figure out, at every rate, from any orientation
       fc.double({ min: 0.005, max: 0.5, noNaN: true }),
       fc.integer(),
       (rateHz, mm, degrees, seed) => {
-        const { positionMm, rotationDegrees, rateHz: measured } = figuresOf({ rateHz, mm, degrees, seed })!;
-        expect(measured).toBeCloseTo(rateHz, 3);
+        const { positionMm, rotationDegrees, frames } = figuresOf({ rateHz, mm, degrees, seed })!;
+        expect(frames).toBe(15 * rateHz);
         for (const level of [positionMm.frame, positionMm.slow]) expect(Math.abs(level / mm - 1)).toBeLessThan(0.08);
         for (const level of [rotationDegrees.frame, rotationDegrees.slow])
           expect(Math.abs(level / degrees - 1)).toBeLessThan(0.08);
@@ -132,4 +132,11 @@ test('fewer than two seconds give no figure', () => {
   expect(recorder.figures()).toBeNull();
   for (let row = 0; row < 100; row++) recorder.add(row / 72, { position: vec3(0, 1, 0), orientation: start });
   expect(recorder.figures()).toBeNull();
+});
+
+test('a tracker that moves or turns for most of the time is not at rest', () => {
+  const held = { rateHz: 72, mm: 0.2, degrees: 0.05 };
+  expect(figuresOf({ ...held, move: (time) => 0.2 * Math.sin(3 * time) })).toBeNull();
+  expect(figuresOf({ ...held, turn: 0.5, swayHz: 1 })).toBeNull();
+  expect(figuresOf({ ...held, mm: 2, degrees: 0.5 })).not.toBeNull();
 });

@@ -117,6 +117,17 @@ describe('the recorder', () => {
     expect(other.file()?.text).toBe(file?.text);
   });
 
+  test('its download never has the name of a file that was opened', () => {
+    const recorder = recorded(0, 1);
+    const { name, text } = recorder.file()!;
+    expect(name).toBe('recording-1.json');
+    for (const opened of [name, 'walk.json', 'WALK.JSON', 'walk.bvh']) {
+      recorder.open(opened, text);
+      expect(recorder.name).toBe(opened);
+      expect(recorder.file()!.name).toBe(`${opened.replace(/\.json$/i, '')}-tracking.json`);
+    }
+  });
+
   test('a file that is no recording leaves the one at hand', () => {
     const recorder = recorded(0, 1);
     expect(() => recorder.open('photos.json', '{"photos": []}')).toThrow(/not a threepoint recording/);

@@ -2,6 +2,7 @@ import { defaultCalibration, nothingPressed } from 'threepoint/core';
 import { gameNames } from 'threepoint-games/all';
 import { LoopbackHost } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
+import { remainingSteps } from '../../../src/page/check/check-steps';
 import { createMatchRunner } from '../../../src/page/people/match/match-runner';
 import { activities } from '../../../src/page/shell/activity-registry';
 import { trialOf } from '../../study/participant/played-trial';
@@ -38,6 +39,11 @@ function pair(terms: { goal?: number; seconds?: number }) {
     },
   };
 }
+
+test('the headset check measures frames in the world of every activity', () => {
+  const titles = new Set(remainingSteps(false).map(({ title }) => title));
+  expect([...titles]).toEqual(['Frames: Mirror', 'Frames: Touch', 'Frames: Archery', 'Frames: Ball game', 'Done']);
+});
 
 test('two entries make a game an activity and a game of studies', () => {
   expect(activities.map(({ name }): string => name)).toEqual(['touch', 'archery', 'ball']);

@@ -1,13 +1,14 @@
 import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
 import { isSkeletonMap } from 'threepoint/motion';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
+import { isTable, purposeOfTable } from '../../mocap/table-files';
 import type { StageParts } from '../stage/stage-parts';
 
 /** Twice the size of the longest recording that the recorder stores. */
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
-/** A map of a skeleton is a page of text [bytes]. */
+/** A map of a skeleton is a page of text, and so is the first line of a table [bytes]. */
 const largestMap = 2 ** 18;
 const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma|gltf)$/i.test(name);
 /** Files with a body, its motion or both: bodies, unless they were chosen as motion. */
@@ -34,12 +35,15 @@ export class FileOpener {
   }
 
   /**
-   * A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a
-   * notice.
+   * A file by its ending: a recording or a map of a skeleton, else an avatar; a table is refused. Never rejects: what
+   * goes wrong becomes a notice.
    */
   async open(file: File): Promise<void> {
     const requestNumber = this.#parts.recorder.nextRequest();
-    if (!isJson(file)) await this.openAvatar(file);
+    if (isTable(file.name)) {
+      const purpose = purposeOfTable(await file.slice(0, largestMap).text());
+      this.#parts.notices.show('error', `${file.name} could not be opened: ${purpose}.`);
+    } else if (!isJson(file)) await this.openAvatar(file);
     else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#parts.mocap.open([file]);
     else await this.openRecording(file, requestNumber);
   }

@@ -1,4 +1,4 @@
-import { Button, FileButton, Group, StatusLine, Toggle } from 'threepoint-ui/controls';
+import { Button, FileButton, Group, ReplayTimeline, StatusLine, Toggle } from 'threepoint-ui/controls';
 import type { PanelPageProps } from './panel-actions';
 import type { ExportChoice, ExportState, RecorderState } from './panel-state';
 
@@ -7,12 +7,12 @@ const seconds = (value: number): string => `${value.toFixed(1)} s`;
 /** What the recorder is doing, in words, and how long it has. */
 export function recorderText({ mode, name, seconds: passed, duration }: RecorderState): readonly [string, string] {
   if (mode === 'recording') return ['Recording', `, ${seconds(passed)}`];
-  if (mode === 'replaying') return [`Replaying ${name ?? ''}`, `, ${seconds(passed)} of ${seconds(duration)}`];
+  if (mode === 'replaying') return [`Replaying ${name ?? ''}`, ''];
   return [name ? `${name}, ${seconds(duration)}` : 'Nothing recorded yet.', ''];
 }
 
 function RecorderSection({ state, actions }: PanelPageProps) {
-  const { mode, name, paused, duration, seconds, loop } = state.recorder;
+  const { mode, name, paused, seconds: passed, duration, loop } = state.recorder;
   const nothingToPlay = mode === 'recording' || name === null;
   const [words, figures] = recorderText(state.recorder);
   return (
@@ -29,23 +29,16 @@ function RecorderSection({ state, actions }: PanelPageProps) {
         <Button label="Download" disabled={nothingToPlay} onClick={() => actions.download()} />
       </div>
       <StatusLine class="recorder-text" words={words} figures={figures} />
-      <div class="row timeline">
-        <Button
-          label={paused ? 'Play' : 'Pause'}
-          hidden={mode !== 'replaying'}
-          onClick={() => actions.setPaused(!paused)}
+      {mode === 'replaying' && (
+        <ReplayTimeline
+          name="Time of the recording in seconds"
+          paused={paused}
+          seconds={passed}
+          duration={duration}
+          setPaused={(on) => actions.setPaused(on)}
+          seek={(seconds) => actions.seek(seconds)}
         />
-        <input
-          type="range"
-          min={0}
-          max={duration}
-          step={0.01}
-          aria-label="Second of the replay"
-          hidden={mode !== 'replaying'}
-          value={seconds}
-          onInput={({ currentTarget }) => actions.seek(currentTarget.valueAsNumber)}
-        />
-      </div>
+      )}
       <Toggle label="Loop" on={loop} set={(on) => actions.setLoop(on)} />
       <div class="row">
         <FileButton label="Open recording" accept=".json,application/json" open={(files) => actions.openFiles(files)} />

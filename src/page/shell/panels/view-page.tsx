@@ -58,5 +58,9 @@ export const ViewPage = ({ state, actions }: PanelPageProps) => (
         ))}
       </dl>
     </section>
+    <p class="hint">
+      For developers: <a href="./embed.html">a body in your own page</a>, in twenty lines, and{' '}
+      <a href="./check.html">a check of your headset</a>.
+    </p>
   </>
 );

@@ -72,6 +72,8 @@ export const mocapRateHz = rateHz;
 /** The clips of a file, with notes on what was corrected or assumed, a sentence each. */
 export interface PreparedMocap {
   readonly clips: readonly MocapClip[];
+  /** The frame rate of the file [Hz]. */
+  readonly rateHz: number;
   readonly notes: readonly string[];
   /** The implausible properties of the motion, a sentence each. */
   readonly doubts: readonly string[];
@@ -80,7 +82,7 @@ export interface PreparedMocap {
 }
 
 /** A file's motion before it is cut into clips. */
-export type ReadMocap = { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips'>;
+export type ReadMocap = { readonly motion: TruthMotion } & Omit<PreparedMocap, 'clips' | 'rateHz'>;
 
 /** Returns the fault as a sentence that begins with the name of its file. */
 function faultIn(name: string, error: unknown): Error {
@@ -225,5 +227,5 @@ function* clipsOf(name: string, { motion, notes, doubts, bones }: ReadMocap): Ge
   }
   const leaps = cuts.slice(0, 5).map((cut) => cut + 1).join(', '); // biome-ignore format: one thought
   const said = cuts.length > 0 ? [...notes, `it leaps at frame ${leaps}; cut there`] : notes;
-  return { clips, doubts, bones, notes: said };
+  return { clips, rateHz: motion.rateHz, doubts, bones, notes: said };
 }

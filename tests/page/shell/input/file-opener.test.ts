@@ -171,6 +171,22 @@ describe('a dropped file', () => {
     expect(notices).toEqual([{ level: 'info', text: 'robot.vrm is your avatar now.' }]);
   });
 
+  test.each([
+    [
+      'walk-ik.csv',
+      'time,left_hand_seen,right_hand_seen,hips_x\n',
+      /a table of joint positions, .* Open the recording/,
+    ],
+    ['trials.csv', '\uFEFF"simulated","participant","trial"\r\n', /a table of a study, for statistics, and holds no/],
+    ['prices.tsv', 'year\tprice\n', /prices.tsv could not be opened: it is a table, for spreadsheets, and holds no/],
+  ])('the table %s is refused by what it is and what it is for', async (name, text, sentence) => {
+    const { files: page, notices, opened, mocap } = files();
+    page.openAll([new File([text], name)], { asMotion: true });
+    await expect.poll(() => notices.length).toBe(1);
+    expect(notices[0]).toEqual({ level: 'error', text: expect.stringMatching(sentence) });
+    expect([opened, mocap]).toEqual([[], []]);
+  });
+
   test('motion capture goes with its skeleton, and a file that came with both is opened too', () => {
     const { files: page, opened, mocap } = files();
     const [motion, skeleton, robot] = ['01_02.AMC', '01.asf', 'robot.vrm'].map((name) => new File([''], name)) as [
