@@ -1,4 +1,3 @@
-import AxeBuilder from '@axe-core/playwright';
 import { devices, type Page } from '@playwright/test';
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import { drawSeldom } from '../draw-seldom';
@@ -161,27 +160,3 @@ for (const play of ['studio', 'archery', 'ball'] as const)
       }
     }
   });
-
-test('axe finds nothing at the mirror, its controls or the games @full', async ({ page }) => {
-  test.setTimeout(90_000);
-  await drawSeldom(page, 3_600_000);
-  const found: string[] = [];
-  const check = async (view: string, part = 'html') => {
-    const { violations } = await new AxeBuilder({ page }).include(part).analyze();
-    for (const { id, nodes } of violations)
-      for (const { target, failureSummary } of nodes)
-        found.push(`${view}: ${id} at ${target.join(' ')}: ${failureSummary?.split('\n').at(-1)?.trim()}`);
-  };
-  await openOnPhone(page, '&panel=on');
-  await check('mirror');
-  for (const tab of ['Avatar', 'Recording', 'View']) {
-    await page.getByRole('tab', { name: tab }).click();
-    await check(tab, '#panel');
-  }
-  for (const play of ['archery', 'ball']) {
-    await openOnPhone(page, `&play=${play}&panel=off&seed=5`);
-    await expect(page.locator('#play .round:not([hidden])')).toBeVisible({ timeout: 60_000 });
-    await check(play);
-  }
-  expect(found).toEqual([]);
-});

@@ -1,7 +1,7 @@
 import type { Locator } from '@playwright/test';
 import { expect, keepPicture } from '../page-fixture';
 import { continueAtDesk, reaches, test } from './study-participant';
-import { shippedPlan } from './study-server';
+import { experimenter, shippedPlan } from './study-server';
 
 test('the keyboard stays within the card when another question replaces one that was answered @full', async ({
   page,
@@ -62,3 +62,35 @@ async function unevenPixels(element: Locator): Promise<number> {
     return uneven;
   }, picture);
 }
+
+test('the buttons of consent are in sight on a phone and in a small window @full', async ({ page, origin }) => {
+  const plan = shippedPlan('paper', 'long-consent');
+  await experimenter(origin).begin(plan, false);
+  await page.goto(await experimenter(origin).link(plan.id, 'P01', '&quality=low'));
+  const card = page.locator('.study-card');
+  const row = card.locator('.row');
+  for (const [width, height] of [
+    [390, 844],
+    [640, 400],
+    [1280, 720],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    for (const top of [0, 10_000]) {
+      await card.evaluate((element, top) => element.scrollTo({ top }), top);
+      for (const name of ['I agree', 'I do not want to take part'])
+        await expect(card.getByRole('button', { name })).toBeInViewport({ ratio: 1 });
+      const [own, around] = [await row.boundingBox(), await card.boundingBox()];
+      const below = around!.y + around!.height - own!.y - own!.height;
+      // The text ends at the buttons; only the card's last line may follow.
+      if (top === 0) expect(below, `${width} × ${height}`).toBeLessThan(2);
+    }
+    // What the keyboard reaches is not under the buttons.
+    await card.evaluate((element) => element.scrollTo({ top: 0 }));
+    const box = card.getByRole('checkbox').last();
+    await card.getByRole('button', { name: 'I do not want to take part' }).focus();
+    await page.keyboard.press('Shift+Tab');
+    await expect(box).toBeFocused();
+    const [reached, buttons] = [await box.boundingBox(), await row.boundingBox()];
+    expect(reached!.y + reached!.height, `${width} × ${height}`).toBeLessThanOrEqual(buttons!.y);
+  }
+});

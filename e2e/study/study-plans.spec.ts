@@ -124,4 +124,6 @@ test('a plan with participants changes as a new version: the experimenter sees i
   await expect(versions).toHaveValue('2');
   await versions.selectOption('1');
   await expect(page.getByRole('heading', { name: 'A body that follows later' })).toBeVisible();
+  await page.reload();
+  await expect(versions).toHaveValue('1');
 });

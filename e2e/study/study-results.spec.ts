@@ -41,8 +41,20 @@ test('results of fifteen simulated participants; export, delete, export', async 
   }
   for (const id of ['Q1', 'Q12'])
     await expect(page.getByRole('row', { name: new RegExp(`^${id} \\w+ 15 `) })).toBeVisible();
-  await expect(page.getByRole('row', { name: /^Q1 presence 4.80.*no: p = 0.0004/ })).toBeVisible();
-  await expect(page.getByRole('row', { name: /^Q11 manipulation 4.73.*no: p = 0.037/ })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Q1 presence 4.20 4.80.*no: p = 0.0004/ })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Q11 manipulation 4.13 4.73.*no: p = 0.037/ })).toBeVisible();
+  // Every figure and table shows the conditions in the order of the plan.
+  const labels = plan.conditions.map(({ label }) => label);
+  const shown = await page.locator('figure svg, .table.dense thead').evaluateAll(
+    (parts, labels) =>
+      parts.map((part) => {
+        const names = [...part.querySelectorAll('text, th')].map(({ textContent }) => textContent ?? '');
+        return names.filter((name) => labels.includes(name));
+      }),
+    labels,
+  );
+  expect(shown.length).toBeGreaterThan(8);
+  for (const names of shown) expect(names).toEqual(labels);
   await page.screenshot({ path: 'artifacts/screenshots/study-results.png', fullPage: true });
   // The last column, Holm's p, is in sight on a screen of 960 pixels, and paper cuts nothing off.
   const cutOff = () =>
@@ -64,6 +76,11 @@ test('results of fifteen simulated participants; export, delete, export', async 
   const csv = await saved(page.getByRole('button', { name: 'CSV' }).first().click());
   expect(csv.name).toBe(`SIMULATED-${plan.id}-answers-compared.csv`);
   expect(csv.content.toString()).toContain('TRUE,Q12,preference');
+  // Saved figures are light, whatever the page is.
+  await page.emulateMedia({ colorScheme: 'dark' });
+  const svg = await saved(page.getByRole('button', { name: 'SVG' }).first().click());
+  expect(svg.content.toString()).toContain('fill="white"');
+  expect(svg.content.toString()).not.toMatch(/var\(--(ink|surface|first|second)/);
   const png = await saved(page.getByRole('button', { name: 'PNG' }).first().click());
   expect(png.name).toMatch(/^SIMULATED-.*\.png$/);
   expect(png.content.subarray(1, 4).toString()).toBe('PNG');
@@ -83,7 +100,8 @@ test('results of fifteen simulated participants; export, delete, export', async 
   await page.getByRole('textbox').fill('P02');
   await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
   await expect(page.getByText(/P02 is deleted\. Receipt 1/)).toBeVisible();
-  await expect(row.getByRole('button', { name: 'Export' })).toBeDisabled();
+  await expect(row.getByText('Nobody has opened the page.')).toBeVisible();
+  await expect(row.getByRole('button', { name: 'Export' })).toHaveCount(0);
   const after = await experimenter(origin).ask(`/${plan.id}/participants/P02/export`);
   expect(recordsIn(Buffer.from(await after.arrayBuffer()))).toBe(0);
 });
@@ -127,18 +145,18 @@ test('cohorts of a mixed study are chosen on the results page, each participant 
       new RegExp(`^own-body ownership 6, 6 ${meanOf(first, conditions)} .* ${meanOf(second, conditions)} `),
     );
   const all = plan.conditions.map(({ id }) => id);
-  await expectShown('stout', 'woman', all);
+  await expectShown('woman', 'stout', all);
   await page.getByLabel('Compare cohort').selectOption('child');
-  await expectShown('child', 'woman', all);
+  await expectShown('woman', 'child', all);
   await page.getByLabel('with cohort').selectOption('stout');
-  await expectShown('child', 'stout', all);
+  await expectShown('stout', 'child', all);
   await page.getByLabel('Under').selectOption('late-200');
-  await expectShown('child', 'stout', ['late-200']);
+  await expectShown('stout', 'child', ['late-200']);
   await expect(page.getByText(/^Differences are As child − As stout, .* under “200 ms”\./)).toBeVisible();
   // Pairs of conditions are chosen for themselves.
   await page.getByLabel('Compare condition').selectOption('late-200');
   await expect(page.getByText(/^Differences are 200 ms − 0 ms, paired/)).toBeVisible();
-  await expectShown('child', 'stout', ['late-200']);
+  await expectShown('stout', 'child', ['late-200']);
 
   const dots = page.getByRole('img', { name: 'Ownership, every participant' }).last();
   await expect(dots.locator('circle[r="3.5"]')).toHaveCount(12);

@@ -1,4 +1,4 @@
-/** The colours of the page (styles/tokens.css), for canvases. */
+/** The colours of the dark scheme (styles/tokens.css), for what is drawn in the headset. */
 export const vrColors = {
   ink: '#f1f4f9',
   inkSoft: '#b6c1d3',

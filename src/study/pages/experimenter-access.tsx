@@ -28,11 +28,14 @@ export async function listStudies(from: ExperimenterClient): Promise<void> {
   listed.value = await from.studies();
 }
 
-/** Signs in with the token of this tab, if there is one. `open` is called with the study in the address after that. */
-export function resume(open: (study: string) => void): void {
+/**
+ * Signs in with the token of this tab, if there is one. `open` is called with the study in the address after that, and
+ * with the version of its plan if the address has one.
+ */
+export function resume(open: (study: string, version?: number) => void): void {
   client.subscribe((signedIn) => {
-    const asked = new URLSearchParams(location.search).get('study');
-    if (signedIn && asked) open(asked);
+    const { study, version } = Object.fromEntries(new URLSearchParams(location.search));
+    if (signedIn && study) open(study, version === undefined ? undefined : Number(version));
   });
   void noteServer(presence.whenKnown());
   const token = sessionStorage.getItem(tokenKey);
@@ -62,15 +65,17 @@ async function signIn(token: string): Promise<string | null> {
  */
 export async function requestStudy(from: ExperimenterClient, id: string, version?: number): Promise<RecordedStudy> {
   const recorded = await from.records(id, version);
-  putIntoAddress(id);
+  putIntoAddress(id, version);
   return recorded;
 }
 
 /** Puts the open study into the address, so that a reload opens it again; null: none is open. */
-export function putIntoAddress(study: string | null): void {
+export function putIntoAddress(study: string | null, version?: number): void {
   const address = new URL(location.href);
-  if (study === null) address.searchParams.delete('study');
-  else address.searchParams.set('study', study);
+  for (const [name, value] of Object.entries({ study, version })) {
+    if (value == null) address.searchParams.delete(name);
+    else address.searchParams.set(name, String(value));
+  }
   history.replaceState(null, '', address);
 }
 

@@ -31,7 +31,9 @@ interface TableProps<Row> {
 
 /** A table with a caption. */
 export const Table = <Row,>({ caption, columns, rows, look, dense = false }: TableProps<Row>) => (
-  <div class={dense ? 'table dense' : 'table'}>
+  // biome-ignore lint/a11y/useSemanticElements: a fieldset is for fields
+  // biome-ignore lint/a11y/noNoninteractiveTabindex: keys scroll a table that is wider than the page
+  <div class={dense ? 'table dense' : 'table'} role="group" aria-label={caption} tabIndex={0}>
     <table>
       <caption>{caption}</caption>
       <thead>

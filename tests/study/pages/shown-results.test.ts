@@ -20,6 +20,7 @@ test('two tasks with like questions stand side by side in a figure, each with it
     results,
     between: false,
     labels: { first: '200 ms', second: '0 ms' },
+    order: ['second', 'first'],
     ...{ answers: [], scales: compared(scales), points: [], percent: [], planned: [] },
   });
   for (const { comparisons, nameOf } of charts) {

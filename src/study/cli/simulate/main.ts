@@ -93,7 +93,8 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
   }
   for (const { of, first, second, test } of compareConditions(measures.points, [other.id, baseline.id]).comparisons) {
     const p = test?.p == null ? '' : `, ${pText(test.p)}`;
-    lines.push(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${first?.n})${p}`);
+    const means = `${second?.mean.toFixed(2)} (${baseline.id}) and ${first?.mean.toFixed(2)} (${other.id}) points`;
+    lines.push(`  ${of}: ${means}, n = ${first?.n}${p}`);
   }
   return lines;
 }

@@ -44,7 +44,7 @@ export const participantColumns = (several: boolean): readonly Column<ShownParti
     'The time since the page last reported',
   ),
   numberColumn('Records', ({ state }) => state.records),
-  textColumn('', ({ state }) => <Commands {...state} />),
+  textColumn('Actions', ({ state }) => <Commands {...state} />),
   textColumn('Order of conditions', (shown) => <Order {...shown} />),
   textColumn('Page', ({ state, plan }) => <PageLink {...state} study={plan.id} />),
 ];
@@ -109,10 +109,12 @@ function badgeOf({ session, claimed, withdrawn }: ParticipantState, silence: num
 }
 
 function Commands({ participant, session, claimed, withdrawn, records }: ParticipantState) {
+  if (!claimed && records === 0)
+    return <div class="row-actions commands soft">{!withdrawn && 'Nobody has opened the page.'}</div>;
   const small = (label: string, act: () => Promise<void>, disabled: boolean, look = '') => (
     <Button label={label} class={`small ${look}`} disabled={disabled} onClick={act} />
   );
-  const active = session !== null && session.kind !== 'end' && !withdrawn;
+  const active = session !== null && session.kind !== 'end';
   const startable =
     active && !session.paused && !session.running && (session.kind === 'trial' || session.kind === 'tutorial');
   return (
@@ -123,10 +125,10 @@ function Commands({ participant, session, claimed, withdrawn, records }: Partici
         : small('Pause', () => sendCommand(participant, { type: 'pause' }), !active)}
       {small('Void block …', () => voidBlock(participant), !active || !session.step.includes('/'))}
       {small('Stop …', () => stop(participant), !active, 'danger')}
-      {small('Remark …', () => remark(participant), records === 0 || withdrawn)}
+      {small('Remark …', () => remark(participant), records === 0)}
       {small('Release', () => release(participant), !claimed)}
       {small('Export', () => download({ participant }), records === 0)}
-      {small('Delete …', () => remove(participant), !claimed && records === 0, 'danger')}
+      {small('Delete …', () => remove(participant), false, 'danger')}
     </div>
   );
 }

@@ -3,6 +3,7 @@ import { type ComponentChild, render } from 'preact';
 import { offerDownload } from 'threepoint-ui';
 import { Button } from 'threepoint-ui/controls';
 import type { Comparison } from '../../model/results/compare-conditions';
+import type { ShownComparison } from './shown-results';
 import { swarmOffsets } from './swarm-layout';
 
 /** Comparisons on one scale, drawn side by side. */
@@ -12,7 +13,7 @@ export interface Chart {
   /** Returns the name of a comparison below the axis. */
   readonly nameOf: (comparison: Comparison) => string;
   readonly axis: string;
-  /** Ends of the scale. */
+  /** The ends of the scale; the axis also covers intervals beyond them. */
   readonly domain: readonly [number, number];
   /** The unit that has one value each. */
   readonly each: 'participant' | 'group';
@@ -23,15 +24,16 @@ export interface Chart {
 }
 
 /** The labels of two conditions or cohorts, and whether the pictures are marked as simulated. */
-export interface ChartLegend {
-  readonly labels: { readonly first: string; readonly second: string };
+export interface ChartLegend extends Pick<ShownComparison, 'labels' | 'order'> {
   readonly simulated: boolean;
 }
 
-const colours = { first: '#c8681e', second: '#2b6cb0' } as const;
-const ink = '#1d2733';
+/** The page's tokens, each with the colour that saved files have. */
+const colours = { first: 'var(--first, #b05510)', second: 'var(--second, #2b6cb0)' } as const;
+const ink = 'var(--ink, #1d2733)';
+const inkSoft = 'var(--ink-soft, #4d5a69)';
+const surface = 'var(--surface, white)';
 const fontFamily = 'Inter, "Segoe UI", system-ui, sans-serif';
-const sides = ['first', 'second'] as const;
 /**
  * Wraps a note that would not fit the picture after the first part of its sentence; `letter` is the mean width of a
  * letter [pixels].
@@ -46,14 +48,14 @@ interface HeadingProps extends ChartLegend {
 }
 
 /** The title, the key and the mark of simulation inside the picture, so that copies of it keep them. */
-const Heading = ({ title, note, width, labels, simulated }: HeadingProps) => (
+const Heading = ({ title, note, width, labels, order, simulated }: HeadingProps) => (
   // Plots centre their labels by default.
   <g font-family={fontFamily} fill={ink} text-anchor="start">
     <text x={12} y={24} font-size={16} font-weight={650}>
       {title}
     </text>
-    {sides.map((side) => {
-      const x = side === 'first' ? 12 : 50 + labels.first.length * 7.4;
+    {order.map((side, index) => {
+      const x = index === 0 ? 12 : 50 + labels[order[0]].length * 7.4;
       return (
         <>
           <rect x={x} y={38} width={12} height={12} rx={2} fill={colours[side]} />
@@ -64,12 +66,12 @@ const Heading = ({ title, note, width, labels, simulated }: HeadingProps) => (
       );
     })}
     {noteLines(note, width - 24).map((line, index) => (
-      <text x={12} y={66 + 15 * index} font-size={12} fill="#5b6776">
+      <text x={12} y={66 + 15 * index} font-size={12} fill={inkSoft}>
         {line}
       </text>
     ))}
     {simulated && (
-      <text x={width - 12} y={24} text-anchor="end" font-size={15} font-weight={700} fill="#b3261e">
+      <text x={width - 12} y={24} text-anchor="end" font-size={15} font-weight={700} fill="var(--trouble, #b3261e)">
         SIMULATED
       </text>
     )}
@@ -87,7 +89,7 @@ const shared = {
   marginTop: 92,
   marginLeft: 52,
   marginBottom: 40,
-  style: { fontSize: '13px', color: ink, background: 'white', fontFamily },
+  style: { fontSize: '13px', color: ink, background: surface, fontFamily },
 } as const;
 
 /** Answers are whole numbers; other scales choose their own ticks. */
@@ -113,29 +115,37 @@ function drawn(
     ...shared,
     height,
     fx: { label: null, domain: comparisons.map(chart.nameOf), padding },
-    y: { label: null, domain: [...chart.domain], grid: true, ticks: ticksOf(chart), tickFormat: tickText },
+    y: { label: null, domain: axisDomain(chart), grid: true, ticks: ticksOf(chart), tickFormat: tickText },
     color: { domain: [...sides], range: [colours.first, colours.second] },
     ...plot,
     width,
   });
   if (!(picture instanceof SVGSVGElement)) throw new Error('results/charts: expected a plain SVG from the plot');
-  picture.prepend(svgGroup(<rect width="100%" height="100%" fill="white" />));
+  picture.prepend(svgGroup(<rect width="100%" height="100%" fill={surface} />));
+  // Plot names its marks, but a picture has one name, and no name may stand on a group without a role.
+  for (const mark of picture.querySelectorAll('[aria-label]')) mark.removeAttribute('aria-label');
   picture.append(svgGroup(<Heading {...legend} title={title} note={`${axis}; ${note}`} width={width} />));
   return picture;
 }
 
-/** Returns the mean of each side with its 95 % confidence interval, clipped to the scale. */
-const meansOf = ({ comparisons, nameOf, domain }: Chart) =>
+const sides = ['first', 'second'] as const;
+
+/** Returns the mean of each side with its 95 % confidence interval. */
+const meansOf = ({ comparisons, nameOf }: Pick<Chart, 'comparisons' | 'nameOf'>) =>
   comparisons.flatMap((comparison) =>
     sides.flatMap((side) => {
       const summary = comparison[side];
       if (!summary) return [];
       const { mean, interval } = summary;
-      const from = Math.max(domain[0], interval?.low ?? mean);
-      const to = Math.min(domain[1], interval?.high ?? mean);
-      return [{ of: nameOf(comparison), side, mean, from, to }];
+      return [{ of: nameOf(comparison), side, mean, from: interval?.low ?? mean, to: interval?.high ?? mean }];
     }),
   );
+
+/** Returns the ends of the axis: those of the scale, or of the intervals that reach beyond it. */
+export function axisDomain(chart: Pick<Chart, 'comparisons' | 'nameOf' | 'domain'>): [number, number] {
+  const ends = meansOf(chart).flatMap(({ from, to }) => [from, to]);
+  return [Math.min(chart.domain[0], ...ends), Math.max(chart.domain[1], ...ends)];
+}
 
 /** Draws means as bars with their 95 % confidence intervals, as figures 11 to 14 of the paper. */
 export function barChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
@@ -143,7 +153,7 @@ export function barChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
   const bars = meansOf(chart);
   return drawn(chart, legend, 'mean and 95 % confidence interval', {
     padding: 0.25,
-    x: { axis: null, domain: [...sides], padding: 0.12 },
+    x: { axis: null, domain: [...legend.order], padding: 0.12 },
     marks: [
       Plot.barY(bars, { fx: 'of', x: 'side', y1: low, y2: 'mean', fill: 'side' }),
       Plot.ruleX(bars, { fx: 'of', x: 'side', y1: 'from', y2: 'to', stroke: ink, strokeWidth: 1.5 }),
@@ -155,7 +165,7 @@ export function barChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
         y: low,
         text: ({ mean }: { mean: number }) => (mean >= 10 ? mean.toFixed(1) : mean.toFixed(2)),
         dy: -9,
-        fill: 'white',
+        fill: surface,
         fontWeight: 600,
       }),
       Plot.ruleY([low]),
@@ -182,12 +192,13 @@ export function pairedChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
     });
   });
   const means = meansOf(chart);
-  return drawn(chart, legend, `left ${legend.labels.second}, right ${legend.labels.first}`, {
+  const { order, labels } = legend;
+  return drawn(chart, legend, `left ${labels[order[0]]}, right ${labels[order[1]]}`, {
     padding: 0.2,
-    x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
+    x: { axis: null, domain: [...order], padding: 0.5 },
     color: {
       domain: ['up', 'same', 'down', 'first', 'second'],
-      range: [colours.first, '#8a95a3', colours.second, colours.first, colours.second],
+      range: [colours.first, inkSoft, colours.second, colours.first, colours.second],
     },
     marks: [
       Plot.line(lines, {
@@ -200,7 +211,7 @@ export function pairedChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
         strokeWidth: ({ count }: { count: number }) => 0.8 + 1.1 * count,
         strokeLinecap: 'round',
       }),
-      Plot.dot(means, { fx: 'of', x: 'side', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+      Plot.dot(means, { fx: 'of', x: 'side', y: 'mean', fill: 'side', r: 5, stroke: surface, strokeWidth: 1.5 }),
     ],
   });
 }
@@ -213,14 +224,14 @@ const strip = { mean: 0.07, dots: 0.29, width: 0.34 } as const;
 /** Draws every participant (or group) of two cohorts as a dot next to means and 95 % confidence intervals. */
 export function stripChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
   const { comparisons, nameOf } = chart;
-  const [low, high] = chart.domain;
+  const [low, high] = axisDomain(chart);
   const width = widthFor(comparisons.length, 130);
   const padding = 0.1;
   const comparisonWidth = ((width - shared.marginLeft - 20) * (1 - padding)) / (comparisons.length + padding);
   const diameter = ((high - low) * dotDiameter) / (height - shared.marginTop - shared.marginBottom);
-  const outwards = { first: -1, second: 1 } as const;
+  const outwards = { first: 1, second: 1, [legend.order[0]]: -1 };
   const dots = comparisons.flatMap((comparison) =>
-    sides.flatMap((side) => {
+    legend.order.flatMap((side) => {
       const values = comparison.values[side];
       const beside = swarmOffsets(
         values.map((value) => value / diameter),
@@ -242,13 +253,14 @@ export function stripChart(chart: Chart, legend: ChartLegend): SVGSVGElement {
     marks: [
       Plot.dot(dots, { fx: 'of', x: 'x', y: 'value', fill: 'side', fillOpacity: 0.65, r: dotDiameter / 2 }),
       Plot.ruleX(means, { fx: 'of', x: 'x', y1: 'from', y2: 'to', stroke: 'side', strokeWidth: 2.5 }),
-      Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+      Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: surface, strokeWidth: 1.5 }),
     ],
   });
 }
 
-/** Returns the picture as an SVG file. */
-const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToString(svg);
+/** Returns the picture as an SVG file in the light colours: other programs do not know the page's tokens. */
+const svgText = (svg: SVGSVGElement): string =>
+  new XMLSerializer().serializeToString(svg).replaceAll(/var\(--[\w-]+, ([^()]+)\)/g, '$1');
 
 /** Resolves with the picture at twice its size as PNG, for slides and papers that do not accept SVG. */
 async function pngOf(svg: SVGSVGElement): Promise<Blob> {

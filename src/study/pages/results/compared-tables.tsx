@@ -12,7 +12,7 @@ const testHeads = {
     ranks: ['V', "Wilcoxon's signed ranks"],
   },
   between: {
-    n: 'In the first and in the second cohort',
+    n: 'In each cohort',
     t: "Welch's t-test",
     d: ['d_s', "Cohen's d in pooled standard deviations, with its 95 % interval"],
     ranks: ['W', "Wilcoxon's rank sums (Mann and Whitney's U)"],
@@ -23,18 +23,22 @@ const isSignificant = ({ holmP }: Comparison) => (holmP ?? 1) < 0.05;
 const holmText = (one: Comparison) => `${pText(one.holmP)}${isSignificant(one) ? ' *' : ''}`;
 
 /** Returns the columns of a table of comparisons; `tagged`: planned ones are marked. */
-function columnsOf({ results, labels, between }: ShownComparison, tagged: boolean): readonly Column<Comparison>[] {
+function columnsOf(
+  { results, labels, order, between }: ShownComparison,
+  tagged: boolean,
+): readonly Column<Comparison>[] {
   const heads = between ? testHeads.between : testHeads.paired;
   const [d, dTitle] = heads.d;
   const [ranks, ranksTitle] = heads.ranks;
   const effectTitle = `Rank-biserial correlation, the effect size of ${ranks}, with its 95 % interval`;
-  const nText = ({ first, second }: Comparison['values']) =>
-    between ? `${first.length}, ${second.length}` : first.length;
+  const nText = (values: Comparison['values']) =>
+    between ? order.map((side) => values[side].length).join(', ') : values.first.length;
   return [
     textColumn('Measure', (one) => measureCell(results, one, tagged)),
     numberColumn('n', ({ values }) => nText(values), heads.n),
-    numberColumn(labels.first, ({ first }) => meanCell(first?.mean, first?.interval, 2)),
-    numberColumn(labels.second, ({ second }) => meanCell(second?.mean, second?.interval, 2)),
+    ...order.map((side) =>
+      numberColumn(labels[side], (one: Comparison) => meanCell(one[side]?.mean, one[side]?.interval, 2)),
+    ),
     numberColumn('difference', ({ test }) => meanCell(test?.meanDifference, test?.interval, 2)),
     numberColumn('t', ({ test }) => fixed(test?.t, 3), heads.t),
     numberColumn('df', ({ test }) => fixed(test?.df, between ? 1 : 0)),

@@ -9,10 +9,10 @@ import { barChart, type Chart, Figure, pairedChart, stripChart } from './charts'
 import type { ShownComparison } from './shown-results';
 
 /** Returns the figures of a chart: the means, and every pair of values or every participant of two cohorts. */
-export function chartFigures({ results, labels, between }: ShownComparison, chart: Chart) {
+export function chartFigures({ results, labels, order, between }: ShownComparison, chart: Chart) {
   const { title, note, each } = chart;
   const file = results.fileOf(between ? `${chart.file}-cohorts` : chart.file);
-  const legend = { labels, simulated: results.study.simulated };
+  const legend = { labels, order, simulated: results.study.simulated };
   const every = between ? stripChart(chart, legend) : pairedChart({ ...chart, title: `${title}, pairs` }, legend);
   return (
     <div class="figures">

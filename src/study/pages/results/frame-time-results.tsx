@@ -26,15 +26,24 @@ const columnsOf = ({ study, titleOf, labelOf }: ShownResults): readonly Column<F
 
 /** The work per frame, separately for each cohort. */
 export function FrameTimes({ results }: { readonly results: ShownResults }) {
-  const { study, fileOf } = results;
+  const { study, fileOf, placeOf } = results;
   const times = frameTimes(study.records, cohortLookup(study.plan));
+  const tasks = study.plan.tasks.map(({ id }) => id);
+  // The whole frame stays above its stages, as `frameTimes` has them.
+  const inOrder = times.toSorted(
+    (a, b) =>
+      Number(b.stage === 'frame') - Number(a.stage === 'frame') ||
+      tasks.indexOf(a.task) - tasks.indexOf(b.task) ||
+      placeOf(a.condition) - placeOf(b.condition) ||
+      placeOf(a.cohort) - placeOf(b.cohort),
+  );
   return (
     <>
       <h2>Frame times</h2>
       <Table
         caption="Work of the page per frame [ms] (the paper’s tables 5 and 6)"
         columns={columnsOf(results)}
-        rows={times}
+        rows={inOrder}
       />
       <div class="bar">{csvButton(frameTimeTable(times, study), fileOf('frame-times'))}</div>
     </>

@@ -9,8 +9,8 @@ const computedText = (p: number) => p.toFixed(p < 0.001 ? 4 : 3);
 
 const columns: readonly Column<PaperRow>[] = [
   textColumn('Question', ({ question }) => `${question} ${paperAboutOf(question)}`),
-  numberColumn('ours', ({ ours }) => fixed(ours, 2)),
   numberColumn('IK', ({ ik }) => fixed(ik, 2)),
+  numberColumn('ours', ({ ours }) => fixed(ours, 2)),
   numberColumn('t', ({ t }) => fixed(t, 3)),
   numberColumn('printed p', ({ printedP }) => fixed(printedP, 3)),
   numberColumn('p from t', ({ p }) => computedText(p)),
@@ -39,12 +39,12 @@ export function PaperCheck() {
       <ul>
         {paperScores.map(({ task, maximum, ours, ik, printedPercent }) => (
           <li>
-            {`Score, ${task}: ${ours} and ${ik} of ${maximum} points are ${((100 * ours) / maximum).toFixed(2)} and ${((100 * ik) / maximum).toFixed(2)} %; printed ${printedPercent.ours} and ${printedPercent.ik} %.`}
+            {`Score, ${task}, IK and ours: ${ik} and ${ours} of ${maximum} points are ${((100 * ik) / maximum).toFixed(2)} and ${((100 * ours) / maximum).toFixed(2)} %; printed ${printedPercent.ik} and ${printedPercent.ours} %.`}
           </li>
         ))}
         {paperFrameTimes.map((times) => (
           <li>
-            {`Frame time, ${times.title}: ${times.ours.meanMs} against ${times.ik.meanMs} ms saves ${(100 * savedShare(times)).toFixed(0)} %; the text says approximately 60 %.`}
+            {`Frame time, ${times.title}, IK and ours: ${times.ik.meanMs} and ${times.ours.meanMs} ms, which saves ${(100 * savedShare(times)).toFixed(0)} %; the text says approximately 60 %.`}
           </li>
         ))}
       </ul>

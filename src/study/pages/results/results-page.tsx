@@ -5,7 +5,15 @@ import { reasonOf } from 'threepoint/core';
 import { pageElement } from 'threepoint-ui';
 import { Button, Chooser, Complaint, FileField } from 'threepoint-ui/controls';
 import { studyTitle } from '../../model/plan/plan';
-import { client, requestStudy, resume, SignIn, SignOutButton, StudyChooser } from '../experimenter-access';
+import {
+  client,
+  putIntoAddress,
+  requestStudy,
+  resume,
+  SignIn,
+  SignOutButton,
+  StudyChooser,
+} from '../experimenter-access';
 import { openStudyFile } from '../study-file';
 import { PaperCheck } from './paper-check';
 import { StudyResults } from './results-view';
@@ -40,7 +48,9 @@ async function load(id: string, planVersion?: number): Promise<void> {
 const openFile = (file: File) =>
   show(async () => {
     try {
-      return { ...openStudyFile(new Uint8Array(await file.arrayBuffer())), source: file.name };
+      const study = openStudyFile(new Uint8Array(await file.arrayBuffer()));
+      putIntoAddress(null);
+      return { ...study, source: file.name };
     } catch (error) {
       throw new Error(`${file.name}: ${reasonOf(error)}`);
     }

@@ -17,6 +17,8 @@ export interface ShownResults {
   readonly measures: StudyMeasures;
   /** Returns the label of a condition or a cohort. */
   labelOf(id: string): string;
+  /** Returns the place of a condition or a cohort in the plan, whose order is that of all figures and tables. */
+  placeOf(id: string): number;
   /** Returns the title of a task, with its id if another task has the same title. */
   titleOf(task: string): string;
   nameOf(measure: MeasureName): string;
@@ -30,7 +32,11 @@ export interface ShownComparison extends ByFamily<readonly Comparison[]> {
   /** Whether the sides are cohorts, of different participants; otherwise they are conditions. */
   readonly between: boolean;
   readonly labels: { readonly first: string; readonly second: string };
+  /** The sides in the order of every figure and table. */
+  readonly order: readonly [Side, Side];
 }
+
+type Side = 'first' | 'second';
 
 /** Returns the measures of a study. Throws if simulated records and records of people are mixed. */
 export function shownResults(study: ShownStudy): ShownResults {
@@ -46,6 +52,7 @@ export function shownResults(study: ShownStudy): ShownResults {
     study,
     measures: measuresIn(records, plan),
     labelOf: (id) => named.find((one) => one.id === id)?.label ?? id,
+    placeOf: (id) => named.findIndex((one) => one.id === id),
     titleOf,
     nameOf: (one) => {
       if (!one.asked) return `${titleOf(one.of)}, ${one.unit === 'percent' ? 'per cent' : 'points'}`;

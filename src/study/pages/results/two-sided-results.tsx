@@ -35,7 +35,9 @@ function twoSides(
 ) {
   const [first, second] = sides.sides.map(results.labelOf) as [string, string];
   const between = sides.conditions !== undefined;
-  const compared = { results, between, labels: { first, second }, ...found };
+  const [placeOfFirst, placeOfSecond] = sides.sides.map(results.placeOf) as [number, number];
+  const order = placeOfFirst < placeOfSecond ? (['first', 'second'] as const) : (['second', 'first'] as const);
+  const compared = { results, between, labels: { first, second }, order, ...found };
   const captions = captionsOf(compared);
   const { planned, answers, scales, points, percent } = found;
   const families = [

@@ -58,8 +58,8 @@ export function ConsentForm({ form, onLanguage }: ConsentFormProps) {
         {consent.motion !== null && box(inLanguage(consent.motion, language), setMotion, language)}
       </div>
       <p class="soft">{text('consent.nothingRecorded')}</p>
-      <Complaint text={problem} />
       <div class="row">
+        <Complaint text={problem} />
         <Button
           label={text('consent.agree')}
           class="primary"

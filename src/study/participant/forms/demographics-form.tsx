@@ -91,8 +91,8 @@ export function DemographicsForm({ phrases, done, stop }: FormOf<'demographics'>
       <Heading kicker={text('about.kicker')} title={text('about.title')} />
       <p class="soft">{text('question.neededNote')}</p>
       {demographicFields.map((field) => fieldContent(field, phrases, missing.includes(field.id)))}
-      <Complaint text={problem} />
       <div class="row">
+        <Complaint text={problem} />
         <Button label={text('continue')} class="primary" onClick={handIn} />
         <Button label={text('stopStudy')} onClick={stop} />
       </div>

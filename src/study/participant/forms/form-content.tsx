@@ -40,9 +40,9 @@ function ParticipantForm({ phrases: { text }, problem: asked, known, go, decline
         <span>{text('entrance.invitation')}</span>
         <input name="invitation" placeholder="XXXX-XXXX-XXXX-XXXX" maxLength={30} value={invitation} {...shared} />
       </label>
-      <Complaint text={problem} />
       <p class="soft">{text('consent.nothingRecorded')}</p>
       <div class="row">
+        <Complaint text={problem} />
         <Button label={text('continue')} class="primary" onClick={submit} />
         <Button label={text('consent.decline')} onClick={decline} />
       </div>

@@ -1,4 +1,3 @@
-import 'threepoint-ui/styles/document.css';
 import { render } from 'preact';
 import { useLayoutEffect, useState } from 'preact/hooks';
 import { reasonOf } from 'threepoint/core';
