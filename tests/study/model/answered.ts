@@ -23,7 +23,7 @@ const sides = ['paper', 'ik'] as const;
 export const compareAnswers = (rows: readonly AnswerRow[], conditions: readonly [string, string] = sides) =>
   compareConditions(answerMeasures(rows), conditions, {});
 
-/** Compares the scores of every task under the paper's network and IK, with points and per cent as separate families. */
+/** Compares the scores of every task under the paper's network and IK, in points and, apart from them, in per cent. */
 export const compareScores = (rows: readonly TrialRow[]) => ({
   points: compareConditions(scoreMeasures(rows, 'points'), sides, {}),
   percent: compareConditions(scoreMeasures(rows, 'percent'), sides, {}),

@@ -46,9 +46,9 @@ export const hypothesisAbout = (
       conditions.includes(first) && conditions.includes(second) && measures.includes(measure),
   ) ?? null;
 
-/** Returns what a hypothesis claims: "paper and ik are equivalent within ±0.5". */
-export const claimOf = ({ conditions, margin }: Hypothesis): string =>
-  `${conditions.join(' and ')} ${margin === undefined ? 'differ' : `are equivalent within ±${margin}`}`;
+/** Returns what a hypothesis claims: "paper and ik are equivalent within ±0.5". `labelOf` names a condition. */
+export const claimOf = ({ conditions, margin }: Hypothesis, labelOf = (id: string) => id): string =>
+  `${conditions.map(labelOf).join(' and ')} ${margin === undefined ? 'differ' : `are equivalent within ±${margin}`}`;
 
 /**
  * Throws a ValidationError if a hypothesis compares a condition with itself or with one that the plan lacks, or if two

@@ -1,6 +1,6 @@
 import type { Comparison } from '../../model/results/compare-conditions';
 import { type Column, numberColumn, Table, textColumn } from '../table';
-import { fixed, meanCell, measureCell, none, pText } from './result-cells';
+import { fixed, meanCell, measureCell, pText } from './result-cells';
 import type { ShownComparison } from './shown-results';
 
 /** The headings of tests of conditions, and of tests between cohorts. */
@@ -22,41 +22,12 @@ const testHeads = {
 const isSignificant = ({ holmP }: Comparison) => (holmP ?? 1) < 0.05;
 const holmText = (one: Comparison) => `${pText(one.holmP)}${isSignificant(one) ? ' *' : ''}`;
 
-/** Returns what the planned tests of a measure show together. */
-function findingOf(one: Comparison): string {
-  const differs = isSignificant(one);
-  const within = (one.equivalenceHolmP ?? 1) < 0.05;
-  if (differs) return within ? 'a difference within the margin' : 'a difference';
-  return within ? 'equivalent' : 'undecided';
-}
-
-const equivalenceTitle = 'The mean difference with its 90 % interval, which lies within the margin if p < .05';
-
-/** The columns of planned tests of hypotheses. */
-const hypothesisColumns: readonly Column<Comparison>[] = [
-  textColumn('Hypothesis', ({ hypothesis }) => hypothesis?.id ?? none),
-  numberColumn('margin', ({ hypothesis }) => (hypothesis?.margin === undefined ? none : `±${hypothesis.margin}`)),
-  numberColumn(
-    'equivalence',
-    ({ test, equivalence }) => equivalence && meanCell(test?.meanDifference, equivalence.interval, 2),
-    equivalenceTitle,
-  ),
-  numberColumn('p (equivalence)', ({ equivalence }) => pText(equivalence?.p), 'The larger p of two one-sided t-tests'),
-  numberColumn(
-    'Holm p (equivalence)',
-    (one) => pText(one.equivalenceHolmP),
-    'Adjusted over the tests of equivalence in this table',
-  ),
-  textColumn('finding', findingOf),
-];
-
 /** Returns the columns of a table of comparisons; `tagged`: planned ones are marked. */
 function columnsOf({ results, labels, between }: ShownComparison, tagged: boolean): readonly Column<Comparison>[] {
   const heads = between ? testHeads.between : testHeads.paired;
   const [d, dTitle] = heads.d;
   const [ranks, ranksTitle] = heads.ranks;
   const effectTitle = `Rank-biserial correlation, the effect size of ${ranks}, with its 95 % interval`;
-  const claimed = tagged || results.study.plan.hypotheses === undefined || between ? [] : hypothesisColumns;
   const nText = ({ first, second }: Comparison['values']) =>
     between ? `${first.length}, ${second.length}` : first.length;
   return [
@@ -74,7 +45,6 @@ function columnsOf({ results, labels, between }: ShownComparison, tagged: boolea
     numberColumn(`p (${ranks})`, (one) => pText(one.ranks?.p), 'Two-sided, of Wilcoxon’s test'),
     numberColumn(`Holm p (${ranks})`, (one) => pText(one.ranksHolmP), 'Wilcoxon’s p adjusted over the family'),
     numberColumn('Holm p', holmText, 'The t-test’s p adjusted over the family'),
-    ...claimed,
   ];
 }
 

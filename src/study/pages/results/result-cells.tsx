@@ -1,7 +1,6 @@
 import { gameNames, games } from 'threepoint-games/all';
 import { offerDownload } from 'threepoint-ui';
 import { Button } from 'threepoint-ui/controls';
-import { claimOf, type PlannedTests } from '../../model/plan/hypotheses';
 import { shippedQuestionnaires } from '../../model/questionnaires/questionnaires';
 import { isPlanned, type MeasureName } from '../../model/results/measures';
 import { type Table, tidyCsv } from '../../model/tables/tidy-csv';
@@ -52,18 +51,6 @@ export const csvButton = (table: Table, file: string, label = 'CSV') => (
     onClick={() => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table))}
   />
 );
-
-/** The hypotheses of a plan about two conditions. */
-export function HypothesisList({ sides, plan }: { readonly sides: readonly string[]; readonly plan: PlannedTests }) {
-  const about = (plan.hypotheses ?? []).filter(({ conditions }) => conditions.every((id) => sides.includes(id)));
-  return (
-    <ul>
-      {about.map((hypothesis) => (
-        <li>{`${hypothesis.id}: ${hypothesis.text} (Claim: ${claimOf(hypothesis)}.)`}</li>
-      ))}
-    </ul>
-  );
-}
 
 /** The note below planned tests. */
 export const PlannedNote = () => (

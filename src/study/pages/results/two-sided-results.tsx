@@ -4,7 +4,8 @@ import type { ByFamily } from '../../model/results/exported-results';
 import { type ComparedSides, cohortsTable, conditionsTable } from '../../model/results/result-tables';
 import { comparedTable } from './compared-tables';
 import { chartFigures, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
-import { csvButton, HypothesisList, PlannedNote } from './result-cells';
+import { hypothesisResults } from './hypothesis-results';
+import { csvButton, PlannedNote } from './result-cells';
 import type { ShownComparison, ShownResults } from './shown-results';
 
 const withIntervals = 'means with 95 % confidence intervals, and tests';
@@ -57,7 +58,7 @@ function twoSides(
         return (
           <>
             <h3>{between ? `${heading}, between cohorts` : heading}</h3>
-            {name === 'planned' && !between && <HypothesisList sides={sides.sides} plan={results.study.plan} />}
+            {name === 'planned' && hypothesisResults(results, comparisons)}
             {charts.map((chart) => chartFigures(compared, chart))}
             {comparedTable(compared, captions[name], comparisons)}
             <div class="bar">{csvButton(table, results.fileOf(file))}</div>
