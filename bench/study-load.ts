@@ -37,7 +37,7 @@ const flushMs = Number(options['flush-ms'] ?? 0);
 type Times = Map<string, number[]>;
 
 function remotePlan(): StudyPlan {
-  const paper = parsePlan(paperFile, 'paper.json');
+  const { hypotheses: _, ...paper } = parsePlan(paperFile, 'paper.json');
   const tasks = paper.tasks.filter(({ groupSize }) => groupSize === 1);
   return { ...paper, id: 'remote', participants: count, tasks };
 }

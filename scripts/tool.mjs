@@ -67,8 +67,8 @@ const programs = {
   'study:power': {
     program: 'src/study/cli/power/main.ts',
     usage:
-      'npm run tool -- study:power --effect 0.5 [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed 1]',
-    options: { texts: ['effect', 'design', 'power', 'alpha', 'studies', 'seed'] },
+      'npm run tool -- study:power --effect 0.5 [--margin 0.5] [--design paired|between] [--power 0.8] [--alpha 0.05] [--studies 10000] [--seed 1]',
+    options: { texts: ['effect', 'margin', 'design', 'power', 'alpha', 'studies', 'seed'] },
     argumentsOf: ({ rest: _, ...given }) => [JSON.stringify(given)],
   },
   /** Simulates a whole study, with simulated participants in the real sessions, store and exports (docs/study.md). */

@@ -31,7 +31,7 @@ async function simulateOn(origin: string, file: unknown, effects: Readonly<Recor
 }
 
 test('results of fifteen simulated participants; export, delete, export', async ({ page, origin }) => {
-  const { plan } = await simulateOn(origin, shippedPlan('paper'), { learned: 0.8 });
+  const { plan } = await simulateOn(origin, shippedPlan('paper'), { paper: 0.8 });
   await openResults(page, plan.id);
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
   for (const name of [/Archery: questionnaire, means/, /Ball game: questionnaire, means/, /Archery: scores, means/]) {
@@ -55,6 +55,8 @@ test('results of fifteen simulated participants; export, delete, export', async 
   );
   expect(shown.length).toBeGreaterThan(8);
   for (const names of shown) expect(names).toEqual(labels);
+  await expect(page.getByRole('row', { name: /^H1 Q6 naturalness 15 ±0\.5 / })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^H3 Ball game, points 5 – / })).toBeVisible();
   await page.screenshot({ path: 'artifacts/screenshots/study-results.png', fullPage: true });
   // The last column, Holm's p, is in sight on a screen of 960 pixels, and paper cuts nothing off.
   const cutOff = () =>
@@ -74,8 +76,8 @@ test('results of fifteen simulated participants; export, delete, export', async 
     return { name: download.suggestedFilename(), content: readFileSync(await download.path()) };
   };
   const csv = await saved(page.getByRole('button', { name: 'CSV' }).first().click());
-  expect(csv.name).toBe(`SIMULATED-${plan.id}-answers-compared.csv`);
-  expect(csv.content.toString()).toContain('TRUE,Q12,preference');
+  expect(csv.name).toBe(`SIMULATED-${plan.id}-planned-compared.csv`);
+  expect(csv.content.toString()).toContain('TRUE,Q11,manipulation');
   // Saved figures are light, whatever the page is.
   await page.emulateMedia({ colorScheme: 'dark' });
   const svg = await saved(page.getByRole('button', { name: 'SVG' }).first().click());

@@ -73,7 +73,7 @@ export function shortStudy(
   game = 'archery',
   trialSeconds = 5,
 ): StudyPlan {
-  const { tasks, ...plan } = shippedPlan(of, id);
+  const { tasks, hypotheses: _, ...plan } = shippedPlan(of, id);
   return {
     ...plan,
     participants: 3,

@@ -9,7 +9,7 @@ import { paperPlan } from './model/studies';
 
 /** The paper's study with one task: this game, for groups of two. */
 function touchPlan() {
-  const { planned: _, tasks, ...paper } = paperPlan();
+  const { hypotheses: _, tasks, ...paper } = paperPlan();
   const [task] = tasks;
   const touch = { ...task, id: 'touch', game: 'touch', groupSize: 2, questionnaire: 'touch' };
   return checkedPlan({ ...paper, participants: 8, tasks: [touch] });

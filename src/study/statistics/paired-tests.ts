@@ -1,13 +1,26 @@
 import { signedRankCdf } from './distributions';
 import { noncentralityOfT } from './noncentral';
 import { approximateP, cubesOf, exactBelow, type RankTest, rankBiserialInterval, ranksOf } from './ranks';
-import { meanSummary, roundingOf, type TTest, twoSidedP } from './summaries';
+import { criticalT, type Interval, meanSummary, oneSidedP, roundingOf, type TTest, twoSidedP } from './summaries';
 
-function rejectUnpaired(first: readonly number[], second: readonly number[]): void {
+/** Returns first − second, pair by pair. Throws if the lists differ in length or are empty. */
+function differencesOf(first: readonly number[], second: readonly number[]): readonly number[] {
   if (first.length !== second.length) {
     throw new Error(`paired values: ${first.length} of the first kind, ${second.length} of the second`);
   }
   if (first.length === 0) throw new Error('paired values: there are none');
+  return first.map((value, index) => value - (second[index] as number));
+}
+
+/**
+ * Returns the mean difference of pairs with its standard error, which is null if the differences do not vary, up to
+ * rounding.
+ */
+function meanDifferenceOf(first: readonly number[], second: readonly number[]) {
+  const { n, mean, standardDeviation, interval } = meanSummary(differencesOf(first, second));
+  const error = (standardDeviation ?? 0) / Math.sqrt(n);
+  const varies = error > roundingOf([...first, ...second]);
+  return { n, mean, interval, error: varies ? error : null };
 }
 
 /**
@@ -15,19 +28,42 @@ function rejectUnpaired(first: readonly number[], second: readonly number[]): vo
  * differences. Throws if the lists differ in length or are empty.
  */
 export function pairedTTest(first: readonly number[], second: readonly number[]): TTest {
-  rejectUnpaired(first, second);
-  const differences = first.map((value, index) => value - (second[index] as number));
-  const { n, mean, standardDeviation, interval } = meanSummary(differences);
+  const { n, mean, interval, error } = meanDifferenceOf(first, second);
   const df = n - 1;
-  const error = (standardDeviation ?? 0) / Math.sqrt(n);
-  if (standardDeviation === null || error <= roundingOf([...first, ...second])) {
-    return { meanDifference: mean, interval: null, df, t: null, p: null, d: null, dInterval: null };
-  }
+  if (error === null) return { meanDifference: mean, interval: null, df, t: null, p: null, d: null, dInterval: null };
   const t = mean / error;
   const noncentrality = noncentralityOfT(t, df);
   const root = Math.sqrt(n);
   const dInterval = noncentrality && { low: noncentrality.low / root, high: noncentrality.high / root };
-  return { meanDifference: mean, interval, df, t, p: twoSidedP(t, df), d: mean / standardDeviation, dInterval };
+  return { meanDifference: mean, interval, df, t, p: twoSidedP(t, df), d: t / root, dInterval };
+}
+
+/** A paired test of whether the mean difference is smaller than a margin in either direction. */
+export interface EquivalenceTest {
+  /** The largest mean difference that counts as none, in the unit of the values. */
+  readonly margin: number;
+  /** The 90 % interval of the mean difference: p is below .05 if it lies between −margin and margin. */
+  readonly interval: Interval | null;
+  /** The smaller t of the two one-sided tests, which decides; null if the differences do not vary; so is p. */
+  readonly t: number | null;
+  readonly p: number | null;
+}
+
+/** The significance level to which the interval of an equivalence test belongs. */
+const equivalenceLevel = 0.05;
+
+/**
+ * Computes two one-sided paired t-tests (Schuirmann, Journal of Pharmacokinetics and Biopharmaceutics 15, 1987): the
+ * larger p of R's `t.test(first, second, paired = TRUE, mu = -margin, alternative = "greater")` and `mu = margin,
+ * alternative = "less"`. Throws if the lists differ in length or are empty.
+ */
+export function equivalenceTest(first: readonly number[], second: readonly number[], margin: number): EquivalenceTest {
+  const { n, mean, error } = meanDifferenceOf(first, second);
+  if (error === null) return { margin, interval: null, t: null, p: null };
+  const df = n - 1;
+  const half = criticalT(1 - 2 * equivalenceLevel, df) * error;
+  const t = (margin - Math.abs(mean)) / error;
+  return { margin, interval: { low: mean - half, high: mean + half }, t, p: oneSidedP(t, df) };
 }
 
 /** Wilcoxon's signed-rank test. */
@@ -45,8 +81,7 @@ export interface SignedRankTest extends RankTest {
  * the lists differ in length or are empty.
  */
 export function signedRankTest(first: readonly number[], second: readonly number[]): SignedRankTest {
-  rejectUnpaired(first, second);
-  const all = first.map((value, index) => value - (second[index] as number));
+  const all = differencesOf(first, second);
   // The rounding error of large values shows in their small differences.
   const rounding = roundingOf([...first, ...second]);
   const differences = all.filter((difference) => Math.abs(difference) > rounding);

@@ -13,7 +13,12 @@ export interface PlannedTest {
    * The true difference: paired in standard deviations of the differences (d_z), between in those of the values (d_s).
    */
   readonly effect: number;
-  /** The two-sided significance level. */
+  /**
+   * The margin of a paired test of equivalence, in standard deviations of the differences; absent: differences are
+   * tested.
+   */
+  readonly margin?: number;
+  /** The significance level: two-sided, or of each of the two one-sided tests of equivalence. */
   readonly alpha: number;
 }
 
@@ -23,17 +28,18 @@ export interface Simulation {
   readonly studies: number;
 }
 
-/** The share of simulated studies that find the effect. */
+/** The share of simulated studies that find the effect, or the equivalence. */
 export interface Power {
+  /** The power of the t-test, or of the two one-sided t-tests of equivalence. */
   readonly t: number;
-  /** The power of Wilcoxon's tests: signed ranks for paired designs, rank sums between cohorts. */
-  readonly wilcoxon: number;
+  /** The power of Wilcoxon's tests: signed ranks for paired designs, rank sums between cohorts; null: equivalence. */
+  readonly wilcoxon: number | null;
 }
 
 /** Whether one simulated study finds the effect, by either test. */
 interface Finding {
   readonly t: boolean;
-  readonly wilcoxon: boolean;
+  readonly wilcoxon: boolean | null;
 }
 
 /** Drawn values are not rounded, since the p of a statistic holds without ties. */
@@ -51,6 +57,20 @@ function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => nu
   };
 }
 
+function equivalenceStudy(
+  margin: number,
+  { effect, alpha }: PlannedTest,
+  n: number,
+  normal: () => number,
+): () => Finding {
+  const critical = criticalT(1 - 2 * alpha, n - 1);
+  return () => {
+    const differences = Array.from({ length: n }, () => effect + normal());
+    const t = ((margin - Math.abs(meanOf(differences))) / deviationOf(differences)) * Math.sqrt(n);
+    return { t: t >= critical, wilcoxon: null };
+  };
+}
+
 function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
   const pOf = cached(rankSumPs(n, n));
   return () => {
@@ -64,20 +84,21 @@ function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => n
   };
 }
 
+function studyOf(planned: PlannedTest, n: number, normal: () => number): () => Finding {
+  if (planned.margin !== undefined) return equivalenceStudy(planned.margin, planned, n, normal);
+  return planned.design === 'paired' ? pairedStudy(planned, n, normal) : betweenStudy(planned, n, normal);
+}
+
 /**
  * Returns the power of a study of n participants (between: n in each cohort, at least 2) with normally distributed
  * values. The same seed gives the same power.
  */
 export function simulatedPower(planned: PlannedTest, n: number, { seed, studies }: Simulation): Power {
   const normal = createNormalRandom(seed + 7919 * n);
-  const study = planned.design === 'paired' ? pairedStudy(planned, n, normal) : betweenStudy(planned, n, normal);
-  const found = { t: 0, wilcoxon: 0 };
-  for (let i = 0; i < studies; i++) {
-    const finding = study();
-    found.t += Number(finding.t);
-    found.wilcoxon += Number(finding.wilcoxon);
-  }
-  return { t: found.t / studies, wilcoxon: found.wilcoxon / studies };
+  const study = studyOf(planned, n, normal);
+  const findings = Array.from({ length: studies }, study);
+  const share = (test: 't' | 'wilcoxon') => findings.filter((finding) => finding[test]).length / studies;
+  return { t: share('t'), wilcoxon: planned.margin === undefined ? share('wilcoxon') : null };
 }
 
 /** A row of the table from which a number of participants is chosen. */
@@ -89,7 +110,7 @@ export interface PowerRow extends Power {
 export const maxSimulated = 1000;
 
 /**
- * Returns the power of growing studies, from few participants to the first at which both tests reach `power`, or to
+ * Returns the power of growing studies, from few participants to the first at which all tests reach `power`, or to
  * `maxSimulated`. Beyond a hundred, steps are a twentieth of the number.
  */
 export function powerTable(planned: PlannedTest, power: number, simulation: Simulation): readonly PowerRow[] {
@@ -97,7 +118,7 @@ export function powerTable(planned: PlannedTest, power: number, simulation: Simu
   for (let n = 4; n <= maxSimulated; n += n < 100 ? 1 : Math.floor(n / 20)) {
     const row = { n, ...simulatedPower(planned, n, simulation) };
     rows.push(row);
-    if (Math.min(row.t, row.wilcoxon) >= power) break;
+    if (Math.min(row.t, row.wilcoxon ?? 1) >= power) break;
   }
   return rows;
 }

@@ -67,6 +67,9 @@ export function meanSummary(values: readonly number[]): MeanSummary {
 /** Returns the probability of a t at least this far from 0 on either side, with df degrees of freedom. */
 export const twoSidedP = (t: number, df: number): number => incompleteBeta(df / (df + t * t), df / 2, 0.5);
 
+/** Returns the probability of a t at least this large, with df degrees of freedom. */
+export const oneSidedP = (t: number, df: number): number => (t < 0 ? 1 - twoSidedP(t, df) / 2 : twoSidedP(t, df) / 2);
+
 /** The share of the largest input up to which two values are equal but for rounding. */
 const equalWithin = 1e-9;
 

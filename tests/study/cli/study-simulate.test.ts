@@ -76,8 +76,8 @@ describe('a simulated study', () => {
   });
 
   test('shows the analysis what was put in: answers and scores', () => {
-    const performance = { ...statedPerformanceModel, hitChance: [0.6, 0.5, 0.4, 0.3], effects: { learned: 0.5 } };
-    const records = simulate({ answers: answerModelWith({ learned: 1.5 }), performance });
+    const performance = { ...statedPerformanceModel, hitChance: [0.6, 0.5, 0.4, 0.3], effects: { paper: 0.5 } };
+    const records = simulate({ answers: answerModelWith({ paper: 1.5 }), performance });
     const answers = compareAnswers(answersIn(records, plan));
     expect(answers.comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05).length).toBeGreaterThan(6);
     const [archery] = compareScores(trialsIn(records)).points.comparisons;
@@ -159,7 +159,7 @@ describe('npm run tool -- study:simulate', () => {
 
   test.each<[string[], string]>([
     [['--effect', 'sideways=1'], 'there is no condition or cohort "sideways"'],
-    [['--effect', 'learned=much'], '--effect: expected a number'],
+    [['--effect', 'paper=much'], '--effect: expected a number'],
     [['--participants', '16'], 'cannot be divided into groups of 3'],
     [['--participants', 'many'], '--participants: expected a whole number'],
     [['--plan', 'none.json'], 'there is no file'],

@@ -17,14 +17,14 @@ export const rowsOf = (participants: readonly (readonly number[])[]): readonly A
     })),
   );
 
-const sides = ['learned', 'ik'] as const;
+const sides = ['paper', 'ik'] as const;
 
 /** Compares every question or scale with numeric answers under two conditions. */
 export const compareAnswers = (rows: readonly AnswerRow[], conditions: readonly [string, string] = sides) =>
-  compareConditions(answerMeasures(rows), conditions);
+  compareConditions(answerMeasures(rows), conditions, {});
 
-/** Compares the scores of every task under the learned method and IK, with points and per cent as separate families. */
+/** Compares the scores of every task under the paper's network and IK, in points and, apart from them, in per cent. */
 export const compareScores = (rows: readonly TrialRow[]) => ({
-  points: compareConditions(scoreMeasures(rows, 'points'), sides),
-  percent: compareConditions(scoreMeasures(rows, 'percent'), sides),
+  points: compareConditions(scoreMeasures(rows, 'points'), sides, {}),
+  percent: compareConditions(scoreMeasures(rows, 'percent'), sides, {}),
 });

@@ -57,7 +57,7 @@ describe('cohorts', () => {
 
   test('leave the orders of plans without them as studies have begun with them', () => {
     const names = ordersByGroup(paperPlan(), archery).map((order) => order.map(({ id }) => id).join(' '));
-    expect(names.slice(0, 4)).toEqual(['ik learned', 'learned ik', 'ik learned', 'learned ik']);
+    expect(names.slice(0, 4)).toEqual(['ik paper', 'paper ik', 'ik paper', 'paper ik']);
   });
 
   test('give each participant their body under every condition, with one condition too, and in practice', () => {
@@ -93,26 +93,26 @@ describe('the remarks before the first participant', () => {
 });
 
 describe('a plan whose bodies are not clear names field and reason', () => {
-  const [ik, learned] = paperPlan().conditions as [StudyCohort, StudyCohort];
+  const [ik, network] = paperPlan().conditions as [StudyCohort, StudyCohort];
   test.each<[string, Parameters<typeof paperPlan>[0], string]>([
     [
       'a latency that no one could play with',
-      { conditions: [{ ...ik, latencyMs: 201 }, learned] },
+      { conditions: [{ ...ik, latencyMs: 201 }, network] },
       'conditions[0].latencyMs: expected a number from 0 to 200',
     ],
     [
       'no method',
-      { conditions: [ik, learned].map(({ estimator: _, ...other }) => other) },
+      { conditions: [ik, network].map(({ estimator: _, ...other }) => other) },
       'conditions[0].estimator: is missing',
     ],
     [
       'an avatar in one condition alone, which would follow from the headset in the other',
-      { conditions: [ik, { ...learned, avatar: 'man' }] },
+      { conditions: [ik, { ...network, avatar: 'man' }] },
       'conditions[0].avatar: is missing, and conditions[1] has it',
     ],
     [
       'the same said by conditions and cohorts',
-      { cohorts: bodies(2), conditions: [ik, learned].map((one) => ({ ...one, avatar: 'man' as const })) },
+      { cohorts: bodies(2), conditions: [ik, network].map((one) => ({ ...one, avatar: 'man' as const })) },
       'conditions[0].avatar: is set by cohorts already',
     ],
     ['more cohorts than groups', { cohorts: bodies(6) }, 'cohorts: 5 groups of 3 do not fill 6 cohorts'],

@@ -57,7 +57,7 @@ describe('an analysis of simulated studies', () => {
 
   test('finds an effect of 1.5 points in most questions of every study, in its direction', () => {
     for (let study = 0; study < 20; study++) {
-      const { comparisons } = compareAnswers(simulatedAnswers(answerModelWith({ learned: 1.5 }), study));
+      const { comparisons } = compareAnswers(simulatedAnswers(answerModelWith({ paper: 1.5 }), study));
       const found = comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05);
       expect(found.length).toBeGreaterThan(6);
       for (const { test: tested } of found) expect(tested?.t).toBeGreaterThan(0);
@@ -65,7 +65,7 @@ describe('an analysis of simulated studies', () => {
   });
 
   test('finds an effect in the one question that has it', () => {
-    const model = { ...nullAnswerModel, effects: { learned: { Q9: 2 } } };
+    const model = { ...nullAnswerModel, effects: { paper: { Q9: 2 } } };
     for (let study = 0; study < 20; study++) {
       const { comparisons } = compareAnswers(simulatedAnswers(model, study));
       const strongest = comparisons.toSorted((a, b) => (a.test?.p ?? 1) - (b.test?.p ?? 1))[0];
@@ -89,12 +89,12 @@ describe('a comparison', () => {
 
   test('is of people who answered under both conditions, and names others with the reason', () => {
     const { comparisons, excluded } = compareAnswers([
-      answer('P01', 'learned', 5),
+      answer('P01', 'paper', 5),
       answer('P01', 'ik', 3),
-      answer('P02', 'learned', 4),
-      answer('P03', 'learned', 4),
+      answer('P02', 'paper', 4),
+      answer('P03', 'paper', 4),
       answer('P03', 'ik', 1, 'voided: battery'),
-      answer('P04', 'learned', 4),
+      answer('P04', 'paper', 4),
       answer('P04', 'ik', 4),
     ]);
     expect(comparisons[0]?.values).toEqual({ first: [5, 4], second: [3, 4] });
@@ -125,7 +125,7 @@ describe('a comparison', () => {
     });
     const rows = [1, 2, 3, 4, 5].flatMap((group) =>
       ['a', 'b', 'c'].flatMap((member) => [
-        trial(`${member}${group}`, group, 'learned', 14 + group),
+        trial(`${member}${group}`, group, 'paper', 14 + group),
         trial(`${member}${group}`, group, 'ik', 13 + (group % 3)),
       ]),
     );
@@ -141,7 +141,7 @@ describe('a comparison', () => {
     const answers = [4, 5, 6, 8].flatMap((sum, index) =>
       [0, 1, 2].flatMap((round) => {
         const part = Math.floor((sum + round) / 3);
-        return [answer(`P${index}`, 'ik', part), answer(`P${index}`, 'learned', part + (round === 0 ? 1 : 0))];
+        return [answer(`P${index}`, 'ik', part), answer(`P${index}`, 'paper', part + (round === 0 ? 1 : 0))];
       }),
     );
     const [compared] = compareAnswers(answers).comparisons;
@@ -166,7 +166,7 @@ describe('a comparison', () => {
           }),
         ),
       );
-    const rows = [...trial('learned', threeRounds.first), ...trial('ik', threeRounds.second)];
+    const rows = [...trial('paper', threeRounds.first), ...trial('ik', threeRounds.second)];
     const sums = (rounds: readonly (readonly number[])[]) =>
       rounds.map((own) => own.reduce((sum, score) => sum + score, 0));
     const right = signedRankTest(sums(threeRounds.first), sums(threeRounds.second));

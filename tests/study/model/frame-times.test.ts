@@ -56,11 +56,11 @@ test('tutorials and voided blocks do not count', () => {
     trial('P02', 'ik', [90]),
     voided,
     trial('P02', 'ik', [4], 2),
-    trial('P01', 'learned', [3]),
+    trial('P01', 'paper', [3]),
   ]);
   expect(rows.map(({ condition, maxMs }) => [condition, maxMs])).toEqual([
     ['ik', 4],
-    ['learned', 3],
+    ['paper', 3],
   ]);
 });
 

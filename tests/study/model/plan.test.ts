@@ -48,7 +48,7 @@ describe('the shipped study', () => {
   test('is the one of the paper', () => {
     const plan = parsePlan(paperFile, 'paper.json');
     expect(plan.participants).toBe(15);
-    expect(plan.conditions.map(({ estimator }) => estimator)).toEqual(['ik', 'learned']);
+    expect(plan.conditions.map(({ estimator }) => estimator)).toEqual(['ik', 'paper']);
     const [archery, ball] = plan.tasks as [StudyTask, StudyTask];
     expect([archery.trialSeconds, archery.restSeconds, archery.questionnaireSeconds]).toEqual([70, 60, 420]);
     expect([ball.trialSeconds, ball.restSeconds, ball.questionnaireSeconds]).toEqual([90, 60, 420]);

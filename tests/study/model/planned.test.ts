@@ -15,7 +15,7 @@ const measures = measuresIn(records, plan);
 test('a plan’s named questions are a family: Holm applies to them alone, whatever else was asked', () => {
   const { answers, scales, planned } = measures;
   expect(answers.length + scales.length).toBeGreaterThan(15);
-  const family = compareConditions(planned, ['late-200', 'late-0']).comparisons;
+  const family = compareConditions(planned, ['late-200', 'late-0'], plan).comparisons;
   expect(family.map(({ of }) => of)).toEqual(['ownership', 'agency', 'raw']);
   expect(family.map(({ holmP }) => holmP)).toEqual(holm(family.map(({ test }) => test?.p ?? null)));
   const analyses = overallComparisons(planned, plan);

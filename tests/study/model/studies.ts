@@ -14,11 +14,11 @@ const shippedFile = (name: string): string =>
 
 export const paperFile = shippedFile('paper');
 
-/** The shipped study, with changes. */
-export const paperPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
-  ...parsePlan(paperFile, 'paper.json'),
-  ...changes,
-});
+/** The shipped study, with changes; other tasks or conditions leave out its hypotheses, which are about its own. */
+export function paperPlan(changes: Partial<StudyPlan> = {}): StudyPlan {
+  const { hypotheses = [], ...plan } = parsePlan(paperFile, 'paper.json');
+  return { ...plan, ...(!changes.tasks && !changes.conditions && { hypotheses }), ...changes };
+}
 
 /** Returns a copy of a plan with another value at a path, as `tasks.0.title.de`; undefined removes the field. */
 export function planWith(plan: object, path: string, value: unknown): unknown {
@@ -73,6 +73,9 @@ function answerFor(form: AnswerForm, value: number): Answer {
   const [from, to] = range;
   return kind.simulate(form, Math.min(1, Math.max(0, (value - from) / (to - from))), () => 0);
 }
+
+/** The third shipped study: three bodies and hands alone. */
+export const threeBodiesPlan = (): StudyPlan => parsePlan(shippedFile('three-bodies'), 'three-bodies.json');
 
 /** Returns the records of a complete session; `motion` is the consent to recordings. */
 export function completed(participant = 'P01', { simulated = false, motion = false } = {}): StudyRecord[] {

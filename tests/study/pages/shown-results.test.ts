@@ -15,7 +15,7 @@ test('two tasks with like questions stand side by side in a figure, each with it
   );
   const results = shownResults({ plan, simulated: true, records });
   const { scales, points } = results.measures;
-  const compared = (measures: typeof scales) => compareConditions(measures, ['late-200', 'late-0']).comparisons;
+  const compared = (measures: typeof scales) => compareConditions(measures, ['late-200', 'late-0'], plan).comparisons;
   const charts = scaleCharts({
     results,
     between: false,

@@ -56,7 +56,7 @@ test.each<[string, Uint8Array, RegExp]>([
 test('the table of comparisons has a row per question, full precision, and the mark “simulated”', () => {
   const { comparisons } = compareAnswers(answersIn(records, plan));
   const facts = { family: 'explored', simulated: true, plan } as const;
-  const csv = tidyCsv(conditionsTable('answers', [{ sides: ['learned', 'ik'], comparisons }], facts))
+  const csv = tidyCsv(conditionsTable('answers', [{ sides: ['paper', 'ik'], comparisons }], facts))
     .trimEnd()
     .split('\r\n');
   expect(csv).toHaveLength(13);

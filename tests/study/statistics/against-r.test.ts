@@ -3,7 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { type Effect, varianceAnalysis } from '../../../src/study/statistics/analysis-of-variance';
 import { rankSumCounts, rankSumTest, welchTest } from '../../../src/study/statistics/between-tests';
 import { noncentralF, noncentralT } from '../../../src/study/statistics/noncentral';
-import { pairedTTest, signedRankTest } from '../../../src/study/statistics/paired-tests';
+import { equivalenceTest, pairedTTest, signedRankTest } from '../../../src/study/statistics/paired-tests';
 import { friedmanTest, kruskalWallisTest } from '../../../src/study/statistics/rank-analyses';
 import { meanOf } from '../../../src/study/statistics/summaries';
 import { evenly, seed } from '../../threepoint/core/arbitraries';
@@ -124,6 +124,36 @@ test("the effect of a paired test and its interval, by R's pt: sleep", () => {
   expect(d).toBeCloseTo(-1.284558, 6);
   expectAsInR(dInterval?.low, -2.11801651397707);
   expectAsInR(dInterval?.high, -0.414627756380144);
+});
+
+describe('equivalence: the larger p of R’s t.test(first, second, paired = TRUE, mu = ∓margin, alternative = …)', () => {
+  test('a difference of 1.58 within 2.5 but not within 1: sleep', () => {
+    const within = equivalenceTest(sleep.first, sleep.second, 2.5);
+    expectAsInR(within.t, 2.36528953715916);
+    expectAsInR(within.p, 0.0211168602465007);
+    // t.test(…, conf.level = 0.9)
+    expectAsInR(within.interval?.low, -2.29300526702928);
+    expectAsInR(within.interval?.high, -0.866994732970716);
+    expectAsInR(equivalenceTest(sleep.second, sleep.first, 2.5).p, 0.0211168602465007);
+    const beyond = equivalenceTest(sleep.first, sleep.second, 1);
+    expectAsInR(beyond.t, -1.49116079516556);
+    expectAsInR(beyond.p, 0.914944114551289);
+  });
+
+  test('a positive difference, and none: depression, and answers from 1 to 5', () => {
+    const changed = equivalenceTest(depression.first, depression.second, 0.8);
+    expectAsInR(changed.t, 2.58713628815122);
+    expectAsInR(changed.p, 0.0161281999909529);
+    const first = [5, 4, 4, 5, 3, 4, 5, 4, 3, 4, 5, 4, 4, 3, 5];
+    const second = [4, 4, 5, 4, 3, 4, 5, 3, 4, 4, 5, 4, 4, 4, 5];
+    const alike = equivalenceTest(first, second, 0.5);
+    expectAsInR(alike.p, 0.00518968887905497);
+    expectAsInR(alike.interval?.high, 0.297715751029322);
+  });
+
+  test('has no t where all differences are alike', () => {
+    expect(equivalenceTest([4, 5], [3, 4], 2)).toEqual({ margin: 2, interval: null, t: null, p: null });
+  });
 });
 
 test('signed ranks of means of three rounds compare differences to nine digits, as R’s digits.rank = 9', () => {

@@ -123,8 +123,9 @@ describe("Holm's correction", () => {
     ]);
   });
 
-  test('counts tests without a p in the family', () => {
+  test('counts tests without a p in the family, but not those that were not made', () => {
     expect(holm([0.01, null, null])).toEqual([0.03, null, null]);
+    expect(holm([0.01, undefined, 0.02])).toEqual([0.02, null, 0.02]);
   });
 
   test('never makes a p smaller, never more than 1, and keeps their order', () => {

@@ -2,6 +2,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { ValidationError } from 'threepoint/core';
 import { ConfigurationError } from 'threepoint-http';
 import { embodimentInWords } from '../../model/plan/embodiment';
+import { claimOf } from '../../model/plan/hypotheses';
 import { languagesOf, participantsOf, readPlan, type StudyPlan, studyTitle, taskTitle } from '../../model/plan/plan';
 import { durationOf, outlineOf } from '../../model/plan/plan-outline';
 import { cohortCounts, orderCounts, remarksOn } from '../../model/plan/plan-remarks';
@@ -33,7 +34,10 @@ function summary(plan: StudyPlan): readonly string[] {
       lines.push(`${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: ${counts.join('; ')}.`);
     }
   }
-  const { remote, askToStop = [] } = plan;
+  const { hypotheses = [], remote, askToStop = [] } = plan;
+  for (const hypothesis of hypotheses) {
+    lines.push(`Hypothesis ${hypothesis.id}: ${claimOf(hypothesis)} in ${hypothesis.measures.join(', ')}.`);
+  }
   if (remote) {
     lines.push(
       `Participants take part alone (remote): device, ${remote.freeSpace} m of room and height are checked. They read: ${remote.contact}`,

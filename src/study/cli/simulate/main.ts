@@ -3,6 +3,7 @@ import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { ValidationError } from 'threepoint/core';
 import { ConfigurationError, readSoftwareVersion } from 'threepoint-http';
+import { claimOf } from '../../model/plan/hypotheses';
 import { checkedPlan, parsePlan, type StudyPlan } from '../../model/plan/plan';
 import type { StudyRecord } from '../../model/records/study-record';
 import { compareCohorts } from '../../model/results/compare-cohorts';
@@ -72,11 +73,25 @@ function cohortFindings(
   return [`${other.id} − ${baseline.id}, Welch’s t-tests between cohorts, Holm over all questions (scores):`, ...lines];
 }
 
+/** Returns what became of each hypothesis of the plan. */
+const hypothesisFindings = ({ planned }: StudyMeasures, plan: StudyPlan): readonly string[] =>
+  (plan.hypotheses ?? []).flatMap((hypothesis) => {
+    const { comparisons } = compareConditions(planned, hypothesis.conditions, plan);
+    const own = comparisons.filter((one) => one.hypothesis === hypothesis);
+    return [
+      `${hypothesis.id}, ${claimOf(hypothesis)}; Holm over the planned measures:`,
+      ...own.map(({ of, test, holmP, equivalence, equivalenceHolmP }) => {
+        const within = equivalence && `; equivalence t = ${signed(equivalence.t)}, Holm ${pText(equivalenceHolmP)}`;
+        return `  ${of.padEnd(4)} difference ${signed(test?.meanDifference)}, t(${test?.df}) = ${signed(test?.t)}, Holm ${pText(holmP)}${within ?? ''}`;
+      }),
+    ];
+  });
+
 /** Returns all findings, line by line. */
 function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly string[] {
   const [baseline, other] = plan.conditions;
   const measures = measuresIn(records, plan);
-  const lines: string[] = [];
+  const lines = [...hypothesisFindings(measures, plan)];
   const all = overallComparisons(measures.answers, plan);
   if (all.length > 0) lines.push('Analyses of variance, Holm over all questions:');
   for (const { of, variance, holmP } of all) {
@@ -85,13 +100,14 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
   }
   lines.push(...cohortFindings(measures, plan));
   if (!baseline || !other) return lines;
-  const { comparisons } = compareConditions(measures.answers, [other.id, baseline.id]);
+  const { comparisons } = compareConditions(measures.answers, [other.id, baseline.id], plan);
   lines.push(`${other.id} − ${baseline.id}, paired t-tests, Holm over all questions:`);
   for (const { of, test, holmP } of comparisons) {
     const found = test?.t == null ? 'all differences alike' : `t(${test.df}) = ${signed(test.t)}, Holm ${pText(holmP)}`;
     lines.push(`  ${of.padEnd(4)} ${found}`);
   }
-  for (const { of, first, second, test } of compareConditions(measures.points, [other.id, baseline.id]).comparisons) {
+  const points = compareConditions(measures.points, [other.id, baseline.id], plan);
+  for (const { of, first, second, test } of points.comparisons) {
     const p = test?.p == null ? '' : `, ${pText(test.p)}`;
     const means = `${second?.mean.toFixed(2)} (${baseline.id}) and ${first?.mean.toFixed(2)} (${other.id}) points`;
     lines.push(`  ${of}: ${means}, n = ${first?.n}${p}`);

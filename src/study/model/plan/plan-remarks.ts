@@ -3,6 +3,7 @@ import { missingKeys, phraseKeys } from '../phrases/phrases';
 import { isNumeric, questionnaireNamed } from '../questionnaires/questionnaires';
 import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './allocation';
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
+import { plannedMeasures } from './hypotheses';
 import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
 
 /** Returns the number of participants in each cohort, by its id. */
@@ -98,7 +99,7 @@ const untranslatedRemarks = (plan: StudyPlan): readonly string[] =>
 
 /** Returns remarks about planned measures that no table of results can contain. */
 const untestedRemarks = (plan: StudyPlan): readonly string[] =>
-  (plan.planned ?? []).flatMap((measure) => {
+  plannedMeasures(plan).flatMap((measure) => {
     const [, of = '', id] = measure.split('/');
     const questionnaire = id === undefined ? null : questionnaireNamed(plan, of);
     if (!questionnaire || isNumeric(questionnaire, id ?? '')) return [];

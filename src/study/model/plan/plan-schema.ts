@@ -6,6 +6,7 @@ import { phrasesSchema } from '../phrases/phrase-schema';
 import { questionnaireSchema } from '../questionnaires/questionnaire-schema';
 import { stoppingRuleSchema } from '../questionnaires/stopping-rule';
 import { embodimentFields, estimatorSchema } from './embodiment';
+import { hypothesisSchema } from './hypotheses';
 import { remoteSchema } from './remote-setup';
 
 export const planFormat = 'threepoint-study';
@@ -104,9 +105,13 @@ export const planSchema = v.strictObject({
   askToStop: v.exactOptional(
     v.pipe(v.array(stoppingRuleSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),
   ),
+  /** The hypotheses; their measures are planned. */
+  hypotheses: v.exactOptional(
+    v.pipe(v.array(hypothesisSchema, 'expected a list of hypotheses'), v.maxLength(20, 'expected at most twenty')),
+  ),
   /**
-   * The planned measures, a family for Holm's correction; all others are exploratory. "archery/nasa-tlx/raw",
-   * "archery/score".
+   * Further planned measures, with those of the hypotheses a family for Holm's correction; all others are exploratory.
+   * "archery/nasa-tlx/raw", "archery/score".
    */
   planned: v.exactOptional(
     v.pipe(v.array(text(200), 'expected a list of measures'), v.maxLength(40, 'expected at most forty measures')),

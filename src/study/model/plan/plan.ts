@@ -12,6 +12,7 @@ import {
 } from '../questionnaires/questionnaires';
 import { checkStoppingRules } from '../questionnaires/stopping-rule';
 import { embodimentFieldsOf } from './embodiment';
+import { rejectUnclearHypotheses } from './hypotheses';
 import { planSchema } from './plan-schema';
 
 /** A study as its file has it. */
@@ -167,16 +168,22 @@ export function measuresOf(plan: StudyPlan): readonly string[] {
 }
 
 function rejectUnknownMeasures(plan: StudyPlan): void {
-  const { planned = [] } = plan;
+  const { planned = [], hypotheses = [] } = plan;
   const known = measuresOf(plan);
-  rejectRepeated(planned, (index) => `planned[${index}]`);
-  planned.forEach((measure, index) => {
-    if (known.includes(measure)) return;
-    throw new ValidationError(
-      `planned[${index}]`,
-      `"${measure}" is not measured: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
-    );
-  });
+  const lists = [
+    ['planned', planned],
+    ...hypotheses.map(({ measures }, index) => [`hypotheses[${index}].measures`, measures] as const),
+  ] as const;
+  for (const [field, measures] of lists) {
+    rejectRepeated(measures, (index) => `${field}[${index}]`);
+    measures.forEach((measure, index) => {
+      if (known.includes(measure)) return;
+      throw new ValidationError(
+        `${field}[${index}]`,
+        `"${measure}" is not measured: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
+      );
+    });
+  }
 }
 
 /**
@@ -215,6 +222,11 @@ export function checkedPlan(value: unknown): StudyPlan {
     }
   });
   rejectUnfilledCohorts(plan);
+  rejectRepeatedIds(plan.hypotheses ?? [], 'hypotheses');
+  rejectUnclearHypotheses(
+    plan.hypotheses ?? [],
+    plan.conditions.map(({ id }) => id),
+  );
   return plan;
 }
 

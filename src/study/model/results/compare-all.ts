@@ -62,12 +62,11 @@ export function compareAll(measures: readonly Measure[], conditions: readonly st
     const { of, asked, unit } = measure;
     return { of, asked, unit, ...analyse(measure, conditions) };
   });
-  return asFamily(
-    single,
-    ({ variance }) => {
+  return asFamily(single, {
+    holmP: ({ variance }) => {
       const effect = variance?.within ?? variance?.between ?? null;
       return effect?.correctedP ?? effect?.p ?? null;
     },
-    ({ ranks }) => ranks?.p ?? null,
-  );
+    ranksHolmP: ({ ranks }) => ranks?.p ?? null,
+  });
 }

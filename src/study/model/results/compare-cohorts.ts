@@ -22,10 +22,11 @@ export function compareCohorts(
     const { complete } = completeValues(measure, conditions);
     const valuesIn = (cohort: string) =>
       complete.flatMap(({ who, own }) => (measure.cohorts.get(who) === cohort ? [meanOf(own)] : []));
-    return { ...measure, values: { first: valuesIn(sides[0]), second: valuesIn(sides[1]) } };
+    return { ...measure, values: { first: valuesIn(sides[0]), second: valuesIn(sides[1]) }, hypothesis: null };
   });
-  return comparisonsOf(measured, (first, second) => ({
+  return comparisonsOf(measured, ({ first, second }) => ({
     test: welchTest(first, second),
     ranks: rankSumTest(first, second),
+    equivalence: null,
   }));
 }

@@ -1,8 +1,9 @@
 import { asFamily } from '../../statistics/holm';
-import { pairedTTest, signedRankTest } from '../../statistics/paired-tests';
+import { type EquivalenceTest, equivalenceTest, pairedTTest, signedRankTest } from '../../statistics/paired-tests';
 import type { RankTest } from '../../statistics/ranks';
 import { type MeanSummary, meanSummary, type TTest } from '../../statistics/summaries';
-import type { Exclusion, Measure, MeasureName } from './measures';
+import { type Hypothesis, hypothesisAbout, type PlannedTests } from '../plan/hypotheses';
+import { type Exclusion, type Measure, type MeasureName, nameInPlan } from './measures';
 
 /** The comparison of a measure under two conditions (paired tests) or between two cohorts: first − second. */
 export interface Comparison extends MeasureName {
@@ -17,10 +18,19 @@ export interface Comparison extends MeasureName {
   /** null: a side has no values. */
   readonly test: TTest | null;
   readonly ranks: RankTest | null;
+  /** What the plan claims about the measure under these conditions; null: nothing, or cohorts are compared. */
+  readonly hypothesis: Hypothesis | null;
+  /** null: a side has no values, or there is no hypothesis with a margin. */
+  readonly equivalence: EquivalenceTest | null;
   /** Adjusted over the family of comparisons made together. */
   readonly holmP: number | null;
   readonly ranksHolmP: number | null;
+  /** Adjusted over the tests of equivalence in the family. */
+  readonly equivalenceHolmP: number | null;
 }
+
+/** The tests of a comparison. */
+type Tests = Pick<Comparison, 'test' | 'ranks' | 'equivalence'>;
 
 export interface Results {
   readonly comparisons: readonly Comparison[];
@@ -45,34 +55,45 @@ function paired({ of, means }: Measure, [first, second]: readonly [string, strin
 
 /** Returns comparisons of measures as one family for Holm's correction; `tests` are those of two sides with values. */
 export const comparisonsOf = (
-  measured: readonly (MeasureName & Pick<Comparison, 'values'>)[],
-  tests: (first: readonly number[], second: readonly number[]) => Pick<Comparison, 'test' | 'ranks'>,
+  measured: readonly (MeasureName & Pick<Comparison, 'values' | 'hypothesis'>)[],
+  tests: (values: Comparison['values'], margin: number | undefined) => Tests,
 ): readonly Comparison[] =>
   asFamily(
-    measured.map(({ of, asked, unit, values }) => {
+    measured.map(({ of, asked, unit, values, hypothesis }) => {
       const [first, second] = [values.first, values.second].map((own) => (own.length === 0 ? null : meanSummary(own)));
-      const tested = first && second ? tests(values.first, values.second) : { test: null, ranks: null };
-      return { of, asked, unit, values, first: first ?? null, second: second ?? null, ...tested };
+      const untested = { test: null, ranks: null, equivalence: null };
+      const tested = first && second ? tests(values, hypothesis?.margin) : untested;
+      return { of, asked, unit, values, hypothesis, first: first ?? null, second: second ?? null, ...tested };
     }),
-    ({ test }) => test?.p ?? null,
-    ({ ranks }) => ranks?.p ?? null,
+    {
+      holmP: ({ test }) => test?.p ?? null,
+      ranksHolmP: ({ ranks }) => ranks?.p ?? null,
+      equivalenceHolmP: ({ hypothesis, equivalence }) =>
+        hypothesis?.margin === undefined ? undefined : (equivalence?.p ?? null),
+    },
   );
 
 /**
- * Compares measures between two conditions, first − second, as one family for Holm's correction. Only participants with
- * both values count; others are listed.
+ * Compares measures between two conditions, first − second, as one family for Holm's correction, with the plan's
+ * hypotheses about them. Only participants with both values count; others are listed.
  */
-export function compareConditions(measures: readonly Measure[], conditions: readonly [string, string]): Results {
+export function compareConditions(
+  measures: readonly Measure[],
+  conditions: readonly [string, string],
+  plan: PlannedTests,
+): Results {
   const excluded: Exclusion[] = [];
   const measured = measures.map((measure) => {
     const { values, alone } = paired(measure, conditions);
     for (const { condition, ...reason } of measure.voided) if (conditions.includes(condition)) excluded.push(reason);
     excluded.push(...alone);
-    return { ...measure, values };
+    const name = nameInPlan(measure);
+    return { ...measure, values, hypothesis: name === null ? null : hypothesisAbout(name, conditions, plan) };
   });
-  const comparisons = comparisonsOf(measured, (first, second) => ({
+  const comparisons = comparisonsOf(measured, ({ first, second }, margin) => ({
     test: pairedTTest(first, second),
     ranks: signedRankTest(first, second),
+    equivalence: margin === undefined ? null : equivalenceTest(first, second, margin),
   }));
   return { comparisons, excluded };
 }

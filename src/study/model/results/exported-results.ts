@@ -79,7 +79,7 @@ export function resultTables(records: readonly StudyRecord[], plan: StudyPlan): 
   const tablesOf = (name: string, families: readonly (readonly Measure[])[]): readonly Table[] => {
     const facts = { family: name === 'planned' ? 'planned' : 'explored', simulated, plan } as const;
     const pairs = pairsOf(plan.conditions).flatMap((sides) =>
-      families.map((family) => ({ sides, comparisons: compareConditions(family, sides).comparisons })),
+      families.map((family) => ({ sides, comparisons: compareConditions(family, sides, plan).comparisons })),
     );
     const cohorts = cohortComparisonsOf(plan).flatMap((compared) =>
       families.map((family) => ({ ...compared, comparisons: compareCohorts(family, compared) })),

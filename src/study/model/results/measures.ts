@@ -1,4 +1,5 @@
 import { meanOf } from '../../statistics/summaries';
+import { type PlannedTests, plannedMeasures } from '../plan/hypotheses';
 import type { StudyPlan } from '../plan/plan';
 import { questionnaireNamed } from '../questionnaires/questionnaires';
 import { type AnswerRow, rejectMixture, type TrialRow } from '../tables/study-tables';
@@ -23,10 +24,16 @@ export interface MeasureName {
   readonly unit: 'answer' | 'points' | 'percent';
 }
 
-/** Returns whether the plan names a measure; scores are planned in points. */
-export function isPlanned({ of, asked, unit }: MeasureName, { planned = [] }: Pick<StudyPlan, 'planned'>): boolean {
-  const name = asked ? `${asked.task}/${asked.questionnaire}/${asked.question}` : `${of}/score`;
-  return unit !== 'percent' && planned.includes(name);
+/** Returns the name of a measure in plans; null: a score in per cent, because plans name scores in points. */
+export function nameInPlan({ of, asked, unit }: MeasureName): string | null {
+  if (asked) return `${asked.task}/${asked.questionnaire}/${asked.question}`;
+  return unit === 'percent' ? null : `${of}/score`;
+}
+
+/** Returns whether the plan names a measure. */
+export function isPlanned(measure: MeasureName, plan: PlannedTests): boolean {
+  const name = nameInPlan(measure);
+  return name !== null && plannedMeasures(plan).includes(name);
 }
 
 /** Returns the questionnaire of a measure, and the question or scale of it that is measured; nothing for scores. */

@@ -76,7 +76,7 @@ export interface ComparedSides {
 interface TwoSides {
   /** The columns after those of the measure, and their cells. */
   readonly head: readonly Column[];
-  readonly headCells: (sides: ComparedSides, one: Comparison) => Readonly<Record<string, Cell>>;
+  readonly headCells: (sides: ComparedSides, one: Comparison) => Row;
   /** The population of each mean, and that of its interval. */
   readonly means: { readonly first: string; readonly second: string; readonly each: string };
   /** The test, its difference, and the case in which t is empty. */
@@ -93,7 +93,46 @@ interface TwoSides {
   };
   /** The columns in which the rows of a family are equal. */
   readonly alike: string;
+  /** The last columns of planned tests, and their cells. */
+  readonly planned: { readonly columns: readonly Column[]; readonly cells: (one: Comparison) => Row };
 }
+
+type Row = Readonly<Record<string, Cell>>;
+
+const equivalence = 'computed: two one-sided paired t-tests';
+
+/** The claim of the hypothesis about a measure, and its test of equivalence. */
+const claims: TwoSides['planned'] = {
+  columns: [
+    text('hypothesis', 'letters, digits, - and _', 'planned.csv', 'Id of the hypothesis about it; empty: none.'),
+    number('margin', '', 'more than 0', 'planned.csv', 'Empty, as the next columns: it does not claim equivalence.'),
+    number('low_equivalence', '', 'any', equivalence, 'Lower end of the 90 % confidence interval of the difference.'),
+    number('high_equivalence', '', 'any', equivalence, 'Upper end. p is below .05 if both lie within the margin.'),
+    number('t_equivalence', '', 'any', equivalence, 'The smaller t of both: (margin − |difference|) / standard error.'),
+    number(
+      'p_equivalence',
+      '',
+      share,
+      equivalence,
+      'The larger p of both: small if the difference is within the margin.',
+    ),
+    number(
+      'p_equivalence_holm',
+      '',
+      share,
+      'computed: Holm over the rows of this table with a margin and the same two conditions',
+      'p_equivalence adjusted.',
+    ),
+  ],
+  cells: ({ hypothesis, equivalence, equivalenceHolmP }) => ({
+    hypothesis: hypothesis?.id ?? '',
+    margin: hypothesis?.margin ?? null,
+    ...endCells('equivalence', equivalence?.interval),
+    t_equivalence: equivalence?.t ?? null,
+    p_equivalence: equivalence?.p ?? null,
+    p_equivalence_holm: equivalenceHolmP,
+  }),
+};
 
 const twoConditions: TwoSides = {
   head: [
@@ -118,6 +157,7 @@ const twoConditions: TwoSides = {
     approximated: 'ties, zeros and 50 pairs or more',
   },
   alike: 'two conditions',
+  planned: claims,
 };
 
 const twoCohorts: TwoSides = {
@@ -149,9 +189,10 @@ const twoCohorts: TwoSides = {
     approximated: 'ties and 50 in a cohort or more',
   },
   alike: 'two cohorts, condition',
+  planned: { columns: [], cells: () => ({}) },
 };
 
-function twoSidedColumns({ head, means, t, df, d, ranks, alike }: TwoSides, family: TableFacts['family']) {
+function twoSidedColumns({ head, means, t, df, d, ranks, alike, planned }: TwoSides, family: TableFacts['family']) {
   const holm = `computed: Holm over the rows of this table with the same ${alike}${family === 'planned' ? '' : ' and unit'}`;
   const tTest = `computed: ${t.test}`;
   const wilcoxon = `computed: Wilcoxon's ${ranks.test}, as R's wilcox.test up to 4.5, ties within rounding`;
@@ -183,6 +224,7 @@ function twoSidedColumns({ head, means, t, df, d, ranks, alike }: TwoSides, fami
       "computed: Fisher's z with the standard error of the ranks where nothing differs",
       'all ranks are on one side',
     ),
+    ...(family === 'planned' ? planned.columns : []),
   ];
 }
 
@@ -216,6 +258,7 @@ const tableOf =
         ...measureCells(one, facts),
         ...kind.headCells(sides, one),
         ...twoSidedCells(kind, one),
+        ...(facts.family === 'planned' ? kind.planned.cells(one) : {}),
       })),
     ),
   });

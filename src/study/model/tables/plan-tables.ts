@@ -1,5 +1,6 @@
 import { builtInBodies, maxLatencyMs, threePointNames } from 'threepoint/core';
 import { inLanguage, type LocalizedText } from '../phrases/localized-text';
+import { type PlannedTests, plannedMeasures } from '../plan/hypotheses';
 import { languagesOf, questionnairesOf, type StudyPlan } from '../plan/plan';
 import { questionKind, questionKindNames } from '../questionnaires/question-kinds';
 import { scaleRange } from '../questionnaires/questionnaire-scores';
@@ -134,22 +135,43 @@ export const conditionTable = ({ conditions, cohorts = [] }: StudyPlan): Table =
   ],
 });
 
-/** Returns the table of planned measures. */
-export const plannedTable = ({ planned = [] }: Pick<StudyPlan, 'planned'>): Table => ({
+const hypothesis = (field: string) => `plan.json: hypotheses[].${field}`;
+
+const plannedColumns = [
+  text('measure', 'task/questionnaire/id or task/score', 'plan.json: hypotheses, planned', 'As the plan has it.'),
+  text('task', ids, 'plan.json: hypotheses, planned', 'Id of the task.'),
+  text('questionnaire', ids, 'plan.json: hypotheses, planned', 'Id; empty: the score of the task.'),
+  text('id', codes, 'plan.json: hypotheses, planned', 'Question or scale; "score": points of the task.'),
+  text('hypothesis', codes, hypothesis('id'), 'Id; empty, as the columns after it: the plan states none.'),
+  text('text', 'any text', hypothesis('text'), 'The hypothesis.'),
+  text('first', ids, hypothesis('conditions'), 'Condition that is compared.'),
+  text('second', ids, hypothesis('conditions'), 'Condition that it is compared with.'),
+  number(
+    'margin',
+    '',
+    'more than 0',
+    hypothesis('margin'),
+    'Mean differences up to it count as none: the claim is equivalence. Empty: the claim is a difference.',
+  ),
+];
+
+/** Returns the table of planned measures, with a row for each hypothesis about a measure. */
+export const plannedTable = (plan: PlannedTests): Table => ({
   name: 'planned',
-  columns: [
-    text('measure', 'task/questionnaire/id or task/score', 'plan.json: planned', 'As the plan has it.'),
-    text('task', ids, 'plan.json: planned', 'Id of the task.'),
-    text('questionnaire', ids, 'plan.json: planned', 'Id; empty: the score of the task.'),
-    text('id', codes, 'plan.json: planned', 'Question or scale; "score": points of the task.'),
-  ],
-  rows: planned.map((measure) => {
+  columns: plannedColumns,
+  rows: plannedMeasures(plan).flatMap((measure) => {
     const parts = measure.split('/');
-    return {
+    const named = {
       measure,
       task: parts[0] ?? '',
       questionnaire: parts.length > 2 ? (parts[1] ?? '') : '',
       id: parts.at(-1) ?? '',
     };
+    const about = (plan.hypotheses ?? []).filter(({ measures }) => measures.includes(measure));
+    const claims = about.map(({ id, text, conditions: [first, second], margin = null }) => ({
+      ...{ hypothesis: id, text, first, second, margin },
+    }));
+    const none = { hypothesis: '', text: '', first: '', second: '', margin: null };
+    return (claims.length === 0 ? [none] : claims).map((claim) => ({ ...named, ...claim }));
   }),
 });

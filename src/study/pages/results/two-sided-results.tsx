@@ -4,6 +4,7 @@ import type { ByFamily } from '../../model/results/exported-results';
 import { type ComparedSides, cohortsTable, conditionsTable } from '../../model/results/result-tables';
 import { comparedTable } from './compared-tables';
 import { chartFigures, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
+import { hypothesisResults } from './hypothesis-results';
 import { csvButton, PlannedNote } from './result-cells';
 import type { ShownComparison, ShownResults } from './shown-results';
 
@@ -59,6 +60,7 @@ function twoSides(
         return (
           <>
             <h3>{between ? `${heading}, between cohorts` : heading}</h3>
+            {name === 'planned' && hypothesisResults(results, comparisons)}
             {charts.map((chart) => chartFigures(compared, chart))}
             {comparedTable(compared, captions[name], comparisons)}
             <div class="bar">{csvButton(table, results.fileOf(file))}</div>
@@ -81,8 +83,8 @@ export interface ComparedPair {
   readonly excluded: Results['excluded'];
 }
 
-export function comparePair({ measures }: ShownResults, sides: readonly [string, string]): ComparedPair {
-  const found = mapFamilies(measures, (family) => compareConditions(family, sides));
+export function comparePair({ measures, study }: ShownResults, sides: readonly [string, string]): ComparedPair {
+  const found = mapFamilies(measures, (family) => compareConditions(family, sides, study.plan));
   return {
     sides,
     comparisons: mapFamilies(found, (one) => one.comparisons),
