@@ -90,8 +90,22 @@ export class SessionFlow {
     if (frame) this.#measurement.observe(frame);
     // No sheet is shown while a round is played, so raised hands pause it.
     if (this.#pauseGesture.update(this.playing ? frame : null)) this.#apply({ type: 'pause' });
-    if (this.#trials.current?.interrupted) this.#apply({ type: 'reload' });
+    this.#followMatch();
     this.#finish(this.#trials.follow(time, frame));
+  }
+
+  /** Records what happened to the match of the group: absences, its clock, and its loss. */
+  #followMatch(): void {
+    const { current } = this.#trials;
+    if (!current) return;
+    const absences = current.takeAbsences();
+    for (const absence of absences) this.session.apply({ type: 'absence', absence });
+    const { matchClock } = current;
+    const { running, waiting = false } = this.session.progress;
+    const changed = matchClock !== null && running && matchClock.runs === waiting;
+    if (changed) this.session.apply({ type: 'match-clock', ...matchClock });
+    if (changed || absences.length > 0) void this.exchange();
+    if (current.interrupted) this.#apply({ type: 'reload' });
   }
 
   /** Records a round that is over while its end is still on display, before something else makes it void. */
@@ -167,6 +181,7 @@ export class SessionFlow {
         playing: current !== null,
         waitingFor: current?.waitingFor ?? null,
         standing: current?.standing ?? false,
+        awaited: this.#trials.awaited,
       },
       this.#actions,
     );
@@ -216,6 +231,11 @@ export class SessionFlow {
     const { step, simulated } = this.session;
     if (step.id !== this.#shownStep) this.#enterStep();
     this.#trials.settle();
+    if (this.#trials.missed && this.session.apply({ type: 'missed' }) === null) {
+      void this.exchange();
+      this.#settle();
+      return;
+    }
     if (step.kind !== 'consent') this.#host.setActor(simulated);
   }
 

@@ -12,7 +12,7 @@ function match(ball: { readonly seconds?: number } = {}) {
     ball: { everySeat: true, waitSeconds, ...ball },
   });
   const away = new Set<string>();
-  trio.forEach((client, seat) => room.join(client, { name: client, seat }));
+  for (const [seat, client] of trio.entries()) room.join(client, { name: client, seat });
   room.ready();
   const self = {
     ...room,
@@ -20,9 +20,7 @@ function match(ball: { readonly seconds?: number } = {}) {
     now: () => room.time,
     pass(seconds: number) {
       room.pass(seconds, () => {
-        trio.forEach((client) => {
-          if (!away.has(client)) room.poseOf(client);
-        });
+        for (const client of trio) if (!away.has(client)) room.poseOf(client);
       });
     },
     /** The second of the match, which stands while the clock is stopped. */

@@ -60,6 +60,8 @@ export interface ParticipantState {
     readonly paused: boolean;
     /** Whether the participant is asked, because of answers, whether to stop. */
     readonly unwell: boolean;
+    /** Whether a started trial waits for others, or its match stands. */
+    readonly waiting: boolean;
     /** Whether the session was ended before its end. */
     readonly stopped: boolean;
     /** null: the step has no time limit. */
