@@ -6,8 +6,8 @@ const seconds = v.exactOptional(v.pipe(v.number(), v.finite(), v.minValue(1), v.
 const openTerms = v.strictObject({ seconds, balls: v.exactOptional(integerWithin(1, 20)) });
 
 /**
- * The terms of a room of the ball game: length of a round [s] and number of balls; with assigned seats also for how long
- * a round waits for a player who is away [s].
+ * The terms of a room of the ball game: length of a round [s] and number of balls; with assigned seats also the longest
+ * wait for a player who is away [s].
  */
 export type BallTerms = v.InferOutput<typeof openTerms> & { readonly waitSeconds?: number };
 

@@ -132,8 +132,8 @@ export class RoomMatch<Game extends HostedGame> {
   }
 
   /**
-   * Steps the match up to this time [s]. While a player requests a pause, the clock is paused; in a match that waits for
-   * its players, also while one is away.
+   * Steps the match up to this time [s]. The clock is paused while a player requests a pause, and in a match that waits
+   * for its players also while one is away.
    */
   step(time: number): void {
     const isHeld = this.#seats.pauseRequested;

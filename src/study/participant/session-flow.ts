@@ -5,6 +5,7 @@ import type { Rejection } from '../model/progress/rejection';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
+import { InertSheet } from './inert-sheet';
 import { localizedReason } from './localized-reasons';
 import { PauseGesture } from './pause-gesture';
 import { QuestionnaireState } from './questionnaire-state';
@@ -46,6 +47,7 @@ export class SessionFlow {
   /** Whether the participant wants to stop and has not confirmed it yet. */
   #stopping = false;
   #shownStep = '';
+  readonly #inertSheet: InertSheet;
 
   constructor(session: ParticipantSession, { host, page, forget }: SessionFlowOptions) {
     this.session = session;
@@ -57,6 +59,7 @@ export class SessionFlow {
     this.#exchanges = new ExchangeTimer(session, page.after);
     this.#measurement = new BodyMeasurement(session, host, onChange);
     this.#trials = new SessionTrials({ session, host, now: page.now, onChange });
+    this.#inertSheet = new InertSheet(page.now);
     this.#actions = this.#screenActions();
   }
 
@@ -105,12 +108,20 @@ export class SessionFlow {
     const changed = matchClock !== null && running && matchClock.runs === waiting;
     if (changed) this.session.apply({ type: 'match-clock', ...matchClock });
     if (changed || absences.length > 0) void this.exchange();
-    if (current.interrupted) this.#apply({ type: 'reload' });
+    if (!current.interrupted) return;
+    this.#inertSheet.expectChange();
+    this.#apply({ type: 'reload' });
   }
 
   /** Records a round that is over while its end is still on display, before something else makes it void. */
   conclude(): void {
     this.#finish(this.#trials.conclude());
+  }
+
+  /** Called before a command of the experimenter is followed. */
+  onCommand(): void {
+    this.conclude();
+    this.#inertSheet.expectChange();
   }
 
   /** Called when the headset was put on or taken off. */
@@ -136,7 +147,7 @@ export class SessionFlow {
     this.#settle();
     const form = this.#form();
     if (form) display.ask(form);
-    else display.show(this.#screen(), this.#host.inSession());
+    else display.show(this.#inertSheet.shown(this.#screen()), this.#host.inSession());
   }
 
   #screenActions(): ScreenActions {
@@ -221,7 +232,10 @@ export class SessionFlow {
   #tickLater(): void {
     this.#page.after(tickEveryMs, () => {
       this.#tickLater();
-      if (this.session.step.kind === 'rest') this.session.apply({ type: 'tick' });
+      if (this.session.step.kind === 'rest') {
+        this.#inertSheet.expectChange();
+        this.session.apply({ type: 'tick' });
+      }
       this.show();
     });
   }

@@ -113,7 +113,7 @@ class GroupPage {
     this.#wire.sendPose(time, shownAt(this.#wire, this.#seat, wristsOn(this.#seat)));
     this.#runner.played();
     if (!this.#trial && time >= this.#startAt) this.#start();
-    // As the server answers a page that asks for its seat.
+    // The server answers so to a page that asks for its seat.
     if (this.#trial?.waitingFor && this.othersAreOver()) this.#apply({ type: 'missed' });
     this.#followTrial(time);
   }

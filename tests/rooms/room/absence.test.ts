@@ -106,7 +106,7 @@ describe('a match that waits for its players', () => {
     expect(one.absences).toHaveLength(1);
   });
 
-  test('is not given up while a player requests a pause, and waits its whole limit after it', () => {
+  test('is not given up during a requested pause, and waits its whole limit after it', () => {
     const one = match();
     one.say('ann', { type: 'pause', pause: true });
     one.pass(1);

@@ -164,7 +164,7 @@ class MatchTrial<Game extends HostedGame> {
 const membersOn = (seats: readonly number[], { members }: Pick<TaskPlace, 'members'>): string[] =>
   seats.flatMap((seat) => members[seat] ?? []);
 
-/** Returns the participants for whom the match of a room stands now; null: nobody. */
+/** Returns the absent participants of a match that stands now; null: it does not stand for any. */
 function awaitedIn(room: RoomView<HostedGame>, place: TaskPlace): Awaited | null {
   const open = room.absences.at(-1);
   if (open?.seconds !== null) return null;

@@ -147,7 +147,9 @@ class SessionAtEvent {
 
   /** Returns the session at the next step. */
   moveOn(from: Progress, records: readonly StudyRecord[] = []): EventResult {
-    return this.enterStep(from, this.schedule.steps[this.schedule.steps.indexOf(this.step) + 1] as StudyStep, records);
+    const { steps } = this.schedule;
+    const next = steps.slice(steps.indexOf(this.step) + 1).find((step) => !isFinishedPractice(step, from));
+    return this.enterStep(from, next as StudyStep, records);
   }
 
   enterStep(from: Progress, step: StudyStep, records: readonly StudyRecord[]): EventResult {
@@ -167,6 +169,15 @@ class SessionAtEvent {
     return { ...from, step: step.id, running, since, elapsed: 0, draft: {}, attempt: 1 };
   }
 }
+
+const blockKey = ({ task, block }: { readonly task: string; readonly block: number }): string => `${task}/${block}`;
+
+const isPractice = (step: StudyStep): boolean =>
+  step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('/rest-after-tutorial'));
+
+/** Returns whether a step is the practice of a repeated block in which it was finished before. */
+const isFinishedPractice = (step: StudyStep, { practised = [] }: Progress): boolean =>
+  'task' in step && isPractice(step) && practised.includes(blockKey(step));
 
 function consent(session: SessionAtEvent, { version, motion, language }: EventOf<'consent'>): EventResult | null {
   if (session.step.kind !== 'consent') return null;
@@ -286,11 +297,11 @@ function missed(session: SessionAtEvent): EventResult | null {
   return session.moveOn(recorded.progress, recorded.records);
 }
 
-function pause(session: SessionAtEvent, { by = 'participant' }: EventOf<'pause'>): EventResult | null {
+function pause(session: SessionAtEvent, { by }: EventOf<'pause'>): EventResult | null {
   const { step, progress } = session;
   if (step.kind === 'end') return null;
   const stopped = { ...progress, paused: true, since: null, elapsed: elapsedSeconds(progress, session.now) };
-  return session.withEvent(stopped, { type: 'pause', by });
+  return session.withEvent(stopped, { type: 'pause', by: by ?? 'participant' });
 }
 
 function stop(session: SessionAtEvent, { by, reason }: EventOf<'stop'>): EventResult | null {
@@ -317,12 +328,12 @@ function goOn(session: SessionAtEvent): EventResult | null {
   return session.withEvent(begins, { type: 'go-on' });
 }
 
-function resume(session: SessionAtEvent, { by = 'participant' }: EventOf<'resume'>): EventResult | null {
+function resume(session: SessionAtEvent, { by }: EventOf<'resume'>): EventResult | null {
   const { progress } = session;
   if (!progress.paused) return null;
   return session.withEvent(
     { ...progress, paused: false, since: progress.running && !progress.waiting ? session.now : null },
-    { type: 'resume', by },
+    { type: 'resume', by: by ?? 'participant' },
   );
 }
 
@@ -337,12 +348,19 @@ function voidBlock(session: SessionAtEvent, event: EventOf<'void-block'>): Event
   const { runs } = session.progress;
   const reason = checked(text(500), event.reason);
   const ofBlock = (step: StudyStep) => 'task' in step && step.task === task && step.block === block;
-  const target = (repeat ? steps.find(ofBlock) : steps[steps.findLastIndex(ofBlock) + 1]) as StudyStep;
+  const { practised = [] } = session.progress;
+  const isPastPractice = steps.findLastIndex((step) => ofBlock(step) && isPractice(step)) < steps.indexOf(session.step);
+  const finished = repeat && isPastPractice ? { practised: [...new Set([...practised, blockKey(session.place)])] } : {};
   const next = {
     ...session.progress,
-    runs: repeat ? { ...runs, [`${task}/${block}`]: run + 1 } : runs,
+    runs: repeat ? { ...runs, [blockKey(session.place)]: run + 1 } : runs,
     paused: false,
+    ...finished,
   };
+  const isSkipped = (step: StudyStep) => isFinishedPractice(step, next);
+  const target = (
+    repeat ? steps.find((step) => ofBlock(step) && !isSkipped(step)) : steps[steps.findLastIndex(ofBlock) + 1]
+  ) as StudyStep;
   const voided = session.withEvent(next, { type: 'void-block', task, block, run, reason, repeat });
   const entered = session.enterStep(voided.progress, target, voided.records);
   return { ...entered, progress: { ...entered.progress, voided: true } };

@@ -43,9 +43,11 @@ const progressSchema = v.object({
   runs: v.record(v.string(), integerBetween(1, 1000)),
   /** Whether the participant is asked, because of answers, whether to stop; absent: not. */
   unwell: v.exactOptional(v.boolean()),
+  /** The repeated blocks, "task/block", whose practice was finished before they were voided; absent: none. */
+  practised: v.exactOptional(v.array(text(120))),
   /** Whether the match of a started trial has not begun or stands, and with it the clock; absent: not. */
   waiting: v.exactOptional(v.boolean()),
-  /** Whether a void block led to this step, which the participant is told there; absent: not. */
+  /** Whether a void block led to this step, which its sheet states; absent: not. */
   voided: v.exactOptional(v.boolean()),
   /** Whether the participant stopped, or was stopped, before the end; absent: not. */
   stopped: v.exactOptional(v.boolean()),

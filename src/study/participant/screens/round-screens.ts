@@ -33,7 +33,7 @@ export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: Stu
     const names = phrases.list(participants);
     return {
       ...base,
-      ...{ id: 'standing', title: text('paused.title'), buttons: [] },
+      ...{ id: 'standing', title: text('paused.title'), buttons: [pauseButton(parts)] },
       text: [
         awaited === null ? text('standing.text') : text('standing.away', { names }),
         ...(secondsLeft === null ? [] : [text('standing.limit')]),

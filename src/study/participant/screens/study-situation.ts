@@ -37,7 +37,7 @@ export interface StudySituation {
   readonly stopping: boolean;
   /** Whether the game is paused by another participant of the group. */
   readonly standing: boolean;
-  /** The participants for whom the match of the group stands; null: nobody. */
+  /** The absent participants while the match of the group stands; null: it does not stand for any. */
   readonly awaited: Awaited | null;
 }
 

@@ -68,7 +68,7 @@ export class SessionTrials {
     return this.#missed !== null && this.#missed === this.attempt;
   }
 
-  /** The participants for whom the match of the present step stands; null: nobody. */
+  /** The absent participants while the match of the present step stands; null: it does not stand for any. */
   get awaited(): Awaited | null {
     const { step } = this.#session;
     return (isPlayed(step) && this.prepared?.state === 'ready' && this.#runnerOf(step)?.awaited) || null;

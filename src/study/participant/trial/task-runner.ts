@@ -15,7 +15,7 @@ export interface TaskEnd {
   readonly from?: number;
 }
 
-/** The participants for whom a match stands. */
+/** The absent participants while a match stands. */
 export interface Awaited {
   readonly participants: readonly string[];
   /** Seconds until the match is given up; null: it waits without a limit. */
@@ -53,7 +53,7 @@ export interface TaskRunner {
   readonly waitingFor: readonly string[] | null;
   /** Whether the clock of the game is paused by another participant of the group. */
   readonly pausedByOther: boolean;
-  /** The participants for whom the match of the group stands, also before this page's trial; null or absent: nobody. */
+  /** The absent participants while the match stands, also before this page's trial; null or absent: none. */
   readonly awaited?: Awaited | null;
   /** The second of the group's match, which is the same for all; null: it has not begun; absent: a game for one. */
   readonly second?: number | null;

@@ -93,8 +93,8 @@ function recordingIn(call: StudyCall): string {
 }
 
 /**
- * Throws a Rejection of the field `step` if another participant of the group has gone on from this trial, whose match is
- * over then. A participant who stopped has finished no match.
+ * Throws a Rejection of the field `step` if another participant of the group has gone on from this trial: its match is
+ * over. A participant who stopped has finished no match.
  */
 async function rejectFinished({ places }: StudyStorage, call: StudyCall, plan: StudyPlan, trial: PlayedTogether) {
   const { steps, groups } = scheduleFor(plan, call.participant);
