@@ -280,7 +280,8 @@ export class SessionFlow {
     const { attempt } = this.#trials;
     const rejection = session.apply({ type: 'trial-finished', outcome });
     this.#rejection = this.#inWords(rejection);
-    if (recording !== null && rejection === null) session.keepMotion(`${attempt}:trial`, recording);
+    if (recording !== null && rejection === null && session.progress.motion)
+      session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 

@@ -265,6 +265,7 @@ export const english = {
     'All your data in this study are deleted at once: answers, results, movements and progress. Only a receipt stays, with the time and the number of deleted records. You need not give a reason. The deletion cannot be undone, and you cannot take part again.',
   'withdrawal.sure': 'I want all my data deleted.',
   'withdrawal.delete': 'Delete everything',
+  'withdrawal.motionOnly': 'Delete only my movements',
   'withdrawal.lookUp': 'The code was shown to you after you agreed to take part; no one can look it up.',
   'withdrawal.contact': 'If something does not work: {contact}',
   'withdrawal.unknownCode':
@@ -274,6 +275,9 @@ export const english = {
   'withdrawal.failed': 'The deletion failed: {reason}.',
   'receipt.name': 'Receipt',
   'receipt.title': 'Everything is deleted',
+  'receipt.motionTitle': 'Your recorded movements are deleted',
+  'receipt.motionKept':
+    'No more movements are recorded. Your answers and results stay; the same code deletes them too.',
   'receipt.number': 'Receipt {number} of the study “{study}”',
   'receipt.deleted': 'Deleted of {participant}: {records}, {recordings}',
   'receipt.records': { one: '{count} record', other: '{count} records' },

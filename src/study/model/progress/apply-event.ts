@@ -41,6 +41,8 @@ export type ProgressEvent =
   | { readonly type: 'resume'; readonly by?: 'experimenter' }
   /** Voids the present block if it is the intended one; repeat: it starts again, otherwise the next one follows. */
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: TargetBlock }
+  /** The consent to motion was withdrawn on the withdrawal page, which the server has recorded. */
+  | { readonly type: 'withdraw-motion' }
   | { readonly type: 'remark'; readonly text: string }
   /**
    * Reports that the page was reloaded, here or on another device. A running trial is void and repeated; everything
@@ -63,6 +65,7 @@ type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type
 const acceptedInPause: readonly ProgressEvent['type'][] = [
   'resume',
   'remark',
+  'withdraw-motion',
   'void-block',
   'trial-finished',
   'match-clock',
@@ -371,6 +374,10 @@ function remark(session: SessionAtEvent, event: EventOf<'remark'>): EventResult 
   return session.withEvent(session.progress, { type: 'remark', text: checked(text(2000), event.text) });
 }
 
+function withdrawMotion({ progress, accept }: SessionAtEvent): EventResult {
+  return accept({ ...progress, motion: progress.motion === null ? null : false });
+}
+
 function reload(session: SessionAtEvent): EventResult {
   const { step, place, progress } = session;
   if (!isPlayed(step) || !progress.running || !place) {
@@ -389,6 +396,6 @@ type Handler<Event extends ProgressEvent = ProgressEvent> = (
 
 const handlers: { readonly [Type in ProgressEvent['type']]: Handler<EventOf<Type>> } = {
   ...{ consent, demographics, calibrated, start, 'trial-finished': trialFinished, answer, submit, tick },
-  ...{ 'match-clock': matchClock, absence, missed },
+  ...{ 'match-clock': matchClock, absence, missed, 'withdraw-motion': withdrawMotion },
   ...{ pause, resume, stop, 'go-on': goOn, 'void-block': voidBlock, remark, reload },
 };

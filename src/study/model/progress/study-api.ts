@@ -24,8 +24,8 @@ export const commandSchema = v.variant('type', [
   }),
 ]);
 
-/** A command of the experimenter to a participant's page. */
-export type StudyCommand = v.InferOutput<typeof commandSchema>;
+/** A command to a participant's page: of the experimenter, or of the server after the consent to motion was withdrawn. */
+export type StudyCommand = v.InferOutput<typeof commandSchema> | { readonly type: 'withdraw-motion' };
 
 /** The largest recording that the server accepts [bytes]. */
 export const maxMotionBytes = 16 * 2 ** 20;

@@ -70,6 +70,8 @@ const eventSchema = v.variant('type', [
   /** `by` is absent in older records. */
   v.object({ type: v.literal('pause'), by: v.exactOptional(author) }),
   v.object({ type: v.literal('resume'), by: v.exactOptional(author) }),
+  /** The consent to motion was withdrawn with the code, and the recordings were deleted. */
+  v.object({ type: v.literal('motion-withdrawn') }),
   v.object({ type: v.literal('remark'), text: text(2000) }),
   v.object({ type: v.literal('reload') }),
   v.object({ type: v.literal('finished') }),

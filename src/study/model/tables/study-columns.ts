@@ -64,7 +64,11 @@ export const participantColumns = [
   ...who,
   text('cohort', ids, 'drawn from the seed in plan.json', 'Id of the cohort; empty: the study has none.'),
   text('consent_version', 'any text', 'consent: body.version', 'Version of the text consented to.'),
-  boolean('motion_consent', 'consent: body.motion', 'Whether tracked frames may be kept.'),
+  boolean(
+    'motion_consent',
+    'consent: body.motion',
+    'Whether tracked frames may be kept; FALSE after a withdrawal of that.',
+  ),
   text('language', tag, 'consent: body.language', 'Language of the text; empty: the study has only one.'),
   text('gender', optionsOf('gender'), 'demographics: body.gender', 'As stated.'),
   number('age', 'years', '16 to 120', 'demographics: body.age', 'As stated.'),

@@ -111,6 +111,8 @@ function participantRows(records: readonly StoredRecord[], plan: StudyPlan, flag
   for (const record of records) {
     const known = people.get(record.participant) ?? { first: record, body: {} };
     if (record.kind === 'consent' || record.kind === 'demographics') Object.assign(known.body, record.body);
+    if (record.kind === 'event' && record.body.type === 'motion-withdrawn')
+      Object.assign(known.body, { motion: false });
     people.set(record.participant, known);
   }
   return [...people].map(([participant, { first, body }]) => {

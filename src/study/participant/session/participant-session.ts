@@ -225,6 +225,7 @@ export class ParticipantSession {
     const { step, running, motion } = this.progress;
     const isPause = command.type === 'pause' || command.type === 'resume';
     const rejection = this.apply(isPause ? { ...command, by: 'experimenter' } : command, number);
+    if (command.type === 'withdraw-motion') void this.#store.discardMotion();
     // A record states why a command changed nothing.
     if (rejection === null || motion === null) return;
     const why = `${step}${running ? ', running' : ''}: ${rejection.message}`;
