@@ -278,7 +278,7 @@ test('a sentence says what keeps a person from talking: refused, no microphone, 
   await expectVoices(without);
 
   const { page: fourth } = await talker(origin, 'Dot');
-  await joinVoices(fourth);
+  await bar(fourth).getByRole('button', { name: 'Talk with the others' }).click();
   await expect(bar(fourth)).toContainText('You are watching. Only players on the seats can talk.');
   await keepPicture(fourth, 'voices-names');
   expect((await voicesOf(fourth)).people.every(({ link }) => link === 'none')).toBe(true);

@@ -1,18 +1,12 @@
 import type { Page } from '@playwright/test';
-import { drawSeldom } from '../draw-seldom';
-import { type EmulatedHeadset, emulatedHeadset, frames } from '../emulated-headset';
-import { enterVr, expect, keepPicture } from '../page-fixture';
-import {
-  calibrate,
-  consentAndFillIn,
-  press,
-  reaches,
-  recordsOf,
-  screen,
-  stretched,
-  study,
-  test,
-} from './study-participant';
+import { strFromU8, unzipSync } from 'fflate';
+import { csvRows } from '../../src/study/cli/verify/csv-rows';
+import { verifyExport } from '../../src/study/cli/verify/verify-export';
+import type { StudyPlan } from '../../src/study/model/plan/plan';
+import { frames } from '../emulated-headset';
+import { expect, keepPicture } from '../page-fixture';
+import { loadAgain, openGroup, patience, people, pressOnAll, rest } from './group-pages';
+import { press, reaches, recordsOf, screen, study, test } from './study-participant';
 import { experimenter, shortStudy, withoutPractice } from './study-server';
 
 /**
@@ -21,8 +15,6 @@ import { experimenter, shortStudy, withoutPractice } from './study-server';
  */
 const standsSeconds = 15;
 const standsPictures = 2 * standsSeconds + 1;
-/** For what takes each page some of its pictures. */
-const patience = { timeout: 180_000 };
 /** The duration of a match [s], as in the paper. It is long enough for an experimenter's command on a busy machine. */
 const matchSeconds = 90;
 
@@ -33,48 +25,12 @@ test('three participants play the ball game together, each in a headset of their
 }) => {
   test.setTimeout(900_000);
   await experimenter(origin).begin(withoutPractice(shortStudy('trio', 'paper', 'ball', matchSeconds)), true);
-  const people = ['P01', 'P02', 'P03'];
-  const pages = await Promise.all(
-    people.map(async () => {
-      const context = await browser.newContext({ viewport: { width: 320, height: 220 } });
-      await drawSeldom(context);
-      return context.newPage();
-    }),
-  );
-  // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw
-  // often enough.
-  for (const page of pages) {
-    await page.addInitScript(() => {
-      const next = window.requestAnimationFrame.bind(window);
-      window.requestAnimationFrame = (draw) => (window.resting ? window.setTimeout(() => next(draw), 500) : next(draw));
-    });
-  }
-  const rest = (page: Page, resting: boolean) =>
-    page.evaluate((on) => {
-      window.resting = on;
-    }, resting);
+  const pages = await openGroup(browser, origin, 'trio');
   const all = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
-  // One after the other: three pages that load at once keep each other waiting.
-  const headsets: EmulatedHeadset[] = [];
-  for (const [index, page] of pages.entries()) {
-    await page.goto(await experimenter(origin).link('trio', people[index] as string, '&emulate&quality=low'));
-    await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
-    headsets.push(await emulatedHeadset(page));
-    await consentAndFillIn(page);
-    // Three clocks that one relay keeps together cannot be driven.
-    await enterVr(page, { stepMs: null });
-    await headsets[index]?.place(stretched);
-    await calibrate(page);
-    await reaches(page, 'trial-ready', 60_000);
-    await rest(page, true);
-  }
-  const [first, second, third] = pages as [Page, Page, Page];
-  for (const page of [first, second, third]) {
-    await rest(page, false);
-    await press(page, 'start');
+  const [first, second, third] = pages;
+  await pressOnAll(pages, 'start', async (page) => {
     if (page !== third) await reaches(page, 'waiting', 60_000);
-    await rest(page, true);
-  }
+  });
   // Two pictures a second are enough to see how a match goes on: all three rest until it is over.
   await expect.poll(async () => (await all(study)).map(({ running }) => running), patience).toEqual([true, true, true]);
 
@@ -98,7 +54,7 @@ test('three participants play the ball game together, each in a headset of their
   await all((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
 
   const trials = (await recordsOf(origin, 'trio')).filter((record) => record.kind === 'trial');
-  expect(trials.map(({ participant }) => participant).toSorted()).toEqual(people);
+  expect(trials.map(({ participant }) => participant).toSorted()).toEqual([...people]);
   // One group, one condition.
   expect(new Set(trials.map(({ body }) => body.condition)).size).toBe(1);
   expect(new Set(trials.map(({ body }) => body.group))).toEqual(new Set([1]));
@@ -113,4 +69,142 @@ test('three participants play the ball game together, each in a headset of their
     expect(body.outcome.seconds).toBeLessThan(matchSeconds + standsSeconds);
   }
   await all((page) => page.context().close());
+});
+
+/** Two blocks of short ball matches with one question after each; a match waits two minutes for who is away. */
+function sessionPlan(): StudyPlan {
+  const plan = withoutPractice(shortStudy('session', 'paper', 'ball', 30));
+  const enjoyed = { id: 'enjoyed', text: 'I enjoyed it.' };
+  const ends = { low: 'Not at all', high: 'Very much' };
+  return {
+    ...plan,
+    questionnaires: [
+      {
+        ...{ id: 'short', title: 'One question', scales: [], questions: [enjoyed] },
+        answer: { kind: 'likert', from: 1, to: 7, ends },
+      },
+    ],
+    tasks: plan.tasks.map((task) => ({
+      ...task,
+      calibrateBeforeBlock: false,
+      questionnaire: 'short',
+      absence: { waitSeconds: 120, after: 'repeat' },
+    })),
+  };
+}
+
+/** Sockets of a page whose messages can be delayed, as by a network that is lost for a while. */
+function delayedSockets() {
+  const waiting: (() => void)[] = [];
+  let isLost = false;
+  const carry = (send: () => void) => {
+    if (isLost) waiting.push(send);
+    else send();
+  };
+  return {
+    route: (page: Page) =>
+      page.routeWebSocket(/.*/, (client) => {
+        const server = client.connectToServer();
+        client.onMessage((message) => carry(() => server.send(message)));
+        server.onMessage((message) => carry(() => client.send(message)));
+      }),
+    lose() {
+      isLost = true;
+    },
+    mend() {
+      isLost = false;
+      for (const send of waiting.splice(0)) send();
+    },
+  };
+}
+
+/** Returns the rows of a table of an export as objects. */
+function rowsIn(zip: Uint8Array, name: string): readonly Readonly<Record<string, string>>[] {
+  const files = unzipSync(zip);
+  const path = Object.keys(files).find((one) => one.endsWith(`/${name}.csv`)) as string;
+  const [heads = [], ...rows] = csvRows(strFromU8(files[path] as Uint8Array));
+  return rows.map((cells) => Object.fromEntries(heads.map((head, index) => [head, cells[index] ?? ''])));
+}
+
+test('a session of three with a reload, a lost network, a void and a withdrawal is true in its tables @nightly', async ({
+  browser,
+  origin,
+}) => {
+  test.setTimeout(900_000);
+  const experimenting = experimenter(origin);
+  await experimenting.begin(sessionPlan(), true);
+  const network = delayedSockets();
+  let withdrawalCode = '';
+  const pages = await openGroup(browser, origin, 'session', async (page, participant) => {
+    if (participant !== 'P03') return;
+    await network.route(page);
+    page.on('response', async (response) => {
+      if (response.url().endsWith('/claim')) ({ withdrawalCode } = await response.json());
+    });
+  });
+  const [first, second] = pages;
+  const screens = () => Promise.all(pages.map(screen));
+  const startAll = async () => {
+    await pressOnAll(pages, 'start');
+    await expect.poll(screens, patience).toEqual(['playing', 'playing', 'playing']);
+  };
+  const answerAll = async (next: string) => {
+    for (const page of pages) await reaches(page, 'question-enjoyed', 120_000);
+    await pressOnAll(pages, 'answer-5');
+    await pressOnAll(pages, 'submit', (page) => reaches(page, next, 60_000));
+  };
+
+  // Block 1: the second page is loaded again, then the third loses its network.
+  await startAll();
+  await rest(second, false);
+  await loadAgain(second);
+  await expect.poll(() => screen(first), patience).toBe('standing');
+  await keepPicture(first, 'study-waits-for-reload');
+  await press(second, 'start');
+  await rest(second, true);
+  await expect.poll(screens, patience).toEqual(['playing', 'playing', 'playing']);
+  network.lose();
+  await expect.poll(() => screen(first), patience).toBe('standing');
+  await first.waitForTimeout(4000);
+  network.mend();
+  await answerAll('trial-ready');
+
+  // Block 2: the experimenter voids it in its match, and it is played again.
+  await startAll();
+  for (const participant of people) {
+    const command = { type: 'void-block', reason: 'the phone rang', repeat: true };
+    await experimenting.ask(`/session/participants/${participant}/commands`, 'POST', command);
+  }
+  for (const page of pages) await reaches(page, 'trial-ready', 60_000);
+  await keepPicture(first, 'study-voided');
+  await startAll();
+  await answerAll('end');
+  await Promise.all(pages.map((page) => expect.poll(async () => (await study(page)).unsent, patience).toBe(0)));
+
+  const zipOf = async () => new Uint8Array(await (await experimenting.ask('/session/export')).arrayBuffer());
+  const zip = await zipOf();
+  expect(verifyExport(zip).problems).toEqual([]);
+  const trials = rowsIn(zip, 'trials');
+  const [block1, block2] = ['1', '2'].map((block) => trials.filter((row) => row.block === block));
+  expect(block1).toHaveLength(3);
+  for (const row of block1 ?? []) {
+    expect(row.absences).toMatch(/^P02: \d+\.\d s at second \d+\.\d; P03: \d+\.\d s at second \d+\.\d$/);
+    expect(row.absences).toBe(block1?.[0]?.absences);
+    if (row.participant === 'P02') expect(row.excluded).toMatch(/^incomplete: recorded from second/);
+    else expect([row.excluded, row.ended, row.attempt]).toEqual(['', 'time', '1']);
+  }
+  expect(block2?.map(({ run, excluded, absences }) => [run, excluded, absences])).toEqual(
+    people.map(() => ['2', '', '']),
+  );
+  const events = rowsIn(zip, 'events');
+  const counts = (name: string) => events.filter(({ event }) => event === name).length;
+  expect([counts('void-block'), counts('interrupted'), counts('absence')]).toEqual([3, 1, 6]);
+  expect(new Set(rowsIn(zip, 'answers').map(({ participant }) => participant))).toEqual(new Set(people));
+
+  // The third participant withdraws; what the others played stays.
+  expect((await experimenting.ask('/session/withdraw', 'POST', { code: withdrawalCode })).status).toBe(200);
+  const remaining = await zipOf();
+  expect(new Set(rowsIn(remaining, 'trials').map(({ participant }) => participant))).toEqual(new Set(['P01', 'P02']));
+  expect(verifyExport(remaining).problems).toEqual([]);
+  await Promise.all(pages.map((page) => page.context().close()));
 });

@@ -6,6 +6,7 @@ export type {
   ConnectionUpdate,
   LocalClock,
   RoomView,
+  SeenAbsence,
   Visitor,
   VoiceChannel,
 } from './client/connection';

@@ -15,6 +15,8 @@ export interface BallGame extends SentBallGame {
 
 interface BallPolicyOptions extends Partial<BallOptions> {
   readonly seed?: number;
+  /** See `MatchPolicy.waitSeconds`. */
+  readonly waitSeconds?: number;
 }
 
 const seatNames = stations.map((_, seat) => `seat ${seat}`);
@@ -24,12 +26,14 @@ export class BallPolicy implements MatchPolicy<BallGame> {
   readonly kind = ballKind;
   readonly seats = stations.length;
   readonly tickSeconds = ballRules.tickSeconds;
+  readonly waitSeconds?: number;
   readonly #options: Partial<BallOptions>;
   readonly #seed: number;
 
-  constructor({ seed = 0, ...options }: BallPolicyOptions = {}) {
+  constructor({ seed = 0, waitSeconds, ...options }: BallPolicyOptions = {}) {
     this.#options = options;
     this.#seed = seed;
+    if (waitSeconds !== undefined) this.waitSeconds = waitSeconds;
   }
 
   start(onTick: (actions: readonly BallInput[]) => void): HostedMatch<BallGame> {

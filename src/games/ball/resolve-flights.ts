@@ -14,7 +14,7 @@ function nextPlace(
   events: BallEvent[],
 ): BallPlace | null {
   const { thrower, launch } = place;
-  const meeting = place.missed ? null : firstBasketContact(launch, basket.from, basket.to);
+  const meeting = place.missed || !basket.isHeld ? null : firstBasketContact(launch, basket.from, basket.to);
   if (meeting?.kind === 'caught') {
     events.push({ type: 'caught', ball, player: thrower, at: round(meeting.time), score: score + 1 });
     return { on: 'basket', thrower };
@@ -39,11 +39,13 @@ function nextPlace(
 interface BasketMotion {
   readonly from: Basket;
   readonly to: Basket;
+  /** Whether the holder is there; otherwise balls fly through the basket. */
+  readonly isHeld: boolean;
 }
 
-/** Decides the flight of every ball while the basket moves to `to`. */
-export function resolveFlights(state: BallState, to: Basket): Step {
-  const way = { from: state.basket, to };
+/** Decides the flight of every ball while the basket moves to `to`. Without its holder it catches nothing. */
+export function resolveFlights(state: BallState, to: Basket, isHeld = true): Step {
+  const way = { from: state.basket, to, isHeld };
   const events: BallEvent[] = [];
   let next: BallState = { ...state, basket: to };
   for (let ball = 0; ball < state.balls.length; ball++) {

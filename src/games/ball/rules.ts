@@ -14,6 +14,8 @@ export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotatio
 
 /** The basket waits for the holder's next pose this long [s]; then it counts as unmoved. */
 const basketPatience = 0.25;
+/** A basket whose holder was silent for longer than this [s] catches nothing, because nobody holds it. */
+const holderSilence = 1;
 /** A basket faster than this [m/s] has jumped, and catches nothing on its way. */
 const fastestBasket = 12;
 
@@ -184,6 +186,10 @@ function act(state: BallState, action: BallInput): Step {
   }
 }
 
+/** Returns whether the holder was seen shortly before this second of the match. */
+const isHeldAt = ({ players }: BallState, second: number): boolean =>
+  players.some(({ role, at }) => role === 'holder' && second - at <= holderSilence);
+
 /** Returns whether a throw from before the bell can no longer arrive. */
 const isPastThrows = (state: BallState): boolean =>
   state.startedAt !== null && ballMatchTime(state) >= state.startedAt + state.options.seconds + maxDelay;
@@ -251,7 +257,7 @@ export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> 
       events.push({ type: 'started', at: startedAt });
     }
     const decided = round(ballMatchTime(next) + tickSeconds - basketPatience);
-    if (next.basket.at < decided) take(resolveFlights(next, { ...next.basket, at: decided }));
+    if (next.basket.at < decided) take(resolveFlights(next, { ...next.basket, at: decided }, isHeldAt(next, decided)));
     next = { ...next, tick: next.tick + 1 };
     if (next.phase === 'running') {
       if (isPastThrows(next)) take(returnHeld(next, null));

@@ -1,6 +1,6 @@
 import type { AvatarRef, Calibration } from 'threepoint/core';
 import type { Transform } from 'threepoint/math';
-import type { DisconnectReason, SeatInfo } from '../protocol/messages';
+import type { Absence, DisconnectReason, SeatInfo } from '../protocol/messages';
 import type { PosePacket } from '../protocol/pose-packet';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
 import type { HostedGame } from '../room/match-policy';
@@ -24,6 +24,12 @@ export interface ConnectionStatus {
   readonly reason: DisconnectReason | 'unreachable' | 'forbidden' | 'refused' | null;
 }
 
+/** An absence of players as a page knows it. */
+export interface SeenAbsence extends Omit<Absence, 'since' | 'until'> {
+  /** Seconds until the match is given up; null: it waits no longer, or without a limit. */
+  readonly secondsLeft: number | null;
+}
+
 /** The room as this page knows it. */
 export interface RoomView<Game extends HostedGame> {
   readonly id: string;
@@ -45,6 +51,8 @@ export interface RoomView<Game extends HostedGame> {
   readonly matchClockOffset: number;
   /** Whether a player has paused the match clock. */
   readonly paused: boolean;
+  /** The absences for which its matches have waited, oldest first. */
+  readonly absences: readonly SeenAbsence[];
   /** The number of welcome messages: one after joining and one after each reconnection. */
   readonly welcomeCount: number;
   /** The number of rounds that were lost because the server was restarted. */

@@ -8,6 +8,7 @@ import {
 } from 'threepoint/core';
 import type { Transform } from 'threepoint/math';
 import {
+  type Absence,
   type ClientMessage,
   type JoinRequest,
   type RoomMessage,
@@ -30,6 +31,7 @@ import type {
   OutgoingPose,
   ReceivedPose,
   RoomView,
+  SeenAbsence,
   Visitor,
   VoiceChannel,
   VoiceListener,
@@ -50,6 +52,8 @@ interface KnownRoom
   readonly seats: readonly (SeatInfo | null)[];
 }
 
+const none: readonly never[] = [];
+
 const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && averageSkeleton(info.calibration);
 
 /** The client's side of the protocol. Subclasses send its messages, in `transmit` and `transmitPose`. */
@@ -66,6 +70,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   readonly #knowsClock: boolean;
   readonly #clock = new ClockSync();
   readonly #match: MatchPrediction<Game>;
+  /** The absences of the room by number. */
+  readonly #absences = new Map<number, Absence>();
   /** The room; null before the first welcome. */
   #known: KnownRoom | null = null;
   /** The skeletons of the players by seat. */
@@ -121,6 +127,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       responseTime: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
       matchClockOffset: this.#matchAhead,
       paused: known.paused !== null,
+      absences: this.#absences.size === 0 ? none : [...this.#absences.values()].map((absence) => this.#seen(absence)),
       welcomeCount: this.#welcomes,
       voidedRounds: this.#voidedRounds,
     };
@@ -258,6 +265,7 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       this.#voidedRounds += 1;
       this.#addChange('voided');
     }
+    if (this.#known?.epoch !== epoch) this.#absences.clear();
     const seats = message.seats.map(unpackSeatInfo);
     this.#known = { room, epoch, seat, spectators, seats, matchStart, paused };
     this.#skeletons = seats.map(skeletonOf);
@@ -295,6 +303,9 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
       case 'paused':
         this.#known = { ...known, matchStart: message.matchStart, paused: message.at };
         return;
+      case 'absence':
+        this.#absences.set(message.absence.number, message.absence);
+        return;
       case 'match-start':
         this.#known = { ...known, matchStart: message.matchStart };
         return;
@@ -308,6 +319,11 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
         this.#events.push(...message.events);
         if (this.#events.length > maxWaiting) this.#events = this.#events.slice(-maxWaiting);
     }
+  }
+
+  #seen({ since: _, until, ...absence }: Absence): SeenAbsence {
+    const isLimited = absence.seconds === null && until !== null;
+    return { ...absence, secondsLeft: isLimited ? Math.max(0, until - this.#now - this.#ahead) : null };
   }
 
   #setSeatInfo(known: KnownRoom, seat: number, info: SeatInfo | null): void {

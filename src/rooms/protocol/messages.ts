@@ -13,7 +13,7 @@ import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, 
  * Rises with every incompatible change of messages, pose packets (which also have `poseVersion`) or frames of poses.
  * The server disconnects a client with another version.
  */
-export const protocolVersion = 11;
+export const protocolVersion = 12;
 
 /** The longest control message [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const maxMessageBytes = 4096;
@@ -164,6 +164,23 @@ const disconnectReasons = [
 ] as const;
 export type DisconnectReason = (typeof disconnectReasons)[number];
 
+/** A time for which the clock of a match stood because players were away; times of the room [s]. */
+const absence = v.strictObject({
+  /** Counted from 1 over all matches of the room. */
+  number: integerWithin(1, 1e6),
+  seats: v.pipe(v.array(seat), v.maxLength(maxSeats)),
+  /** The second of the match at which its clock was stopped. */
+  at: seconds,
+  since: seconds,
+  /** When the match is given up; null: not while a player requests a pause. */
+  until: v.nullable(seconds),
+  /** For how long the match waited [s]; null: it still waits. */
+  seconds: v.nullable(seconds),
+  /** Whether the match was given up, and replaced by another one at its start. */
+  givenUp: v.boolean(),
+});
+export type Absence = v.InferOutput<typeof absence>;
+
 /** The messages of a Room that do not depend on its game. */
 const controlMessage = v.variant('type', [
   v.strictObject({ type: v.literal('seat'), seat, info: packedSeatInfo }),
@@ -172,6 +189,8 @@ const controlMessage = v.variant('type', [
   v.strictObject({ type: v.literal('about'), spectators: integerWithin(0, 10_000) }),
   /** The second at which the match clock is paused; null: it runs again, with another start. */
   v.strictObject({ type: v.literal('paused'), at: v.nullable(seconds), matchStart: seconds }),
+  /** An absence that has begun, changed or ended; after a welcome, the newest of the room. */
+  v.strictObject({ type: v.literal('absence'), absence }),
   /** The match has another start, because its host was suspended. */
   v.strictObject({ type: v.literal('match-start'), matchStart: seconds }),
   v.strictObject({ type: v.literal('pong'), sent: seconds, time: seconds }),

@@ -42,6 +42,11 @@ export interface MatchPolicy<Game extends HostedGame> {
   readonly seats: number;
   /** Length of a tick [s]. */
   readonly tickSeconds: number;
+  /**
+   * For how long the clock of a running match stands for players who are away, until another match replaces it [s];
+   * absent: matches run on without them.
+   */
+  readonly waitSeconds?: number;
   /** Creates a match that waits for its players. `onTick` is called before each tick with its actions. */
   start(onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game>;
   /** Creates another match after one that is over; null: the players present cannot play one. */

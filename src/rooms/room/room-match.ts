@@ -1,8 +1,12 @@
 import { transformPoint, transformTracked } from 'threepoint/math';
+import type { Absence } from '../protocol/messages';
 import type { PointsPacket } from '../protocol/pose-packet';
+import { AbsenceLog } from './absence-log';
 import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-policy';
 import type { RoomHost } from './room-host';
 import type { Seats } from './seats';
+
+const none: readonly never[] = [];
 
 /** Shifts of the match start below this [s] are rounding. */
 const minShift = 1e-3;
@@ -16,6 +20,8 @@ export class RoomMatch<Game extends HostedGame> {
   readonly #seats: Seats;
   readonly #host: RoomHost<Game>;
   readonly #onTick = (actions: readonly MatchAction<Game>[]): void => this.#host.stepped?.(actions);
+  /** null: matches run on without players who are away. */
+  readonly #absences: AbsenceLog | null;
   #match: HostedMatch<Game>;
   /** Actions for the next step. */
   #queued: MatchAction<Game>[] = [];
@@ -30,6 +36,8 @@ export class RoomMatch<Game extends HostedGame> {
     this.#policy = policy;
     this.#seats = seats;
     this.#host = host;
+    const report = (absence: Absence) => host.broadcast({ type: 'absence', absence });
+    this.#absences = policy.waitSeconds === undefined ? null : new AbsenceLog(policy.waitSeconds, report);
     this.#match = policy.start(this.#onTick);
   }
 
@@ -55,9 +63,19 @@ export class RoomMatch<Game extends HostedGame> {
     return this.state.phase === 'running' && !this.isPaused;
   }
 
-  /** Whether time alone changes nothing: no match runs, and no action waits. */
+  /** Whether time alone changes nothing: no match runs or waits for players, and no action waits. */
   get isIdle(): boolean {
-    return this.#queued.length === 0 && !this.isRunning;
+    return this.#queued.length === 0 && !this.isRunning && !this.#absences?.isOpen;
+  }
+
+  /** Whether the clock of this match stands for players who are away. */
+  get waitsForPlayers(): boolean {
+    return this.#absences !== null && this.state.phase === 'running';
+  }
+
+  /** The newest absences of the room's players. */
+  get absences(): readonly Absence[] {
+    return this.#absences?.newest ?? [];
   }
 
   /** The second of the match at which its clock is paused; null: it runs. */
@@ -113,10 +131,20 @@ export class RoomMatch<Game extends HostedGame> {
     });
   }
 
-  /** Steps the match up to this time [s]. While a player requests a pause, the clock is paused. */
+  /**
+   * Steps the match up to this time [s]. The clock is paused while a player requests a pause, and in a match that waits
+   * for its players also while one is away.
+   */
   step(time: number): void {
-    const { pauseRequested } = this.#seats;
+    const isHeld = this.#seats.pauseRequested;
+    const absent = this.waitsForPlayers ? this.#seats.absent : none;
+    const pauseRequested = isHeld || absent.length > 0;
     if (this.#stoppedAt !== null) {
+      const at = this.#stoppedAt - this.#matchStart;
+      if (this.#absences?.follow(absent, { time, at, isHeld })) {
+        this.#giveUp(time, this.#stoppedAt);
+        return;
+      }
       if (pauseRequested) return;
       this.#resume(time, this.#stoppedAt);
     }
@@ -129,6 +157,7 @@ export class RoomMatch<Game extends HostedGame> {
     if (stopping && this.state.tick !== tick && this.state.phase === 'running') {
       this.#stoppedAt = time;
       this.#broadcastPause();
+      this.#absences?.follow(absent, { time, at: time - this.#matchStart, isHeld });
       return;
     }
     this.#adjustStart(time);
@@ -174,13 +203,28 @@ export class RoomMatch<Game extends HostedGame> {
     if (present.length === 0 || !present.every(({ ready }) => ready)) return;
     const next = this.#policy.next(before, this.#onTick);
     if (!next) return;
-    this.#match = next;
-    this.#matchStart = time;
     before.players.forEach(({ present }, player) => {
       if (!present) return;
       this.add({ type: 'join', player });
       this.add({ type: 'ready', player, ready: true });
     });
+    this.#replace(next, time);
+  }
+
+  /** Gives up a match that has waited too long: another one waits for its players at its start. */
+  #giveUp(time: number, stoppedAt: number): void {
+    this.#queued = [];
+    for (let player = 0; player < this.#seats.count; player++) {
+      if (this.#seats.at(player)?.playing) this.add({ type: 'join', player });
+    }
+    this.#resume(time, stoppedAt);
+    this.#replace(this.#policy.start(this.#onTick), time);
+  }
+
+  /** Starts another match with the queued actions. */
+  #replace(match: HostedMatch<Game>, time: number): void {
+    this.#match = match;
+    this.#matchStart = time;
     const events = this.#match.advance(this.#runningTime(time), this.#takeQueued());
     this.#host.broadcast({ type: 'match', match: this.snapshot, matchStart: time });
     this.#sendEvents(events);

@@ -59,6 +59,7 @@ export class Room<Game extends HostedGame> {
     this.#seats = new Seats(policy.seats, assigned, {
       changed: (seat) => this.#seatUpdates.changed(seat, this.#time),
       act: (action) => this.#match.add(action),
+      awaits: () => this.#match.waitsForPlayers,
     });
     this.#seatUpdates = new SeatUpdates(policy.seats, (seat) => this.#broadcastSeat(seat));
     this.#profiles = new MemberProfiles(this.#seats, host, { assigned, voices });
@@ -219,6 +220,7 @@ export class Room<Game extends HostedGame> {
     }
     switch (message.type) {
       case 'ready':
+        if (message.ready) seat.awaited = false;
         this.#seats.markSeen(index, this.#time);
         this.#match.setReady(index, message.ready);
         return;
@@ -263,6 +265,7 @@ export class Room<Game extends HostedGame> {
       paused: this.#match.pausedAt,
       time,
     });
+    for (const absence of this.#match.absences) this.#host.send(client, { type: 'absence', absence });
   }
 
   #broadcastAbout(): void {

@@ -45,6 +45,8 @@ interface Seat {
   /** Whether the player is present in the match. */
   playing: boolean;
   declaredAway: boolean;
+  /** Whether the player has returned to a match that waits, and is not ready to go on; others see them as away. */
+  awaited: boolean;
   presence: SeatInfo['presence'];
   /** Whether the player requests a pause of the match clock. */
   requestsPause: boolean;
@@ -57,6 +59,8 @@ interface SeatListener {
   changed(seat: number): void;
   /** Called with an action for the rules. */
   act(action: SeatAction): void;
+  /** Returns whether the match waits for a player who takes a seat now, until they are ready. */
+  awaits(): boolean;
 }
 
 /** Numbers of players, bots and free seats. */
@@ -97,6 +101,11 @@ export class Seats {
   /** Whether a player requests a pause of the match clock. */
   get pauseRequested(): boolean {
     return this.#seats.some((seat) => seat?.requestsPause);
+  }
+
+  /** The numbers of the seats whose player is not there: away, disconnected, or not ready after a return. */
+  get absent(): readonly number[] {
+    return this.#seats.flatMap((seat, index) => (seat?.presence === 'here' ? [] : [index]));
   }
 
   /**
@@ -178,12 +187,13 @@ export class Seats {
       disconnectedAt: null,
       playing: true,
       declaredAway: false,
+      awaited: this.#listener.awaits(),
       presence: 'here',
       requestsPause: false,
       poses: new PoseValidator(time),
     };
     this.#listener.act({ type: 'join', player: index });
-    this.reportChange(index);
+    this.#arrive(index, time);
   }
 
   /** Gives a held seat back to its person, on another connection. */
@@ -198,9 +208,16 @@ export class Seats {
     seat.disconnectedAt = null;
     seat.playing = true;
     seat.declaredAway = false;
+    seat.awaited = this.#listener.awaits();
     seat.presence = 'here';
     seat.poses.reconnected(time);
-    this.reportChange(index);
+    this.#arrive(index, time);
+  }
+
+  /** Reports a player who has come or come back. */
+  #arrive(index: number, time: number): void {
+    this.setPresence(index, time);
+    if (this.at(index)?.presence === 'here') this.reportChange(index);
   }
 
   /** Holds the seat of a client whose connection is lost. `setPresence` then reports it to the others. */
@@ -242,7 +259,7 @@ export class Seats {
     const seat = this.at(index);
     if (!seat) return;
     const silent = time - seat.poses.lastSeenAt > awayAfterSeconds;
-    const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
+    const presence = seat.client === null ? 'gone' : seat.declaredAway || seat.awaited || silent ? 'away' : 'here';
     if (presence === seat.presence) return;
     seat.presence = presence;
     if (presence === 'here' && !seat.playing) {

@@ -5,6 +5,7 @@ import type { Rejection } from '../model/progress/rejection';
 import { BodyMeasurement } from './body-measurement';
 import { ExchangeTimer } from './exchange-timer';
 import type { StudyForm } from './forms/study-form';
+import { InertSheet } from './inert-sheet';
 import { localizedReason } from './localized-reasons';
 import { PauseGesture } from './pause-gesture';
 import { QuestionnaireState } from './questionnaire-state';
@@ -46,6 +47,7 @@ export class SessionFlow {
   /** Whether the participant wants to stop and has not confirmed it yet. */
   #stopping = false;
   #shownStep = '';
+  readonly #inertSheet: InertSheet;
 
   constructor(session: ParticipantSession, { host, page, forget }: SessionFlowOptions) {
     this.session = session;
@@ -57,6 +59,7 @@ export class SessionFlow {
     this.#exchanges = new ExchangeTimer(session, page.after);
     this.#measurement = new BodyMeasurement(session, host, onChange);
     this.#trials = new SessionTrials({ session, host, now: page.now, onChange });
+    this.#inertSheet = new InertSheet(page.now);
     this.#actions = this.#screenActions();
   }
 
@@ -90,13 +93,35 @@ export class SessionFlow {
     if (frame) this.#measurement.observe(frame);
     // No sheet is shown while a round is played, so raised hands pause it.
     if (this.#pauseGesture.update(this.playing ? frame : null)) this.#apply({ type: 'pause' });
-    if (this.#trials.current?.interrupted) this.#apply({ type: 'reload' });
+    this.#followMatch();
     this.#finish(this.#trials.follow(time, frame));
+  }
+
+  /** Records what happened to the match of the group: absences, its clock, and its loss. */
+  #followMatch(): void {
+    const { current } = this.#trials;
+    if (!current) return;
+    const absences = current.takeAbsences();
+    for (const absence of absences) this.session.apply({ type: 'absence', absence });
+    const { matchClock } = current;
+    const { running, waiting = false } = this.session.progress;
+    const changed = matchClock !== null && running && matchClock.runs === waiting;
+    if (changed) this.session.apply({ type: 'match-clock', ...matchClock });
+    if (changed || absences.length > 0) void this.exchange();
+    if (!current.interrupted) return;
+    this.#inertSheet.expectChange();
+    this.#apply({ type: 'reload' });
   }
 
   /** Records a round that is over while its end is still on display, before something else makes it void. */
   conclude(): void {
     this.#finish(this.#trials.conclude());
+  }
+
+  /** Called before a command of the experimenter is followed. */
+  onCommand(): void {
+    this.conclude();
+    this.#inertSheet.expectChange();
   }
 
   /** Called when the headset was put on or taken off. */
@@ -122,7 +147,7 @@ export class SessionFlow {
     this.#settle();
     const form = this.#form();
     if (form) display.ask(form);
-    else display.show(this.#screen(), this.#host.inSession());
+    else display.show(this.#inertSheet.shown(this.#screen()), this.#host.inSession());
   }
 
   #screenActions(): ScreenActions {
@@ -167,6 +192,7 @@ export class SessionFlow {
         playing: current !== null,
         waitingFor: current?.waitingFor ?? null,
         standing: current?.standing ?? false,
+        awaited: this.#trials.awaited,
       },
       this.#actions,
     );
@@ -206,7 +232,10 @@ export class SessionFlow {
   #tickLater(): void {
     this.#page.after(tickEveryMs, () => {
       this.#tickLater();
-      if (this.session.step.kind === 'rest') this.session.apply({ type: 'tick' });
+      if (this.session.step.kind === 'rest') {
+        this.#inertSheet.expectChange();
+        this.session.apply({ type: 'tick' });
+      }
       this.show();
     });
   }
@@ -216,6 +245,11 @@ export class SessionFlow {
     const { step, simulated } = this.session;
     if (step.id !== this.#shownStep) this.#enterStep();
     this.#trials.settle();
+    if (this.#trials.missed && this.session.apply({ type: 'missed' }) === null) {
+      void this.exchange();
+      this.#settle();
+      return;
+    }
     if (step.kind !== 'consent') this.#host.setActor(simulated);
   }
 
@@ -246,7 +280,8 @@ export class SessionFlow {
     const { attempt } = this.#trials;
     const rejection = session.apply({ type: 'trial-finished', outcome });
     this.#rejection = this.#inWords(rejection);
-    if (recording !== null && rejection === null) session.keepMotion(`${attempt}:trial`, recording);
+    if (recording !== null && rejection === null && session.progress.motion)
+      session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 

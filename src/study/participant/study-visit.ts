@@ -96,7 +96,7 @@ export class StudyVisit {
         now: this.#page.now,
         storageLimitMs: this.#page.storageLimitMs,
         onChange: () => this.#flow?.show(),
-        onCommand: () => this.#flow?.conclude(),
+        onCommand: () => this.#flow?.onCommand(),
       },
     );
   }

@@ -114,6 +114,8 @@ export interface DeletionStorage {
   deleteSimulated(study: string): Awaitable<void>;
   /** Deletes everything of the participant with this code; returns null if there is none. */
   withdraw(study: string, code: string, at: number): Awaitable<Receipt | null>;
+  /** Deletes the recordings of the participant with this code, who has no more made; returns null if there is none. */
+  withdrawMotion(study: string, code: string, at: number): Awaitable<Receipt | null>;
   /**
    * Deletes what is past its retention date, each participant separately; `onError` is called with each failed
    * deletion.

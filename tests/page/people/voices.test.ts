@@ -44,8 +44,8 @@ beforeEach(() => {
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
 /** A player in a room, whose server says what it has to say of voices when the test wants. */
-function seated() {
-  const play = createBallLoopbackHost().connect(visitor('Ann'), 0);
+function seated(spectate = false) {
+  const play = createBallLoopbackHost().connect(visitor('Ann', { spectate }), 0);
   const answers: (() => void)[] = [];
   const voices = new Voices({
     client: { room: play.room, status: play.status, connection: play },
@@ -94,6 +94,16 @@ describe('a microphone', () => {
     await voices.join();
     expect(answers).toHaveLength(0);
     expect(voices.probe().phase).not.toBe('joining');
+  });
+
+  test('is not asked for from a spectator, who learns first that only players talk', async () => {
+    const { voices, answers } = seated(true);
+    voices.ask(true);
+    expect(voices.state).toMatchObject({ message: 'You are watching. Only players on the seats can talk.' });
+    await voices.join();
+    expect(answers).toHaveLength(0);
+    expect(device.questions).toHaveLength(0);
+    expect(voices.probe().phase).not.toBe('asked');
   });
 
   test('is requested once for a player who leaves and joins again, by the second join', async () => {

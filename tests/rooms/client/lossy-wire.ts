@@ -7,17 +7,19 @@ import { visitor } from './people';
 
 type Told = ReturnType<typeof createTestRoom>;
 
-/** Ann's connection to a room that a test controls: it can be lost and come back. */
+/** A person's connection to a room that a test controls, by default Ann's: it can be lost and come back. */
 export class LossyWire extends RoomSession<BallGame> {
   readonly #told: Told;
   #connections: number;
   #heard = 0;
   #whole = false;
+  readonly #person: string;
 
   /** before: connections of other pages. */
-  constructor(told: Told, before = 0) {
-    super(ballClientPolicy, visitor('Ann', { seat: 0 }), true);
+  constructor(told: Told, before = 0, { name, seat }: { name: string; seat: number } = { name: 'Ann', seat: 0 }) {
+    super(ballClientPolicy, visitor(name, { seat }), true);
     this.#told = told;
+    this.#person = name.toLowerCase();
     this.#connections = before;
     this.connect();
   }
@@ -26,7 +28,7 @@ export class LossyWire extends RoomSession<BallGame> {
     this.#connections += 1;
     this.#heard = this.#told.sent.length;
     this.#whole = true;
-    this.#told.room.join(this.#name, 'ann', this.joinRequest(), this.#told.time);
+    this.#told.room.join(this.#name, this.#person, this.joinRequest(), this.#told.time);
   }
 
   lose(): void {
@@ -60,6 +62,6 @@ export class LossyWire extends RoomSession<BallGame> {
   }
 
   get #name(): string {
-    return `ann ${this.#connections}`;
+    return `${this.#person} ${this.#connections}`;
   }
 }

@@ -217,7 +217,7 @@ test('a change of packets or frames shows to older pages as a new protocol versi
   // reason when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
-    protocolVersion: 11,
+    protocolVersion: 12,
     poseVersion: 5,
     seatAndFlags: 0x50,
   });

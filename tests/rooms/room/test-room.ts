@@ -57,7 +57,7 @@ export function packetAt(match: BallState | null, seat: number, wrists: Wrists, 
 }
 
 interface TestRoomOptions extends Partial<RoomOptions> {
-  readonly ball?: Partial<BallState['options']>;
+  readonly ball?: ConstructorParameters<typeof BallPolicy>[0];
 }
 
 /** A room of the ball game that a test controls; it collects all messages, and checks that a page can read each. */
@@ -145,9 +145,14 @@ export function createTestRoom({ ball, ...options }: TestRoomOptions = {}) {
     },
     /** All three are seen where they begin. */
     stand() {
-      if (room.match.players[0]?.present) testRoom.pose('ann', 0, fists(releaseOf(0)));
-      if (room.match.players[1]?.present) testRoom.pose('ben', 1, fists(releaseOf(1)));
-      testRoom.pose('cal', 2, holding(opening));
+      if (room.match.players[0]?.present) testRoom.poseOf('ann');
+      if (room.match.players[1]?.present) testRoom.poseOf('ben');
+      testRoom.poseOf('cal');
+    },
+    /** One of the three is seen where they begin. */
+    poseOf(client: (typeof trio)[number]) {
+      const seat = trio.indexOf(client);
+      return testRoom.pose(client, seat, client === 'cal' ? holding(opening) : fists(releaseOf(seat as 0 | 1)));
     },
     events: () =>
       sent.flatMap(({ message }): readonly BallEvent[] => (message.type === 'events' ? message.events : [])),

@@ -343,10 +343,81 @@ describe('a voided block', () => {
     expect(one.step.id).toBe('archery/2/calibration');
   });
 
+  test('is repeated without the practice that was finished in it, and with an unfinished one', () => {
+    const one = session(schedule);
+    const repeat = { type: 'void-block', reason: 'wrong avatar', repeat: true } as const;
+    one.doUntil(({ id }) => id === 'archery/1/tutorial');
+    one.tell(repeat);
+    const kinds = () => {
+      const met: string[] = [];
+      one.doUntil((step) => {
+        met.push(step.kind);
+        return step.kind === 'trial';
+      });
+      return met;
+    };
+    expect(kinds()).toEqual(['calibration', 'tutorial', 'trial']);
+    one.tell(repeat);
+    expect(kinds()).toEqual(['calibration', 'trial']);
+    one.progress = resumed(schedule, JSON.stringify(one.progress));
+    one.tell(repeat);
+    expect(kinds()).toEqual(['calibration', 'trial']);
+  });
+
   test('needs a reason', () => {
     const one = session(schedule);
     one.doUntil(({ id }) => id === 'archery/1/trial-1');
     expect(one.tell({ type: 'void-block', reason: ' ', repeat: true })).toContain('expected text');
+  });
+});
+
+describe('the clock of a match', () => {
+  const playing = () => {
+    const one = session(schedule);
+    one.doUntil(({ id }) => id === 'ball/1/trial-1');
+    one.tell({ type: 'start' });
+    return one;
+  };
+  const left = (one: ReturnType<typeof playing>) => remainingSeconds(schedule, one.progress, one.now);
+
+  test('is that of the group: it waits, runs and stands with the match', () => {
+    const one = playing();
+    one.tell({ type: 'match-clock', runs: false, second: 0 });
+    one.wait(40);
+    expect(left(one)).toBe(90);
+    one.tell({ type: 'match-clock', runs: true, second: 0 });
+    one.wait(30);
+    expect(left(one)).toBeCloseTo(60, 6);
+    one.tell({ type: 'match-clock', runs: false, second: 29.5 });
+    one.wait(100);
+    expect(left(one)).toBeCloseTo(60.5, 6);
+    expect(sinceReport(reported(one.progress, one.now), 20).elapsed).toBeCloseTo(29.5, 6);
+    one.tell({ type: 'pause' });
+    one.tell({ type: 'resume' });
+    one.wait(10);
+    expect(left(one)).toBeCloseTo(60.5, 6);
+    one.tell({ type: 'match-clock', runs: true, second: 29.5 });
+    one.tell({ type: 'trial-finished', outcome: outcomeOf() });
+    expect(one.progress.waiting).toBeUndefined();
+  });
+
+  test('of an unstarted trial is refused, and a trial that the group finished is left behind', () => {
+    const one = session(schedule);
+    one.doUntil(({ id }) => id === 'ball/1/trial-1');
+    expect(one.tell({ type: 'match-clock', runs: true, second: 0 })).not.toBeNull();
+    expect(one.tell({ type: 'missed' })).toBeNull();
+    expect(one.step.id).toBe('ball/1/rest');
+    expect(one.records.at(-1)).toMatchObject({ body: { type: 'missed', step: 'ball/1/trial-1' } });
+  });
+
+  test('stands in a pause whose record names its author', () => {
+    const one = playing();
+    one.tell({ type: 'pause' });
+    one.tell({ type: 'resume', by: 'experimenter' });
+    expect(one.records.slice(-2).map(({ body }) => body)).toEqual([
+      { type: 'pause', by: 'participant' },
+      { type: 'resume', by: 'experimenter' },
+    ]);
   });
 });
 

@@ -54,6 +54,25 @@ test('a recording that the server refuses is reported and kept, and blocks nothi
   });
 });
 
+test('a withdrawn consent to motion reaches the page, which drops what it has not sent', async () => {
+  const server = await studyServer();
+  const { store } = server;
+  const { first, vault } = await device(server);
+  toTheFirstQuestion(first, true);
+  await first.exchange();
+  first.keepMotion('archery/1/trial-1@1.1:trial', 'no recording');
+  await first.settled();
+  const code = first.kept.withdrawalCode as string;
+  expect(store.deletion.withdrawMotion('paper', code, 1e9)).toMatchObject({ reason: 'withdrawn', records: 0 });
+  await first.exchange();
+  await first.motionSent();
+  await first.exchange();
+  expect(first.progress.motion).toBe(false);
+  expect(first.uploadStatus).toMatchObject({ unsent: 0, lockedOut: false });
+  expect(await vault.motion(place)).toEqual([]);
+  expect(server.events()).toContain('motion-withdrawn');
+});
+
 /** A way to the server on which recordings stop before they arrive, how often is counted. */
 async function wayWithoutMotion({ origin }: StudyServer) {
   const stopped = { count: 0 };

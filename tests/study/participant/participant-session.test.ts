@@ -138,9 +138,9 @@ test('a device that takes over follows no command that another one has followed'
   await experimenter.release('paper', 'P01');
   const { first: second } = await device(server);
   second.apply({ type: 'reload' });
-  expect(second.step.id).toBe('archery/1/tutorial');
+  expect(second.step.id).toBe('archery/1/trial-1');
   await second.exchange();
-  expect(second.step.id).toBe('archery/1/tutorial');
+  expect(second.step.id).toBe('archery/1/trial-1');
   expect(server.events().filter((type) => type === 'void-block')).toHaveLength(1);
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await second.exchange();

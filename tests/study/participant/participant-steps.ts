@@ -16,10 +16,12 @@ export async function measure(tab: Tab): Promise<void> {
   await canStart(tab);
 }
 
-export const canStart = (tab: Tab) =>
-  tab.display.until(
+export function canStart(tab: Tab): Promise<void> {
+  tab.display.wait();
+  return tab.display.until(
     ({ screen }) => screen?.buttons.some(({ id, look }) => id === 'start' && look === 'primary') ?? false,
   );
+}
 
 /** The practice or round that waits, from the start to its end. */
 export function play(tab: Tab, points: number): void {

@@ -14,6 +14,7 @@ import type { Embodiment } from '../../../src/study/model/plan/embodiment';
 import type { DeviceProblem } from '../../../src/study/model/plan/remote-setup';
 import type { FrameListener } from '../../../src/study/model/records/trial-log';
 import type { Invited, StudyForm } from '../../../src/study/participant/forms/study-form';
+import { inertSeconds } from '../../../src/study/participant/inert-sheet';
 import type { StudyScreen } from '../../../src/study/participant/questions/study-screen';
 import type { StudyAddressBar, StudyDisplay, StudyPage } from '../../../src/study/participant/study-page';
 import { StudyVisit } from '../../../src/study/participant/study-visit';
@@ -93,9 +94,14 @@ export class ShownParts implements StudyDisplay {
     return this.form as Extract<StudyForm, { kind: Kind }>;
   }
 
-  /** Presses a button of the screen. */
+  /** Lets a moment pass, after which a sheet that has just appeared takes presses. */
+  wait: () => void = () => undefined;
+
+  /** Presses a button of the screen, as soon as it can be pressed. */
   press(id: string): void {
-    const found = this.screen?.buttons.find((button) => button.id === id);
+    const find = () => this.screen?.buttons.find((button) => button.id === id);
+    if (find()?.look === 'off') this.wait();
+    const found = find();
     if (!found || found.look === 'off') throw new Error(`"${id}" cannot be pressed on the screen "${this.shown}"`);
     found.act();
   }
@@ -264,6 +270,7 @@ export function browser(server: StudyServer, storageLimitMs?: number) {
     });
     const clock = new StandingClock();
     const display = new ShownParts();
+    display.wait = () => clock.pass(inertSeconds + 0.5);
     const host = new TestHost();
     let go: (to: Invited | 'reload') => void = () => undefined;
     const wentTo = new Promise<Invited | 'reload'>((resolve) => {

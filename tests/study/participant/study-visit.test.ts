@@ -1,5 +1,6 @@
 import { estimatorNames } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
+import { inertSeconds } from '../../../src/study/participant/inert-sheet';
 import { openStudyVault } from '../../../src/study/participant/session/study-vault';
 import { aWomanOf26 } from '../model/studies';
 import {
@@ -180,6 +181,31 @@ describe('a round', () => {
     ]);
   });
 
+  test('is announced as set aside after a void, on a sheet that takes no press at first', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheQuestions(server);
+    expect(tab.display.shown).toBe('question-Q1');
+    const command = { type: 'void-block', reason: 'the phone rang', repeat: true } as const;
+    await server.experimenter.command('paper', 'P01', command);
+    await tab.exchange();
+    const looks = () => tab.display.screen?.buttons.map(({ id, look }) => [id, look === 'off']);
+    expect(tab.display.shown).toBe('calibration');
+    expect(tab.display.screen?.text[0]).toBe('The experimenter has set the last part aside. It does not count.');
+    expect(looks()).toEqual([
+      ['calibrate', true],
+      ['pause', true],
+    ]);
+    tab.pass(inertSeconds + 0.5);
+    expect(looks()).toEqual([
+      ['calibrate', false],
+      ['pause', false],
+    ]);
+    // The practice was finished before.
+    await measure(tab);
+    expect(tab.visit.state().step).toBe('archery/1/trial-1');
+    expect(tab.display.screen?.text[0]).not.toContain('set the last part aside');
+  });
+
   test('stands in a pause, headset on or off, and goes on as the same attempt', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
@@ -219,8 +245,6 @@ describe('a round', () => {
     expect(archery.running).toBe(false);
     expect(tab.display.shown).toBe('calibration');
     await measure(tab);
-    play(tab, 10);
-    await canStart(tab);
     play(tab, 30);
     await tab.exchange();
     const rounds = server.bodies('trial').filter(({ condition }) => condition !== null);

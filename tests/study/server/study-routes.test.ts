@@ -4,7 +4,7 @@ import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { bodyLimits } from '../../../src/study/server/routes/route';
 import { reportFigures } from '../../reliability/report-figures';
-import { paperPlan, session } from '../model/studies';
+import { begun, consentAt, paperPlan, session } from '../model/studies';
 import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';
 import { asSent } from './stored-studies';
 
@@ -64,6 +64,32 @@ describe('a participant', () => {
     expect((await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } })).status).toBe(
       401,
     );
+  });
+
+  test('gets no seat in a match that the group has finished', async () => {
+    const { ask, claim, store } = await servedPaperStudy();
+    const [first, second] = (scheduleFor(paperPlan(), 'P01').groups.ball?.members ?? []) as [string, string];
+    const tokens = new Map<string, string>();
+    const reportAt = async (participant: string, step: string, more: object = {}) => {
+      const progress = { ...begun(paperPlan(), participant), motion: false, step, ...more };
+      const sent = { token: tokens.get(participant) ?? '', json: progress };
+      expect((await ask('PUT', own(participant, '/progress'), sent)).status).toBe(204);
+    };
+    for (const participant of [first, second]) {
+      tokens.set(participant, await claim(participant));
+      store.records.store('paper', participant, [consentAt(now, participant)], now);
+    }
+    const seat = () =>
+      ask('POST', own(first, '/seat'), { token: tokens.get(first) ?? '', json: { step: 'ball/1/trial-1', run: 1 } });
+    await reportAt(second, 'ball/1/trial-1');
+    expect((await seat()).status).toBe(200);
+    await reportAt(second, 'ball/1/rest');
+    const refused = await seat();
+    expect(refused.status).toBe(409);
+    expect(refused.json).toMatchObject({ field: 'step', error: `${second} has gone on: the match is over` });
+    // In another run of the block the match is still to come.
+    await reportAt(second, 'ball/1/rest', { runs: { 'ball/1': 2 } });
+    expect((await seat()).status).toBe(200);
   });
 });
 

@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { begin, reported } from '../../../src/study/model/progress/progress';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
+import { studyTables } from '../../../src/study/model/tables/study-tables';
 import { normalisedCode } from '../../../src/study/server/codes';
 import { type StudyStorage, unpacked } from '../../../src/study/server/study-storage';
 import { completed, paperPlan, session } from '../model/studies';
@@ -176,6 +177,25 @@ describe.each(adapters)('a storage in $adapter', ({ open }) => {
       await store.deletion.delete('paper', 'P01', 'experimenter', now);
       expect((await store.records.all('paper')).every(({ participant }) => participant === 'P02')).toBe(true);
       expect(await store.records.all('paper')).toHaveLength(completed('P02').length);
+    });
+
+    test('of motion alone deletes the recordings, which no device adds to, and leaves the rest', async () => {
+      const store = await withPaperStudy();
+      const { withdrawalCode } = await store.places.claim('paper', 'P01', now);
+      const records = completed('P01', { motion: true });
+      await store.records.store('paper', 'P01', records, now);
+      await store.motion.store('paper', 'P01', 'archery/1/trial-1@1.1:trial', 'frames', now);
+      const withdraw = () => store.deletion.withdrawMotion('paper', withdrawalCode as string, now);
+      expect(await withdraw()).toMatchObject({ reason: 'withdrawn', records: 0, motionFiles: 1 });
+      expect(await withdraw()).toMatchObject({ records: 0, motionFiles: 0 });
+      expect(await store.motion.all('paper')).toEqual([]);
+      await expect(async () => store.motion.store('paper', 'P01', 'later', 'frames', now)).rejects.toThrow('motion');
+      const stored = await store.records.all('paper', 'P01');
+      expect(stored).toHaveLength(records.length + 1);
+      expect(stored.at(-1)).toMatchObject({ author: 'participant', body: { type: 'motion-withdrawn' } });
+      expect(studyTables(stored, paperPlan())[0]?.rows[0]).toMatchObject({ motion_consent: false });
+      const commands = await store.commands.after('paper', 'P01', 0);
+      expect(commands.map(({ command }) => command)).toEqual([{ type: 'withdraw-motion' }]);
     });
 
     test('takes the withdrawal code, however it is typed, and is for good', async () => {

@@ -1,7 +1,7 @@
 import type { GameName } from 'threepoint-games/all';
-import type { HostedGame } from 'threepoint-rooms/room';
+import type { HostedGame, RoomView, SeenAbsence } from 'threepoint-rooms/room';
 import { PhrasedError } from 'threepoint-study';
-import type { TaskEnd, TaskEvent, TaskPlace } from 'threepoint-study/participant';
+import type { Awaited, TaskEnd, TaskEvent, TaskPlace, TrialAbsence } from 'threepoint-study/participant';
 import type { ActivityRunner, RunnerServices } from '../../activity/activity';
 import type { MatchFrame } from './match-frame';
 import type { MatchPlay } from './match-play';
@@ -28,33 +28,49 @@ const bellDelay = 4;
  * ends.
  */
 class MatchTrial<Game extends HostedGame> {
-  /** Second of the match at which it began; null: not yet. */
+  /** Second of the match at which the trial began; null: not yet. */
   #from: number | null = null;
+  /** Second of the match at which the room started it. */
+  #startedAt = 0;
   /** The room that it began in. */
   #epoch = '';
   #happened: TaskEvent[] = [];
   #paused = false;
   /** Members who are not ready. */
   #missing: readonly string[];
+  /** The newest absence that was passed on, or that belongs to an earlier match. */
+  #lastAbsence = 0;
+  #welcomes: number;
+  /** Second at which the room started the match that ran when this trial was started; null: none ran. */
+  readonly #joinedLate: number | null;
+  /** The figures of the newest frame of the match. */
+  #newest: Pick<TaskEnd, 'seconds' | 'score' | 'maximum'> = { seconds: 0, score: 0, maximum: 1 };
   end: TaskEnd | null = null;
   /** The match is gone, and with it the trial's result. */
   interrupted = false;
 
   /**
-   * members: of the participant's group. joinsLate: the match ran before this trial was started: they were in it
-   * before, and it is the rest of it that counts.
+   * `room`: as it is when the trial starts. If its match runs then, the participant was in it before, and this trial is
+   * the rest of it.
    */
   constructor(
     private readonly task: MatchTask<Game>,
     private readonly seconds: number,
-    private readonly members: readonly string[],
-    private readonly joinsLate: boolean,
+    private readonly place: TaskPlace,
+    room: RoomView<Game> | null,
   ) {
-    this.#missing = members;
+    this.#missing = place.members;
+    this.#welcomes = room?.welcomeCount ?? 0;
+    this.#joinedLate = room?.match?.phase === 'running' ? task.figures(room.match).startedAt : null;
   }
 
   /** `getReady`: asks the room to count this participant as ready. */
-  played(frame: MatchFrame<Game>, getReady: () => void): void {
+  played(frame: MatchFrame<Game>, room: RoomView<Game>, getReady: () => void): void {
+    if (room.welcomeCount !== this.#welcomes) {
+      // The room waits until a participant whose connection was lost is ready again.
+      this.#welcomes = room.welcomeCount;
+      getReady();
+    }
     if (this.end || this.interrupted) return;
     const { state, connection } = frame;
     const over = state.phase === 'over';
@@ -62,17 +78,29 @@ class MatchTrial<Game extends HostedGame> {
     const began = this.#from !== null;
     this.interrupted = (began && frame.epoch !== this.#epoch) || (connection === 'ended' && !(began && over));
     if (this.interrupted) return;
+    if (began && (state.phase === 'ready' || this.task.figures(state).startedAt !== this.#startedAt)) {
+      this.#giveUp();
+      return;
+    }
     this.#paused = frame.paused;
-    if (this.#from === null) this.#begin(frame, getReady);
-    if (this.#from !== null) this.#follow(frame, frame.time - this.#from);
+    if (this.#from === null) this.#begin(frame, room, getReady);
+    if (this.#from !== null) this.#follow(frame);
   }
 
-  #begin({ state, me, players, time, epoch }: MatchFrame<Game>, getReady: () => void): void {
+  /** The room has given up the match, because a participant was away for too long. */
+  #giveUp(): void {
+    if (this.place.afterAbsence === 'repeat') this.interrupted = true;
+    else this.end = { ...this.#newest, ...this.#late, ended: 'absence' };
+  }
+
+  #begin({ state, me, players, time, epoch }: MatchFrame<Game>, room: RoomView<Game>, getReady: () => void): void {
     const there = players.flatMap((player) => (player?.ready ? [player.name] : []));
-    this.#missing = this.members.filter((name) => !there.includes(name));
+    this.#missing = this.place.members.filter((name) => !there.includes(name));
     if (state.phase === 'running') {
+      this.#startedAt = this.task.figures(state).startedAt ?? time;
       // However late this page draws its first frame of the match.
-      this.#from = this.joinsLate ? time : (this.task.figures(state).startedAt ?? time);
+      this.#from = this.#joinedLate === this.#startedAt ? time : this.#startedAt;
+      this.#lastAbsence = room.absences.findLast(({ givenUp }) => givenUp)?.number ?? 0;
       this.#epoch = epoch;
     } else if (me !== null && !state.players[me]?.ready) {
       // The room may have forgotten: a server that was restarted, a seat that was only now given.
@@ -80,28 +108,47 @@ class MatchTrial<Game extends HostedGame> {
     }
   }
 
-  /** since: the trial's beginning [s]. */
-  #follow({ state, connection, me, events }: MatchFrame<Game>, since: number): void {
-    const at = Math.max(0, since);
+  /** The second of the match at which a trial in a match that ran before began. */
+  get #late(): Pick<TaskEnd, 'from'> {
+    const from = (this.#from ?? 0) - this.#startedAt;
+    return from > 0 ? { from } : {};
+  }
+
+  #follow({ state, connection, me, events, time }: MatchFrame<Game>): void {
+    const at = Math.max(0, time - (this.#from ?? time));
     this.#happened.push(...events.flatMap((event) => this.task.taskEvents(event, me, at)));
     const figures = this.task.figures(state);
     // If the room's own bell rings no later, it decides: a ball may still be in the air.
-    const limit = figures.seconds <= this.seconds ? this.seconds + bellDelay : this.seconds;
+    const seconds = this.seconds - (this.#late.from ?? 0);
+    const limit = figures.seconds <= this.seconds ? seconds + bellDelay : seconds;
     const over = state.phase === 'over';
+    this.#newest = { seconds: Math.min(at, limit), score: figures.score, maximum: figures.of };
     // Without a connection this page does not know the score: it waits for the connection.
     if (!over && (at < limit || connection !== 'joined')) return;
-    this.end = {
-      seconds: Math.min(at, limit),
-      ended: (over && figures.end) || 'time',
-      score: figures.score,
-      maximum: figures.of,
-    };
+    this.end = { ...this.#newest, ...this.#late, ended: (over && figures.end) || 'time' };
   }
 
   take(): TaskEvent[] {
     const taken = this.#happened;
     this.#happened = [];
     return taken;
+  }
+
+  /** Returns the absences of its match that ended since the last call. */
+  takeAbsences(absences: readonly SeenAbsence[]): TrialAbsence[] {
+    if (this.#from === null) return [];
+    return absences.flatMap(({ number, seats, at, seconds, givenUp }) => {
+      if (seconds === null || number <= this.#lastAbsence) return [];
+      this.#lastAbsence = number;
+      return [
+        { participants: membersOn(seats, this.place), time: Math.max(0, at - this.#startedAt), seconds, givenUp },
+      ];
+    });
+  }
+
+  /** The second of the match; null: it has not begun. */
+  get second(): number | null {
+    return this.#from === null ? null : this.#newest.seconds + (this.#late.from ?? 0);
   }
 
   get waitingFor(): readonly string[] | null {
@@ -111,6 +158,18 @@ class MatchTrial<Game extends HostedGame> {
   get standing(): boolean {
     return this.#paused && this.end === null;
   }
+}
+
+/** Returns the codes of the participants on these seats. */
+const membersOn = (seats: readonly number[], { members }: Pick<TaskPlace, 'members'>): string[] =>
+  seats.flatMap((seat) => members[seat] ?? []);
+
+/** Returns the absent participants of a match that stands now; null: it does not stand for any. */
+function awaitedIn(room: RoomView<HostedGame>, place: TaskPlace): Awaited | null {
+  const open = room.absences.at(-1);
+  if (open?.seconds !== null) return null;
+  const away = open.seats.filter((seat) => room.seats[seat]?.presence !== 'here');
+  return { participants: membersOn(away.length > 0 ? away : open.seats, place), secondsLeft: open.secondsLeft };
 }
 
 /** Makes a game of several people a task of a study. */
@@ -129,17 +188,26 @@ export function createMatchRunner<Game extends HostedGame>(
       if (!(await services.open(next))) throw new PhrasedError(`round.${task.name}`);
     },
     start({ seconds }) {
+      if (!place) throw new Error('a trial was started before it was prepared');
       const match = play();
-      trial = new MatchTrial(task, seconds, place?.members ?? [], match?.room?.match?.phase === 'running');
+      trial = new MatchTrial(task, seconds, place, match?.room ?? null);
       // The room still applies the pause that this page requested before it was reloaded.
       match?.connection?.setPaused(false);
       match?.connection?.setReady(true);
     },
     played() {
-      const newest = play()?.newest;
-      if (newest) trial?.played(newest, getReady);
+      const match = play();
+      if (match?.newest && match.room) trial?.played(match.newest, match.room, getReady);
     },
     take: () => trial?.take() ?? [],
+    takeAbsences: () => trial?.takeAbsences(play()?.room?.absences ?? []) ?? [],
+    get awaited() {
+      const room = play()?.room;
+      return room && place ? awaitedIn(room, place) : null;
+    },
+    get second() {
+      return trial?.second ?? null;
+    },
     get end() {
       return trial?.end ?? null;
     },

@@ -17,6 +17,8 @@ export interface VoicesOptions {
   relayOnly(): boolean;
 }
 
+const spectatorText = 'You are watching. Only players on the seats can talk.';
+
 /** The interval between two repairs of the connections [ms], whether or not the page is visible. */
 const watchMs = 500;
 
@@ -83,8 +85,13 @@ export class Voices {
     if ((this.#call || this.#phase === 'joining') && client.status.phase === 'ended') this.leave();
   }
 
-  /** Shows or hides the consent text. */
+  /** Shows or hides the consent text. A spectator learns instead that only players talk. */
   ask(on: boolean): void {
+    this.#fault = null;
+    if (on && this.#isSpectator) {
+      this.#fault = spectatorText;
+      return;
+    }
     if (this.#phase === 'off' && on) this.#phase = 'asked';
     else if (this.#phase === 'asked' && !on) this.#phase = 'off';
   }
@@ -94,6 +101,11 @@ export class Voices {
     const { openAudio } = this.#options;
     const terms = this.#terms;
     if (!terms || this.#disposed || this.#call || this.#phase === 'joining') return;
+    if (this.#isSpectator) {
+      this.#phase = 'off';
+      this.#fault = spectatorText;
+      return;
+    }
     const turn = this.#turn;
     this.#phase = 'joining';
     this.#fault = null;
@@ -154,14 +166,18 @@ export class Voices {
     this.leave();
   }
 
+  get #isSpectator(): boolean {
+    return this.#options.client.room?.mySeat === null;
+  }
+
   /** The user is muted or has no microphone. */
   get #silent(): boolean {
     return this.#muted || this.#microphone.track === null;
   }
 
   get #message(): string | null {
-    if (this.#phase !== 'in') return this.#fault;
-    if (this.#options.client.room?.mySeat === null) return 'You are watching. Only players on the seats can talk.';
+    if (this.#phase !== 'in') return this.#fault === spectatorText && !this.#isSpectator ? null : this.#fault;
+    if (this.#isSpectator) return spectatorText;
     const { errorMessage } = this.#microphone;
     return errorMessage && `${errorMessage} You can still hear the others.`;
   }

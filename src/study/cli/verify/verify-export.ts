@@ -5,6 +5,7 @@ import type { Software } from 'threepoint-http';
 import { openStudyFile } from '../../pages/study-file';
 import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../../server/export/export-zip';
 import { csvRows } from './csv-rows';
+import { trialProblems } from './trial-rules';
 
 export interface Verdict {
   /** The differences, each in a sentence; empty: none. */
@@ -131,15 +132,21 @@ function contentProblems(files: Files, computed: Readonly<Record<string, string>
 }
 
 /**
- * Recomputes every file of an export from its raw records, its plan and its recordings. Throws an Error with a sentence
- * if that is impossible.
+ * Recomputes every file of an export from its raw records, its plan and its recordings, and checks the records against
+ * the rules of trials. Throws an Error with a sentence if that is impossible.
  */
 export function verifyExport(zip: Uint8Array): Verdict {
   const files = unpacked(zip);
   const { content, envelope } = rawOf(zip, files);
   const computed = exportFiles(content, envelope.participant ?? undefined);
   return {
-    problems: [...new Set([...checksumProblems(files), ...contentProblems(files, computed)])],
+    problems: [
+      ...new Set([
+        ...checksumProblems(files),
+        ...contentProblems(files, computed),
+        ...trialProblems(content.records, content.plan),
+      ]),
+    ],
     files: Object.keys(computed).length,
     records: content.records.length,
     exportedBy: content.software.exportedBy,

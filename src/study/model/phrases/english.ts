@@ -141,6 +141,7 @@ export const english = {
 
   // Rounds.
   'ready.title': 'Ready?',
+  'ready.awaited': 'Your group is waiting for you in a match that has begun. Press Start. Time left: {time}',
   'ready.again': 'The last attempt was interrupted and does not count.',
   ...gamePhrases('en', 'ready'),
   'ready.practice': {
@@ -152,6 +153,7 @@ export const english = {
     other: 'You have {count} seconds from the start. Stay inside the marked zone.',
   },
   'ready.raise': 'To pause or to stop, hold both hands above your head.',
+  voided: 'The experimenter has set the last part aside. It does not count.',
   'round.failed': 'This round cannot start',
   'round.body': 'The body of this round could not be loaded.',
   ...gamePhrases('en', 'round'),
@@ -163,6 +165,8 @@ export const english = {
   },
   'waiting.others': 'It begins as soon as the others are ready too.',
   'standing.text': 'One of your group has paused. The game will continue where it stopped.',
+  'standing.away': 'The match waits for {names}. It will continue where it stopped.',
+  'standing.limit': 'It is given up when this time is over:',
   'rest.title': 'A rest',
   'rest.text': 'Relax your arms. The study continues by itself.',
 
@@ -261,6 +265,7 @@ export const english = {
     'All your data in this study are deleted at once: answers, results, movements and progress. Only a receipt stays, with the time and the number of deleted records. You need not give a reason. The deletion cannot be undone, and you cannot take part again.',
   'withdrawal.sure': 'I want all my data deleted.',
   'withdrawal.delete': 'Delete everything',
+  'withdrawal.motionOnly': 'Delete only my movements',
   'withdrawal.lookUp': 'The code was shown to you after you agreed to take part; no one can look it up.',
   'withdrawal.contact': 'If something does not work: {contact}',
   'withdrawal.unknownCode':
@@ -270,6 +275,9 @@ export const english = {
   'withdrawal.failed': 'The deletion failed: {reason}.',
   'receipt.name': 'Receipt',
   'receipt.title': 'Everything is deleted',
+  'receipt.motionTitle': 'Your recorded movements are deleted',
+  'receipt.motionKept':
+    'No more movements are recorded. Your answers and results stay; the same code deletes them too.',
   'receipt.number': 'Receipt {number} of the study “{study}”',
   'receipt.deleted': 'Deleted of {participant}: {records}, {recordings}',
   'receipt.records': { one: '{count} record', other: '{count} records' },

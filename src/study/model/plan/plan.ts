@@ -18,6 +18,8 @@ import { planSchema } from './plan-schema';
 /** A study as its file has it. */
 export type StudyPlan = v.InferOutput<typeof planSchema>;
 export type StudyTask = StudyPlan['tasks'][number];
+/** What a match of a group does when a participant is away. */
+export type AbsenceRule = NonNullable<StudyTask['absence']>;
 export type StudyCondition = StudyPlan['conditions'][number];
 export type StudyCohort = NonNullable<StudyPlan['cohorts']>[number];
 
@@ -57,6 +59,10 @@ export function taskTitle(plan: StudyPlan, id: string, language: string = langua
   const task = plan.tasks.find((one) => one.id === id);
   return task ? inLanguage(task.title, language) : id;
 }
+
+/** Returns what a match of a task does when a participant is away; by default it waits a minute and is repeated. */
+export const absenceRuleOf = ({ absence }: Pick<StudyTask, 'absence'>): AbsenceRule =>
+  absence ?? { waitSeconds: 60, after: 'repeat' };
 
 /** Returns the ids of the questionnaires after each block of a task, in the order asked. */
 export const questionnairesAfter = ({ questionnaire }: Pick<StudyTask, 'questionnaire'>): readonly string[] =>
@@ -211,6 +217,9 @@ export function checkedPlan(value: unknown): StudyPlan {
   rejectUnknownMeasures(plan);
   plan.tasks.forEach(({ game, groupSize }, index) => {
     const { players, because } = games[game];
+    if (plan.tasks[index]?.absence && players === 1) {
+      throw new ValidationError(`tasks[${index}].absence`, 'is for games of a group: a game for one waits for nobody');
+    }
     if (groupSize !== players) {
       throw new ValidationError(`tasks[${index}].groupSize`, `${because}: expected ${players}`);
     }

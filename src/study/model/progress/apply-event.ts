@@ -6,7 +6,7 @@ import { checkedAnswer, completeAnswers } from '../questionnaires/questionnaires
 import { reachedRule } from '../questionnaires/stopping-rule';
 import { checkedDemographics } from '../records/demographics';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from '../records/study-record';
-import { checkedOutcome, type TrialOutcome } from '../records/trial-log';
+import { checkedOutcome, type TrialAbsence, type TrialOutcome } from '../records/trial-log';
 import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
 import { Rejection } from './rejection';
 import type { TargetBlock } from './study-api';
@@ -26,14 +26,23 @@ export type ProgressEvent =
   | { readonly type: 'submit' }
   /** Lets time pass. */
   | { readonly type: 'tick' }
-  | { readonly type: 'pause' }
+  /** `by`: absent: the participant. */
+  | { readonly type: 'pause'; readonly by?: 'experimenter' }
+  /** The match of the started trial runs or stands at this second. */
+  | { readonly type: 'match-clock'; readonly runs: boolean; readonly second: number }
+  /** The match of the present trial waited for participants. */
+  | { readonly type: 'absence'; readonly absence: TrialAbsence }
+  /** The group finished the present trial without this participant. */
+  | { readonly type: 'missed' }
   /** Ends the session at any step. */
   | { readonly type: 'stop'; readonly by: 'participant' | 'experimenter'; readonly reason?: string }
   /** Continues after the participant was asked, because of answers, whether to stop. */
   | { readonly type: 'go-on' }
-  | { readonly type: 'resume' }
+  | { readonly type: 'resume'; readonly by?: 'experimenter' }
   /** Voids the present block if it is the intended one; repeat: it starts again, otherwise the next one follows. */
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean; readonly of?: TargetBlock }
+  /** The consent to motion was withdrawn on the withdrawal page, which the server has recorded. */
+  | { readonly type: 'withdraw-motion' }
   | { readonly type: 'remark'; readonly text: string }
   /**
    * Reports that the page was reloaded, here or on another device. A running trial is void and repeated; everything
@@ -56,8 +65,12 @@ type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type
 const acceptedInPause: readonly ProgressEvent['type'][] = [
   'resume',
   'remark',
+  'withdraw-motion',
   'void-block',
   'trial-finished',
+  'match-clock',
+  'absence',
+  'missed',
   'reload',
   'tick',
   'stop',
@@ -137,7 +150,9 @@ class SessionAtEvent {
 
   /** Returns the session at the next step. */
   moveOn(from: Progress, records: readonly StudyRecord[] = []): EventResult {
-    return this.enterStep(from, this.schedule.steps[this.schedule.steps.indexOf(this.step) + 1] as StudyStep, records);
+    const { steps } = this.schedule;
+    const next = steps.slice(steps.indexOf(this.step) + 1).find((step) => !isFinishedPractice(step, from));
+    return this.enterStep(from, next as StudyStep, records);
   }
 
   enterStep(from: Progress, step: StudyStep, records: readonly StudyRecord[]): EventResult {
@@ -151,12 +166,21 @@ class SessionAtEvent {
    * Returns the session at the start of a step. Clocks of rests and questionnaires start at once, games and calibration
    * wait for a start.
    */
-  atStep(from: Progress, step: StudyStep): Progress {
+  atStep({ waiting: _, voided: __, ...from }: Progress, step: StudyStep): Progress {
     const running = step.kind === 'rest' || step.kind === 'questionnaire';
     const since = running && !from.paused ? this.now : null;
     return { ...from, step: step.id, running, since, elapsed: 0, draft: {}, attempt: 1 };
   }
 }
+
+const blockKey = ({ task, block }: { readonly task: string; readonly block: number }): string => `${task}/${block}`;
+
+const isPractice = (step: StudyStep): boolean =>
+  step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('/rest-after-tutorial'));
+
+/** Returns whether a step is the practice of a repeated block in which it was finished before. */
+const isFinishedPractice = (step: StudyStep, { practised = [] }: Progress): boolean =>
+  'task' in step && isPractice(step) && practised.includes(blockKey(step));
 
 function consent(session: SessionAtEvent, { version, motion, language }: EventOf<'consent'>): EventResult | null {
   if (session.step.kind !== 'consent') return null;
@@ -255,11 +279,32 @@ function tick(session: SessionAtEvent): EventResult {
   return over ? session.moveOn(progress) : session.accept(runningOn(progress, session.now));
 }
 
-function pause(session: SessionAtEvent): EventResult | null {
+function matchClock(session: SessionAtEvent, { runs, second }: EventOf<'match-clock'>): EventResult | null {
+  const { step, now } = session;
+  const { waiting: _, ...progress } = session.progress;
+  if (!isPlayed(step) || !progress.running) return null;
+  const since = runs && !progress.paused ? now : null;
+  return session.accept({ ...progress, ...(!runs && { waiting: true }), since, elapsed: second });
+}
+
+function absence(session: SessionAtEvent, event: EventOf<'absence'>): EventResult | null {
+  const { step, place, progress } = session;
+  if (!isPlayed(step) || !place) return null;
+  return session.withEvent(progress, { type: 'absence', place, ...event.absence });
+}
+
+function missed(session: SessionAtEvent): EventResult | null {
+  const { step, place, progress } = session;
+  if (!isPlayed(step) || !place) return null;
+  const recorded = session.withEvent(progress, { type: 'missed', place, step: step.id });
+  return session.moveOn(recorded.progress, recorded.records);
+}
+
+function pause(session: SessionAtEvent, { by }: EventOf<'pause'>): EventResult | null {
   const { step, progress } = session;
   if (step.kind === 'end') return null;
   const stopped = { ...progress, paused: true, since: null, elapsed: elapsedSeconds(progress, session.now) };
-  return session.withEvent(stopped, { type: 'pause' });
+  return session.withEvent(stopped, { type: 'pause', by: by ?? 'participant' });
 }
 
 function stop(session: SessionAtEvent, { by, reason }: EventOf<'stop'>): EventResult | null {
@@ -286,12 +331,12 @@ function goOn(session: SessionAtEvent): EventResult | null {
   return session.withEvent(begins, { type: 'go-on' });
 }
 
-function resume(session: SessionAtEvent): EventResult | null {
+function resume(session: SessionAtEvent, { by }: EventOf<'resume'>): EventResult | null {
   const { progress } = session;
   if (!progress.paused) return null;
   return session.withEvent(
-    { ...progress, paused: false, since: progress.running ? session.now : null },
-    { type: 'resume' },
+    { ...progress, paused: false, since: progress.running && !progress.waiting ? session.now : null },
+    { type: 'resume', by: by ?? 'participant' },
   );
 }
 
@@ -306,14 +351,22 @@ function voidBlock(session: SessionAtEvent, event: EventOf<'void-block'>): Event
   const { runs } = session.progress;
   const reason = checked(text(500), event.reason);
   const ofBlock = (step: StudyStep) => 'task' in step && step.task === task && step.block === block;
-  const target = (repeat ? steps.find(ofBlock) : steps[steps.findLastIndex(ofBlock) + 1]) as StudyStep;
+  const { practised = [] } = session.progress;
+  const isPastPractice = steps.findLastIndex((step) => ofBlock(step) && isPractice(step)) < steps.indexOf(session.step);
+  const finished = repeat && isPastPractice ? { practised: [...new Set([...practised, blockKey(session.place)])] } : {};
   const next = {
     ...session.progress,
-    runs: repeat ? { ...runs, [`${task}/${block}`]: run + 1 } : runs,
+    runs: repeat ? { ...runs, [blockKey(session.place)]: run + 1 } : runs,
     paused: false,
+    ...finished,
   };
+  const isSkipped = (step: StudyStep) => isFinishedPractice(step, next);
+  const target = (
+    repeat ? steps.find((step) => ofBlock(step) && !isSkipped(step)) : steps[steps.findLastIndex(ofBlock) + 1]
+  ) as StudyStep;
   const voided = session.withEvent(next, { type: 'void-block', task, block, run, reason, repeat });
-  return session.enterStep(voided.progress, target, voided.records);
+  const entered = session.enterStep(voided.progress, target, voided.records);
+  return { ...entered, progress: { ...entered.progress, voided: true } };
 }
 
 function remark(session: SessionAtEvent, event: EventOf<'remark'>): EventResult {
@@ -321,12 +374,17 @@ function remark(session: SessionAtEvent, event: EventOf<'remark'>): EventResult 
   return session.withEvent(session.progress, { type: 'remark', text: checked(text(2000), event.text) });
 }
 
+function withdrawMotion({ progress, accept }: SessionAtEvent): EventResult {
+  return accept({ ...progress, motion: progress.motion === null ? null : false });
+}
+
 function reload(session: SessionAtEvent): EventResult {
   const { step, place, progress } = session;
   if (!isPlayed(step) || !progress.running || !place) {
     return session.withEvent(runningOn(progress, session.now), { type: 'reload' });
   }
-  const again = { ...progress, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
+  const { waiting: _, ...rest } = progress;
+  const again = { ...rest, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
   return session.withEvent(again, { type: 'interrupted', place, step: step.id });
 }
 
@@ -338,5 +396,6 @@ type Handler<Event extends ProgressEvent = ProgressEvent> = (
 
 const handlers: { readonly [Type in ProgressEvent['type']]: Handler<EventOf<Type>> } = {
   ...{ consent, demographics, calibrated, start, 'trial-finished': trialFinished, answer, submit, tick },
+  ...{ 'match-clock': matchClock, absence, missed, 'withdraw-motion': withdrawMotion },
   ...{ pause, resume, stop, 'go-on': goOn, 'void-block': voidBlock, remark, reload },
 };

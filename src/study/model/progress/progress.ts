@@ -43,6 +43,12 @@ const progressSchema = v.object({
   runs: v.record(v.string(), integerBetween(1, 1000)),
   /** Whether the participant is asked, because of answers, whether to stop; absent: not. */
   unwell: v.exactOptional(v.boolean()),
+  /** The repeated blocks, "task/block", whose practice was finished before they were voided; absent: none. */
+  practised: v.exactOptional(v.array(text(120))),
+  /** Whether the match of a started trial has not begun or stands, and with it the clock; absent: not. */
+  waiting: v.exactOptional(v.boolean()),
+  /** Whether a void block led to this step, which its sheet states; absent: not. */
+  voided: v.exactOptional(v.boolean()),
   /** Whether the participant stopped, or was stopped, before the end; absent: not. */
   stopped: v.exactOptional(v.boolean()),
   /**
@@ -126,7 +132,7 @@ export const elapsedSeconds = (progress: Progress, now: number): number =>
 export const reported = (progress: Progress, now: number): Progress =>
   progress.since === null ? progress : { ...progress, elapsed: elapsedSeconds(progress, now), since: null };
 
-const runs = ({ running, paused }: Progress): boolean => running && !paused;
+const runs = ({ running, paused, waiting }: Progress): boolean => running && !paused && !waiting;
 
 /** Returns a report a number of seconds later, with its clock advanced. */
 export const sinceReport = (report: Progress, seconds: number): Progress =>

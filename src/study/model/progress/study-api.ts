@@ -24,8 +24,8 @@ export const commandSchema = v.variant('type', [
   }),
 ]);
 
-/** A command of the experimenter to a participant's page. */
-export type StudyCommand = v.InferOutput<typeof commandSchema>;
+/** A command to a participant's page: of the experimenter, or of the server after the consent to motion was withdrawn. */
+export type StudyCommand = v.InferOutput<typeof commandSchema> | { readonly type: 'withdraw-motion' };
 
 /** The largest recording that the server accepts [bytes]. */
 export const maxMotionBytes = 16 * 2 ** 20;
@@ -60,6 +60,8 @@ export interface ParticipantState {
     readonly paused: boolean;
     /** Whether the participant is asked, because of answers, whether to stop. */
     readonly unwell: boolean;
+    /** Whether a started trial waits for others, or its match stands. */
+    readonly waiting: boolean;
     /** Whether the session was ended before its end. */
     readonly stopped: boolean;
     /** null: the step has no time limit. */

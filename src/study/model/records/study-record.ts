@@ -13,7 +13,7 @@ import { languageTag } from '../phrases/localized-text';
 import type { StudyPlan } from '../plan/plan';
 import { checkedAnswers, questionnaireNamed } from '../questionnaires/questionnaires';
 import { demographicsSchema } from './demographics';
-import { calibrationEntries, outcomeSchema } from './trial-log';
+import { absenceSchema, calibrationEntries, outcomeSchema } from './trial-log';
 
 /** The version of stored records, which increases with every change of meaning. */
 export const recordVersion = 1;
@@ -33,6 +33,8 @@ const placeSchema = v.object({
   attempt: blockNumber,
 });
 
+const author = v.picklist(['participant', 'experimenter']);
+
 const eventSchema = v.variant('type', [
   v.object({
     type: v.literal('void-block'),
@@ -43,6 +45,10 @@ const eventSchema = v.variant('type', [
     repeat: v.boolean(),
   }),
   v.object({ type: v.literal('interrupted'), place: placeSchema, step: text(120) }),
+  /** The match of the group waited for participants. */
+  v.object({ type: v.literal('absence'), place: placeSchema, ...absenceSchema.entries }),
+  /** The group finished the match without this participant. */
+  v.object({ type: v.literal('missed'), place: placeSchema, step: text(120) }),
   /** Answers reached a stopping rule of the plan. */
   v.object({
     type: v.literal('unwell'),
@@ -56,13 +62,16 @@ const eventSchema = v.variant('type', [
   /** The session was ended at this step, before its end. */
   v.object({
     type: v.literal('stop'),
-    by: v.picklist(['participant', 'experimenter']),
+    by: author,
     reason: v.exactOptional(text(500)),
     place: v.nullable(placeSchema),
     step: text(120),
   }),
-  v.object({ type: v.literal('pause') }),
-  v.object({ type: v.literal('resume') }),
+  /** `by` is absent in older records. */
+  v.object({ type: v.literal('pause'), by: v.exactOptional(author) }),
+  v.object({ type: v.literal('resume'), by: v.exactOptional(author) }),
+  /** The consent to motion was withdrawn with the code, and the recordings were deleted. */
+  v.object({ type: v.literal('motion-withdrawn') }),
   v.object({ type: v.literal('remark'), text: text(2000) }),
   v.object({ type: v.literal('reload') }),
   v.object({ type: v.literal('finished') }),
@@ -147,7 +156,7 @@ export type StudyRecord = v.InferOutput<typeof recordSchema>;
 /** The fields that the server adds to a record. They are absent in records of earlier versions and of no server. */
 const arrivalSchema = v.object({
   /** The token with which the record came. */
-  author: v.exactOptional(v.picklist(['participant', 'experimenter'])),
+  author: v.exactOptional(author),
   /** Seconds since 1970 by the server's clock. */
   receivedAt: v.exactOptional(v.number()),
 });

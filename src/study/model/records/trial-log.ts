@@ -1,4 +1,12 @@
-import { type Calibration, checked, handTiltsSchema, integerBetween, numberBetween, text } from 'threepoint/core';
+import {
+  type Calibration,
+  checked,
+  handTiltsSchema,
+  integerBetween,
+  numberBetween,
+  participantId,
+  text,
+} from 'threepoint/core';
 import { type GameEnd, gameNames, games } from 'threepoint-games/all';
 import * as v from 'valibot';
 import { type TrialClock, trialClockSchema } from './trial-clock';
@@ -32,12 +40,28 @@ export const calibrationEntries = {
   handTilts: v.optional(handTiltsSchema),
 };
 
-/** Why a trial ends: for a reason of its game, at its time, or early. */
-export const trialEnds: readonly (GameEnd | 'time' | 'stopped')[] = [
+/** Why a trial ends: for a reason of its game, at its time, because a participant of the group was away, or early. */
+export const trialEnds: readonly (GameEnd | 'time' | 'absence' | 'stopped')[] = [
   ...gameNames.flatMap((name): readonly GameEnd[] => games[name].ends),
   'time',
+  'absence',
   'stopped',
 ];
+
+/** The most absences that are kept per trial. */
+export const maxAbsences = 200;
+
+/** A time for which the match of a group waited for participants who were away. */
+export const absenceSchema = v.object({
+  participants: v.pipe(v.array(participantId), v.minLength(1, 'expected at least one participant'), v.maxLength(6)),
+  /** The second of the match at which its clock was stopped. */
+  time: duration,
+  /** For how long it stood. */
+  seconds: duration,
+  /** Whether the match was given up after that. */
+  givenUp: v.boolean('expected true or false'),
+});
+export type TrialAbsence = v.InferOutput<typeof absenceSchema>;
 
 export const outcomeSchema = v.object({
   version: v.literal(trialVersion, `expected ${trialVersion}, the version that this program reads`),
@@ -99,12 +123,27 @@ export const outcomeSchema = v.object({
   motionFrames: count,
   /** Absent in older records, or unknown. */
   clock: v.exactOptional(trialClockSchema),
+  /** The absences of the group during the match, the same for all its participants; absent: none. */
+  absences: v.exactOptional(
+    v.pipe(v.array(absenceSchema), v.maxLength(maxAbsences, `expected at most ${maxAbsences} absences`)),
+  ),
+  /**
+   * The second of the match at which this participant's record of it begins, because the page was loaded again in the
+   * match; absent: at its start.
+   */
+  from: v.exactOptional(duration),
 });
 
 /** The outcome of a trial, measured on the participant's device. */
 export type TrialOutcome = v.InferOutput<typeof outcomeSchema>;
 export type StageSummary = v.InferOutput<typeof stageSchema>;
 export type TrialEvent = TrialOutcome['events'][number];
+
+/** Returns why a trial is not whole, as tables state it; empty: it is. Incomplete trials are not counted. */
+export function incompleteReason({ ended, from }: Pick<TrialOutcome, 'ended' | 'from'>): string {
+  if (ended === 'absence') return 'incomplete: given up, a participant was away';
+  return from === undefined ? '' : `incomplete: recorded from second ${from.toFixed(1)} on`;
+}
 
 /** Returns a valid outcome; throws a ValidationError that names the field. */
 export const checkedOutcome = (value: unknown): TrialOutcome => checked(outcomeSchema, value);
@@ -231,7 +270,7 @@ export class TrialLog {
   finish({
     clock,
     ...end
-  }: Pick<TrialOutcome, 'seconds' | 'ended' | 'score' | 'maximum' | 'motionFrames'> & {
+  }: Pick<TrialOutcome, 'seconds' | 'ended' | 'score' | 'maximum' | 'motionFrames' | 'absences' | 'from'> & {
     readonly clock?: TrialClock | null;
   }): TrialOutcome {
     const stages: Record<string, StageSummary> = {};

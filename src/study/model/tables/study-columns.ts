@@ -45,8 +45,8 @@ const conditionColumns = [
 ];
 const excluded = text(
   'excluded',
-  'voided: reason; tutorial',
-  'void-block events of the same task, block and run; tutorials have no condition',
+  'voided: reason; tutorial; incomplete: reason',
+  'void-block events of the same task, block and run; tutorials have no condition; trials of which ended is absence, or that have from, are incomplete',
   'Why the row is not counted; empty: it is.',
 );
 const times = [
@@ -64,7 +64,11 @@ export const participantColumns = [
   ...who,
   text('cohort', ids, 'drawn from the seed in plan.json', 'Id of the cohort; empty: the study has none.'),
   text('consent_version', 'any text', 'consent: body.version', 'Version of the text consented to.'),
-  boolean('motion_consent', 'consent: body.motion', 'Whether tracked frames may be kept.'),
+  boolean(
+    'motion_consent',
+    'consent: body.motion',
+    'Whether tracked frames may be kept; FALSE after a withdrawal of that.',
+  ),
   text('language', tag, 'consent: body.language', 'Language of the text; empty: the study has only one.'),
   text('gender', optionsOf('gender'), 'demographics: body.gender', 'As stated.'),
   number('age', 'years', '16 to 120', 'demographics: body.age', 'As stated.'),
@@ -130,7 +134,13 @@ export const scaleColumns = [
 const trialNames = [
   ...who,
   ...where,
-  number('attempt', '', ordinals, 'body.place.attempt', 'From 1; a trial lost by a crash or reload is tried again.'),
+  number(
+    'attempt',
+    '',
+    ordinals,
+    'body.place.attempt',
+    'From 1; after a crash or reload another one begins, in a match of a group the rest of that match.',
+  ),
   ...conditionColumns,
   number('repetition', '', ordinals, 'trial: body.repetition', 'Trial of the block, from 1.'),
 ];
@@ -180,7 +190,12 @@ const tiltColumns = (side: 'left' | 'right') => [
 export const trialColumns = [
   ...trialNames,
   number('group', '', ordinals, 'trial: body.group', 'Number of the group; tasks played alone: of the participant.'),
-  text('ended', trialEnds.join(', '), outcome('ended'), 'Why it ended; stopped: early.'),
+  text(
+    'ended',
+    trialEnds.join(', '),
+    outcome('ended'),
+    'Why it ended; absence: given up, because a participant of the group was away; stopped: early.',
+  ),
   number('score', 'points', positive, outcome('score'), 'Points; for a group, those of the group.'),
   number('maximum', 'points', '1 and more', outcome('maximum'), 'Highest possible score.'),
   number('percent', '%', positive, 'computed: 100 score / maximum', 'Share of the highest possible score.'),
@@ -218,6 +233,20 @@ export const trialColumns = [
   ...lossColumns('head'),
   ...lossColumns('leftHand'),
   ...lossColumns('rightHand'),
+  text(
+    'absences',
+    'participants: seconds at second, divided by semicolons',
+    outcome('absences'),
+    'Times for which the match of the group stood because participants were away, the same for all of them; empty: none.',
+  ),
+  number('absent_seconds', 's', positive, 'computed: sum of outcome.absences[].seconds', 'For how long it stood.'),
+  number(
+    'from',
+    's',
+    positive,
+    outcome('from'),
+    'Second of the match at which the record of this participant begins, after a reload; empty: at its start.',
+  ),
   text('assists', 'names, divided by semicolons', outcome('assists'), 'Aids that were on; empty: none.'),
   number('motion_frames', '', counts, outcome('motionFrames'), 'Number of recorded tracking frames.'),
   number(
@@ -289,8 +318,10 @@ export const eventColumns = [
   text(
     'text',
     'any text',
-    'event: body.text, body.reason, or by, measure and value',
-    'Remark or reason, as typed; what was found.',
+    'event: body.text, body.reason, or by, measure and value, or participants',
+    'Remark or reason, as typed; what was found; who paused or was away.',
   ),
+  number('second', 's', positive, 'event: body.time', 'absence: second of the match at which it stood; else empty.'),
+  number('seconds', 's', positive, 'event: body.seconds', 'absence: for how long it stood; else empty.'),
   ...times,
 ];

@@ -4,6 +4,7 @@ import type { Answer } from '../questionnaires/question-kind';
 import { scaleScore } from '../questionnaires/questionnaire-scores';
 import { type Answers, type Questionnaire, questionnaireNamed } from '../questionnaires/questionnaires';
 import type { Place, StoredRecord, StudyEvent, StudyRecord, TrialRecord } from '../records/study-record';
+import { incompleteReason, type TrialAbsence } from '../records/trial-log';
 import { conditionTable, plannedTable, questionTable, scaleTable } from './plan-tables';
 import { recordFlags } from './record-flags';
 import {
@@ -76,7 +77,7 @@ export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan) =>
 export const scalesIn = (records: readonly StudyRecord[], plan: StudyPlan) =>
   rowsOf(records, plan, (asked, answers) => asked.scales.map((scale) => [scale.id, scaleScore(asked, scale, answers)]));
 
-/** A trial with its scores; voided ones and tutorials are marked. */
+/** A trial with its scores; voided ones, tutorials and incomplete ones are marked. */
 export interface TrialRow {
   readonly participant: string;
   readonly simulated: boolean;
@@ -99,7 +100,7 @@ export function trialsIn(records: readonly StudyRecord[]): readonly (TrialRow & 
     const { participant, simulated } = record;
     const { place, condition, repetition, group, outcome } = record.body;
     const { score, maximum } = outcome;
-    const excluded = exclusionOf(participant, place) || (condition === null ? 'tutorial' : '');
+    const excluded = exclusionOf(participant, place) || (condition === null ? 'tutorial' : incompleteReason(outcome));
     return { record, participant, simulated, task: place.task, condition, repetition, group, score, maximum, excluded };
   });
 }
@@ -110,6 +111,8 @@ function participantRows(records: readonly StoredRecord[], plan: StudyPlan, flag
   for (const record of records) {
     const known = people.get(record.participant) ?? { first: record, body: {} };
     if (record.kind === 'consent' || record.kind === 'demographics') Object.assign(known.body, record.body);
+    if (record.kind === 'event' && record.body.type === 'motion-withdrawn')
+      Object.assign(known.body, { motion: false });
     people.set(record.participant, known);
   }
   return [...people].map(([participant, { first, body }]) => {
@@ -117,6 +120,9 @@ function participantRows(records: readonly StoredRecord[], plan: StudyPlan, flag
     return rowFrom(participantColumns, { ...first, body }, computed);
   });
 }
+
+const absenceText = ({ participants, time, seconds, givenUp }: TrialAbsence): string =>
+  `${participants.join(' ')}: ${seconds.toFixed(1)} s at second ${time.toFixed(1)}${givenUp ? ', given up' : ''}`;
 
 /** Returns the text of an event. */
 function eventText(body: StudyEvent): string {
@@ -127,6 +133,11 @@ function eventText(body: StudyEvent): string {
       return body.reason;
     case 'stop':
       return [`by the ${body.by}`, body.reason].filter(Boolean).join(': ');
+    case 'absence':
+      return absenceText(body);
+    case 'pause':
+    case 'resume':
+      return body.by === undefined ? '' : `by the ${body.by}`;
     case 'unwell':
       return `${body.questionnaire} ${body.measure}: ${body.value}`;
     default:
@@ -140,7 +151,9 @@ const eventRows = (records: readonly StoredRecord[], flagOf: FlagOf) =>
     const { body } = record;
     const place = 'place' in body ? body.place : body.type === 'void-block' ? body : null;
     const { task = null, block = null, run = null } = place ?? {};
-    return [rowFrom(eventColumns, record, { task, block, run, text: eventText(body), flag: flagOf(record) })];
+    const length = body.type === 'absence' ? { second: body.time, seconds: body.seconds } : {};
+    const computed = { task, block, run, text: eventText(body), flag: flagOf(record) };
+    return [rowFrom(eventColumns, record, { ...computed, second: null, seconds: null, ...length })];
   });
 
 /** Throws if simulated records and records of people are mixed, because no table may contain both. */
@@ -181,10 +194,12 @@ export function studyTables(records: readonly StoredRecord[], plan: StudyPlan): 
       name: 'trials',
       columns: trialColumns,
       rows: trials.map(({ record, score, maximum, excluded }) => {
-        const assists = record.body.outcome.assists.join('; ');
+        const { assists, absences = [] } = record.body.outcome;
         return rowFrom(trialColumns, record, {
           percent: (100 * score) / maximum,
-          assists,
+          assists: assists.join('; '),
+          absences: absences.map(absenceText).join('; '),
+          absent_seconds: absences.reduce((sum, absence) => sum + absence.seconds, 0),
           excluded,
           flag: flagOf(record),
         });

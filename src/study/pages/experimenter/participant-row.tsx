@@ -1,6 +1,6 @@
 import { Button } from 'threepoint-ui/controls';
 import { studyLink } from '../../client/study-link';
-import { type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';
+import { isPlayed, type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';
 import { clockText } from '../../model/progress/progress';
 import type { ParticipantState } from '../../model/progress/study-api';
 import { type Column, numberColumn, textColumn } from '../table';
@@ -25,8 +25,21 @@ export const shownParticipants = (study: OpenStudy, age: number) =>
   study.states.map((state) => {
     const plan = planOf(study, state.version);
     const silence = state.session ? state.session.silence + age : 0;
-    return { state, plan, schedule: scheduleFor(plan, state.participant), silence };
+    const schedule = scheduleFor(plan, state.participant);
+    return { state, plan, schedule, silence, remaining: remainingOf(study.states, schedule, state) };
   });
+
+/** Returns the time left of a step; for a match of a group, that of the page that reported last, for all the same. */
+function remainingOf(states: OpenStudy['states'], { groups, steps }: Schedule, { session }: ParticipantState) {
+  if (!session) return null;
+  const step = steps.find(({ id }) => id === session.step);
+  const members = (step && isPlayed(step) && groups[step.task]?.members) || [];
+  const playing = states.flatMap(({ participant, session: other }) =>
+    other?.running && other.step === session.step && members.includes(participant) ? [other] : [],
+  );
+  const newest = playing.toSorted((a, b) => a.silence - b.silence)[0];
+  return (session.running && newest ? newest : session).remainingSeconds;
+}
 
 type ShownParticipant = ReturnType<typeof shownParticipants>[number];
 
@@ -37,7 +50,11 @@ export const participantColumns = (several: boolean): readonly Column<ShownParti
   textColumn('Code', ({ state }) => (several ? `${state.participant}, version ${state.version}` : state.participant)),
   textColumn('State', (shown) => <StateBadge {...shown} />),
   textColumn('Step', ({ state, schedule }) => state.session && placeText(schedule, state.session.step)),
-  numberColumn('Time', ({ state }) => remainingText(state), 'The time left of this step'),
+  numberColumn(
+    'Time',
+    ({ state, remaining }) => remaining !== null && state.session?.kind !== 'end' && clockText(remaining),
+    'The time left of this step, or of the match of a group',
+  ),
   numberColumn(
     'Seen',
     ({ state, silence }) => state.session && lastSeenText(silence),
@@ -48,9 +65,6 @@ export const participantColumns = (several: boolean): readonly Column<ShownParti
   textColumn('Order of conditions', (shown) => <Order {...shown} />),
   textColumn('Page', ({ state, plan }) => <PageLink {...state} study={plan.id} />),
 ];
-
-const remainingText = ({ session }: ParticipantState) =>
-  session?.remainingSeconds != null && session.kind !== 'end' && clockText(session.remainingSeconds);
 
 const lastSeenText = (seconds: number) =>
   seconds < 120
@@ -105,7 +119,7 @@ function badgeOf({ session, claimed, withdrawn }: ParticipantState, silence: num
   if (silence > silentAfter) return ['no contact', 'lost'];
   if (session.unwell) return ['unwell?', 'lost'];
   if (session.paused) return ['paused', 'paused'];
-  return [session.running ? 'running' : 'waiting', 'live'];
+  return [session.running && !session.waiting ? 'running' : 'waiting', 'live'];
 }
 
 function Commands({ participant, session, claimed, withdrawn, records }: ParticipantState) {

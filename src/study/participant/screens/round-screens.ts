@@ -1,4 +1,5 @@
 import type { PlayedStep } from '../../model/plan/schedule';
+import { clockText } from '../../model/progress/progress';
 import type { StudyScreen } from '../questions/study-screen';
 import { enterButton, pauseButton, type ScreenParts } from './screen-parts';
 import type { StudySituation } from './study-situation';
@@ -7,7 +8,7 @@ import type { StudySituation } from './study-situation';
 export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: StudySituation): StudyScreen | null {
   const { base, phrases } = parts;
   const { text } = phrases;
-  const { inSession, playing, waitingFor, standing, prepared } = situation;
+  const { inSession, playing, waitingFor, standing, prepared, awaited } = situation;
   if (!inSession) {
     return {
       ...base,
@@ -28,7 +29,17 @@ export function roundScreen(parts: ScreenParts, step: PlayedStep, situation: Stu
     };
   }
   if (playing && standing) {
-    return { ...base, id: 'standing', title: text('paused.title'), text: [text('standing.text')], buttons: [] };
+    const { participants = [], secondsLeft = null } = awaited ?? {};
+    const names = phrases.list(participants);
+    return {
+      ...base,
+      ...{ id: 'standing', title: text('paused.title'), buttons: [pauseButton(parts)] },
+      text: [
+        awaited === null ? text('standing.text') : text('standing.away', { names }),
+        ...(secondsLeft === null ? [] : [text('standing.limit')]),
+      ],
+      figure: secondsLeft === null ? null : clockText(secondsLeft),
+    };
   }
   if (playing) return null;
   if (prepared?.state === 'failed') return failedScreen(parts, prepared.reason, situation);
@@ -47,7 +58,8 @@ function failedScreen({ base, phrases, actions }: ScreenParts, why: string, { se
   };
 }
 
-function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }: StudySituation): StudyScreen {
+function readyScreen(parts: ScreenParts, step: PlayedStep, situation: StudySituation): StudyScreen {
+  const { session, prepared, awaited } = situation;
   const { base, actions } = parts;
   const { text } = parts.phrases;
   const { progress, plan } = session;
@@ -60,7 +72,11 @@ function readyScreen(parts: ScreenParts, step: PlayedStep, { session, prepared }
     id: practice ? 'tutorial-ready' : 'trial-ready',
     title: practice ? text('practice') : text('ready.title'),
     text: [
-      ...(progress.attempt > 1 ? [text('ready.again')] : []),
+      ...(awaited?.secondsLeft != null
+        ? [text('ready.awaited', { time: clockText(awaited.secondsLeft) })]
+        : progress.attempt > 1
+          ? [text('ready.again')]
+          : []),
       ...(task ? [text(`ready.${task.game}`)] : []),
       practice ? text('ready.practice', { count }) : text('ready.seconds', { count }),
       text('ready.raise'),

@@ -71,6 +71,13 @@ export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen =>
 
 /** Returns the screen of the present step in the participant's language, or null while the participant plays. */
 export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
+  const screen = plainScreenOf(situation, actions);
+  const { progress, phrases } = situation.session;
+  return screen && progress.voided ? { ...screen, text: [phrases.text('voided'), ...screen.text] } : screen;
+}
+
+/** Returns the screen without the notice of a void block. */
+function plainScreenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
   const { session, rejection } = situation;
   const { step, progress, phrases } = session;
   const { remote } = session.plan;

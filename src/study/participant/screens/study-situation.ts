@@ -5,6 +5,7 @@ import type { Question } from '../../model/questionnaires/questionnaire-schema';
 import type { QuestionnaireState } from '../questionnaire-state';
 import type { ParticipantSession } from '../session/participant-session';
 import type { Prepared } from '../trial/session-trials';
+import type { Awaited } from '../trial/task-runner';
 
 /** The parts of a session that screens show. */
 export type ShownSession = Pick<
@@ -36,6 +37,8 @@ export interface StudySituation {
   readonly stopping: boolean;
   /** Whether the game is paused by another participant of the group. */
   readonly standing: boolean;
+  /** The absent participants while the match of the group stands; null: it does not stand for any. */
+  readonly awaited: Awaited | null;
 }
 
 export interface ScreenActions {

@@ -223,7 +223,9 @@ export class ParticipantSession {
     if (number <= (this.progress.commandsSeen ?? 0)) return;
     this.#onCommand();
     const { step, running, motion } = this.progress;
-    const rejection = this.apply(command, number);
+    const isPause = command.type === 'pause' || command.type === 'resume';
+    const rejection = this.apply(isPause ? { ...command, by: 'experimenter' } : command, number);
+    if (command.type === 'withdraw-motion') void this.#store.discardMotion();
     // A record states why a command changed nothing.
     if (rejection === null || motion === null) return;
     const why = `${step}${running ? ', running' : ''}: ${rejection.message}`;

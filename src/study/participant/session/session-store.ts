@@ -145,6 +145,11 @@ export class SessionStore {
     await this.#remove((vault, session) => vault.removeMotion(session, trial));
   }
 
+  /** Discards the recordings that were not sent. */
+  async discardMotion(): Promise<void> {
+    for (const trial of [...this.#motion.keys()]) await this.acknowledgeMotion(trial);
+  }
+
   /** What stays because the device fails is sent again by a later visit, and the server keeps it once. */
   async #remove(from: (vault: StudyVault, session: KeptSession) => Promise<void>): Promise<void> {
     // What the save under way still writes must be removed after it.

@@ -1,13 +1,19 @@
 import type { TrackingFrame } from 'threepoint/core';
 import { PhrasedError } from '../../model/phrases/phrases';
+import { absenceRuleOf } from '../../model/plan/plan';
 import { isPlayed, type PlayedStep } from '../../model/plan/schedule';
 import { randomFor } from '../../model/plan/shuffle';
 import { placeOf } from '../../model/progress/progress';
+import { Rejection } from '../../model/progress/rejection';
+import type { SignedSeat } from '../../model/progress/study-api';
 import { localizedReason } from '../localized-reasons';
 import type { ParticipantSession } from '../session/participant-session';
 import type { StudyHost } from './study-host';
 import { type FinishedTrial, lastPlayedBefore, PlayedTrial } from './study-trial';
-import type { TaskPlace, TaskRunner } from './task-runner';
+import type { Awaited, TaskPlace, TaskRunner } from './task-runner';
+
+/** How often the server is asked whether the group has finished the match for which a trial waits [s]. */
+const askAgainSeconds = 10;
 
 /** How far the game and the body of a step are loaded. */
 export interface Prepared {
@@ -34,6 +40,10 @@ export class SessionTrials {
   /** The preparation of one attempt. Results of earlier attempts are ignored. */
   #preparation: (Prepared & { readonly attempt: string }) | null = null;
   #trial: PlayedTrial | null = null;
+  /** The attempt for which the server has no seat, because the group has finished the match; null: none. */
+  #missed: string | null = null;
+  /** When the server is asked for the seat again while the trial waits [s]. */
+  #askAgainAt = 0;
   #embodied = false;
 
   constructor({ session, host, now, onChange }: SessionTrialsOptions) {
@@ -51,6 +61,17 @@ export class SessionTrials {
   /** How far the trial of the present step is prepared; null: not at all. */
   get prepared(): Prepared | null {
     return this.#preparation?.attempt === this.attempt ? this.#preparation : null;
+  }
+
+  /** Whether the group has finished the match of the present step without this participant. */
+  get missed(): boolean {
+    return this.#missed !== null && this.#missed === this.attempt;
+  }
+
+  /** The absent participants while the match of the present step stands; null: it does not stand for any. */
+  get awaited(): Awaited | null {
+    const { step } = this.#session;
+    return (isPlayed(step) && this.prepared?.state === 'ready' && this.#runnerOf(step)?.awaited) || null;
   }
 
   /** The step, run and attempt of the session. A trial of another attempt is void. */
@@ -74,6 +95,7 @@ export class SessionTrials {
     if (!this.prepared) void this.#prepare(step);
     const ready = this.prepared?.state === 'ready';
     if (progress.running && !progress.paused && !this.#trial && ready && this.#host.inSession()) this.#start(step);
+    if (this.#trial?.waitingFor && this.#now() >= this.#askAgainAt) void this.#askAgain(step);
   }
 
   /** Passes a frame to the trial; returns a trial that is over, once, or null. */
@@ -115,6 +137,7 @@ export class SessionTrials {
   #start(step: PlayedStep): void {
     const runner = this.#runnerOf(step);
     if (!runner) return;
+    this.#askAgainAt = this.#now() + askAgainSeconds;
     const { plan, progress } = this.#session;
     const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
     const options = { key: this.attempt, motion, seed: this.#seedOf(step), now: this.#now };
@@ -155,15 +178,36 @@ export class SessionTrials {
     return (game && this.#host.runners[game]) ?? null;
   }
 
-  /** Returns the place of the participant in the group, which has a separate room for every trial of every run. */
-  #placeFor(step: PlayedStep): TaskPlace {
+  /** Asks for the seat of a trial that waits: the others may have finished the match while this page was away. */
+  async #askAgain(step: PlayedStep): Promise<void> {
+    this.#askAgainAt = this.#now() + askAgainSeconds;
+    // reason: the seat is taken, and a server that is away is asked again
+    await this.#seatFor(step).catch(() => undefined);
+    if (this.missed) this.#onChange();
+  }
+
+  async #seatFor(step: PlayedStep): Promise<SignedSeat> {
+    const { attempt } = this;
     const session = this.#session;
     const run = session.progress.runs[`${step.task}/${step.block}`] ?? 1;
+    try {
+      return await session.seat({ step: step.id, run });
+    } catch (error) {
+      if (error instanceof Rejection && error.field === 'step') this.#missed = attempt;
+      throw error;
+    }
+  }
+
+  /** Returns the place of the participant in the group, which has a separate room for every trial of every run. */
+  #placeFor(step: PlayedStep): TaskPlace {
+    const { progress, schedule, plan } = this.#session;
+    const task = plan.tasks.find(({ id }) => id === step.task);
     return {
-      seat: () => session.seat({ step: step.id, run }),
-      participant: session.progress.participant,
-      members: session.schedule.groups[step.task]?.members ?? [],
+      seat: () => this.#seatFor(step),
+      participant: progress.participant,
+      members: schedule.groups[step.task]?.members ?? [],
       seconds: step.seconds,
+      afterAbsence: absenceRuleOf(task ?? {}).after,
     };
   }
 

@@ -2,7 +2,13 @@ import { type Calibration, type EstimatorName, type TrackingFrame, writeRecordin
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import { TrialStopwatch } from '../../model/records/trial-clock';
-import { type FrameListener, TrialLog, type TrialOutcome } from '../../model/records/trial-log';
+import {
+  type FrameListener,
+  maxAbsences,
+  type TrialAbsence,
+  TrialLog,
+  type TrialOutcome,
+} from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
 /** Returns the last trial or tutorial before a step, or undefined. */
@@ -39,6 +45,12 @@ const maxMotionFrames = 40_000;
 /** The drop of the eyes below their calibrated height that indicates a seated participant [m]. */
 const seatedDrop = 0.25;
 
+/** The clock of a group's match. */
+export interface MatchClock {
+  readonly runs: boolean;
+  readonly second: number;
+}
+
 export interface TrialOptions {
   readonly key: string;
   /** Whether tracking frames are kept. */
@@ -63,6 +75,7 @@ export class PlayedTrial {
   /** null: none are kept. */
   readonly #frames: TrackingFrame[] | null;
   readonly #seconds: TrialStopwatch;
+  readonly #absences: TrialAbsence[] = [];
   #begun = false;
   /** The second of the trial at which it ended; null: it goes on. */
   #endedAt: number | null = null;
@@ -95,6 +108,19 @@ export class PlayedTrial {
   /** Whether the game is paused by another participant of the group. */
   get standing(): boolean {
     return this.#runner.pausedByOther;
+  }
+
+  /** Whether the match of the group runs, and its second; null: a game for one. */
+  get matchClock(): MatchClock | null {
+    const { waitingFor, pausedByOther, second } = this.#runner;
+    return second === undefined ? null : { runs: waitingFor === null && !pausedByOther, second: second ?? 0 };
+  }
+
+  /** Returns the absences of the group that ended since the last call. */
+  takeAbsences(): readonly TrialAbsence[] {
+    const ended = this.#runner.takeAbsences?.() ?? [];
+    this.#absences.push(...ended);
+    return ended;
   }
 
   /** Whether the game was lost, so that the trial is void. */
@@ -173,10 +199,17 @@ export class PlayedTrial {
   }
 
   #finish(end: TaskEnd): FinishedTrial {
+    this.takeAbsences();
     this.abort();
     const recorded = this.#record();
     const motionFrames = recorded?.frames ?? 0;
-    const outcome = this.#log.finish({ ...end, motionFrames, clock: this.#seconds.clock });
+    const absences = this.#absences.slice(0, maxAbsences);
+    const outcome = this.#log.finish({
+      ...end,
+      ...(absences.length > 0 && { absences }),
+      motionFrames,
+      clock: this.#seconds.clock,
+    });
     return { outcome, recording: recorded?.text ?? null };
   }
 

@@ -1,5 +1,6 @@
+import type { AbsenceRule } from '../../model/plan/plan';
 import type { SignedSeat } from '../../model/progress/study-api';
-import type { TrialEvent, TrialOutcome } from '../../model/records/trial-log';
+import type { TrialAbsence, TrialEvent, TrialOutcome } from '../../model/records/trial-log';
 
 /** An event of a task: a shot or throw, or its result. */
 export type TaskEvent = { readonly type: 'shot' } | TrialEvent;
@@ -10,6 +11,15 @@ export interface TaskEnd {
   readonly ended: TrialOutcome['ended'];
   readonly score: number;
   readonly maximum: number;
+  /** The second of the match at which the trial began, if the match ran before; absent: with the match. */
+  readonly from?: number;
+}
+
+/** The absent participants while a match stands. */
+export interface Awaited {
+  readonly participants: readonly string[];
+  /** Seconds until the match is given up; null: it waits without a limit. */
+  readonly secondsLeft: number | null;
 }
 
 /** The participant, the group and the room of a trial. */
@@ -24,6 +34,8 @@ export interface TaskPlace {
   readonly members: readonly string[];
   /** The time limit of the trial [s]. */
   readonly seconds: number;
+  /** What the match does after it has waited too long for a participant. */
+  readonly afterAbsence: AbsenceRule['after'];
 }
 
 /** A game as a task of a study. */
@@ -41,6 +53,12 @@ export interface TaskRunner {
   readonly waitingFor: readonly string[] | null;
   /** Whether the clock of the game is paused by another participant of the group. */
   readonly pausedByOther: boolean;
+  /** The absent participants while the match stands, also before this page's trial; null or absent: none. */
+  readonly awaited?: Awaited | null;
+  /** The second of the group's match, which is the same for all; null: it has not begun; absent: a game for one. */
+  readonly second?: number | null;
+  /** Returns the absences that ended since the last call; absent: a game for one. */
+  takeAbsences?(): readonly TrialAbsence[];
   /** The end of the trial; null: there is no trial, or it goes on. */
   readonly end: TaskEnd | null;
   /** Whether the started trial was lost, so that it has no result. */

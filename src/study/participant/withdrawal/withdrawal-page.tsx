@@ -46,22 +46,22 @@ function receiptLines(
 
 interface DeletedProps {
   readonly receipt: Receipt;
-  readonly about: PublicStudy | null;
   readonly phrases: Phrases;
-  /** A sentence about the data in this browser. */
-  readonly here: string;
+  readonly title: string;
+  /** Sentences about the data in this browser, and about copies. */
+  readonly remarks: readonly string[];
 }
 
 /** The receipt that is shown after the deletion. */
-function Deleted({ receipt, about, phrases, here }: DeletedProps) {
+function Deleted({ receipt, phrases, title, remarks }: DeletedProps) {
   const { text } = phrases;
   const lines = receiptLines(receipt, phrases);
   const save = () =>
     offerDownload(`receipt-${receipt.study}-${receipt.number}.txt`, 'text/plain', `${lines.join('\n')}\n`);
   return (
     <section class="card" aria-label={text('receipt.name')}>
-      <h2 style="margin-top:0">{text('receipt.title')}</h2>
-      {[...lines, here, `${text('receipt.copies')} ${about?.contact ?? text('askExperimenter')}`].map((line) => (
+      <h2 style="margin-top:0">{title}</h2>
+      {[...lines, ...remarks].map((line) => (
         <p>{line}</p>
       ))}
       <div class="bar" style="margin-top:12px">
@@ -81,26 +81,33 @@ function failure(error: unknown, phrases: Phrases): string {
   return phrases.text(error instanceof ServerUnreachable ? 'withdrawal.unheard' : 'withdrawal.failed', { reason });
 }
 
-interface WithdrawalFormProps extends Pick<DeletedProps, 'about' | 'phrases'> {
+interface WithdrawalFormProps extends Pick<DeletedProps, 'phrases'> {
+  readonly about: PublicStudy | null;
   readonly onDeleted: (deleted: DeletedProps) => void;
 }
 
-/** The form for the code, which deletes everything after a confirmation. */
+/** The form for the code, which deletes the recorded movements, or everything after a confirmation. */
 function WithdrawalForm({ about, phrases, onDeleted }: WithdrawalFormProps) {
   const { text } = phrases;
   const [isComplete, setComplete] = useState(false);
+  const [hasCode, setHasCode] = useState(false);
   const [isSending, setSending] = useState(false);
   const [problem, setProblem] = useState<string | null>(null);
   const shared = { autocomplete: 'off', spellcheck: false, size: 30, required: true, pattern: '.*\\S.*' };
 
-  async function withdraw(form: HTMLFormElement): Promise<void> {
+  const copies = `${text('receipt.copies')} ${about?.contact ?? text('askExperimenter')}`;
+
+  async function withdraw(form: HTMLFormElement, only?: 'motion'): Promise<void> {
     const given = new FormData(form);
     setSending(true);
     setProblem(null);
     try {
       const study = String(given.get('study') ?? asked).trim();
-      const receipt = await client.withdraw(study, String(given.get('code')).trim());
-      onDeleted({ receipt, about, phrases, here: await forgottenHere(receipt, phrases) });
+      const receipt = await client.withdraw(study, String(given.get('code')).trim(), only);
+      const [title, here] = only
+        ? [text('receipt.motionTitle'), text('receipt.motionKept')]
+        : [text('receipt.title'), await forgottenHere(receipt, phrases)];
+      onDeleted({ receipt, phrases, title, remarks: [here, copies] });
     } catch (error) {
       setProblem(failure(error, phrases));
       setSending(false);
@@ -110,7 +117,10 @@ function WithdrawalForm({ about, phrases, onDeleted }: WithdrawalFormProps) {
   return (
     <form
       class="card"
-      onInput={({ currentTarget }) => setComplete(currentTarget.checkValidity())}
+      onInput={({ currentTarget }) => {
+        setComplete(currentTarget.checkValidity());
+        setHasCode([...currentTarget.querySelectorAll('input[type=text]')].every((input) => input.matches(':valid')));
+      }}
       onSubmit={(event) => event.preventDefault()}
     >
       {about && <h2 style="margin-top:0">{inLanguage(about.title, phrases.language)}</h2>}
@@ -133,6 +143,11 @@ function WithdrawalForm({ about, phrases, onDeleted }: WithdrawalFormProps) {
           class="danger"
           disabled={isSending || !isComplete}
           onClick={({ currentTarget: { form } }) => void withdraw(form!)}
+        />
+        <Button
+          label={text('withdrawal.motionOnly')}
+          disabled={isSending || !hasCode}
+          onClick={({ currentTarget: { form } }) => void withdraw(form!, 'motion')}
         />
       </div>
       <p class="soft" style="margin-top:14px">

@@ -10,6 +10,7 @@ import {
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { DemographicsRecord, StudyRecord, TrialRecord } from '../../model/records/study-record';
 import { recordingTime } from '../../model/records/trial-clock';
+import { incompleteReason } from '../../model/records/trial-log';
 import { voidedBlocks } from '../../model/tables/study-tables';
 import type { MotionFile } from '../study-storage';
 
@@ -246,7 +247,10 @@ export function bidsDataset(content: BidsContent): BidsDataset {
     const scans = `sub-${participant}/sub-${participant}_scans`;
     files[`${scans}.tsv`] = table(
       scanColumns,
-      own.map((run) => scanRow(run, excluded(participant, run.trial.body.place))),
+      own.map((run) => {
+        const { place, outcome } = run.trial.body;
+        return scanRow(run, excluded(participant, place) || incompleteReason(outcome));
+      }),
     );
     files[`${scans}.json`] = json(scanColumns);
   }

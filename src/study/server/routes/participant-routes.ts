@@ -4,7 +4,7 @@ import * as v from 'valibot';
 import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
 import { scheduleFor } from '../../model/plan/schedule';
 import { Rejection } from '../../model/progress/rejection';
-import { commandSchema, playedTogetherSchema } from '../../model/progress/study-api';
+import { commandSchema, type PlayedTogether, playedTogetherSchema } from '../../model/progress/study-api';
 import { profileFrom } from '../../model/records/participant-profile';
 import { rejectUnscheduled, rejectUnscheduledTrial } from '../../model/records/scheduled-record';
 import { checkedRecord, type StudyRecord, within } from '../../model/records/study-record';
@@ -92,6 +92,25 @@ function recordingIn(call: StudyCall): string {
   }
 }
 
+/**
+ * Throws a Rejection of the field `step` if another participant of the group has gone on from this trial: its match is
+ * over. A participant who stopped has finished no match.
+ */
+async function rejectFinished({ places }: StudyStorage, call: StudyCall, plan: StudyPlan, trial: PlayedTogether) {
+  const { steps, groups } = scheduleFor(plan, call.participant);
+  const indexOf = (step: string) => steps.findIndex(({ id }) => id === step);
+  const step = steps[indexOf(trial.step)];
+  if (!step || !('task' in step)) return;
+  const others = groups[step.task]?.members.filter((member) => member !== call.participant) ?? [];
+  for (const other of others) {
+    const progress = await places.progress(call.study, other);
+    if (!progress || progress.stopped) continue;
+    const run = progress.runs[`${step.task}/${step.block}`] ?? 1;
+    if (run !== trial.run || indexOf(progress.step) <= indexOf(trial.step)) continue;
+    throw new Rejection('conflict', `${other} has gone on: the match is over`, { field: 'step' });
+  }
+}
+
 const own = '/:study/participants/:participant';
 
 /** Returns the routes of a place: who has it, and what its device and the experimenter exchange. */
@@ -132,6 +151,7 @@ function placeRoutes({ store, guard, seats }: StudyParts): StudyRoute[] {
         const plan = await store.plans.planFor(call.study, call.participant);
         // A request that is admitted without the participant's token is from an experimenter, who watches.
         const watching = !(await guard.isParticipant(call));
+        if (!watching) await rejectFinished(store, call, plan, trial);
         return jsonResponse(await seats.sign(plan, call.participant, trial, watching));
       }),
       effect: 'reads',

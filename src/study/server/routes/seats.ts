@@ -1,7 +1,7 @@
 import { createHmac, randomBytes } from 'node:crypto';
 import { ValidationError } from 'threepoint/core';
 import { games } from 'threepoint-games/all';
-import type { StudyPlan } from '../../model/plan/plan';
+import { absenceRuleOf, type StudyPlan } from '../../model/plan/plan';
 import { isPlayed, scheduleFor } from '../../model/plan/schedule';
 import type { PlayedTogether, SignedSeat } from '../../model/progress/study-api';
 
@@ -12,7 +12,8 @@ export interface SeatClaim {
   readonly room: string;
   /** The game of the room. */
   readonly kind: string;
-  readonly terms: { readonly seconds: number };
+  /** The length of the match, and for how long it waits for a participant who is away [s]. */
+  readonly terms: { readonly seconds: number; readonly waitSeconds: number };
   /** `seat` null: a place among the spectators. */
   readonly assigned: { readonly seat: number | null; readonly name: string };
 }
@@ -54,7 +55,7 @@ export function createStudySeats(secret: string, signSeat: SignSeat) {
         identity: watching ? randomBytes(12).toString('base64url') : nameOf('participant', plan.id, participant),
         room,
         kind: task.game,
-        terms: { seconds: played.seconds },
+        terms: { seconds: played.seconds, waitSeconds: absenceRuleOf(task).waitSeconds },
         assigned: watching
           ? { seat: null, name: 'Experimenter' }
           : { seat: group?.members.indexOf(participant) ?? null, name: participant },

@@ -13,7 +13,8 @@ const newStudySchema = v.strictObject({
   newVersion: v.optional(v.boolean('expected true or false')),
 });
 const versionSchema = v.object({ version: v.optional(integerBetween(1, 10_000)) });
-const withdrawalSchema = v.object({ code: text(60) });
+/** `only`: what of the participant is deleted; absent: everything. */
+const withdrawalSchema = v.object({ code: text(60), only: v.optional(v.literal('motion')) });
 
 /** Returns the public part of a plan. Participants get the order and names of conditions only with their schedule. */
 const publicPlan = (plan: StudyPlan, simulated: boolean) => {
@@ -103,10 +104,12 @@ export function studyRoutes(parts: StudyParts): StudyRoute[] {
     ),
     {
       ...route('POST', '/:study/withdraw', 'withdrawing', bodyLimits.json, async (call) => {
-        const { code } = checked(withdrawalSchema, jsonOf(call));
-        return jsonResponse(
-          await guard.withdrawing(call, code, () => store.deletion.withdraw(call.study, code, call.at)),
-        );
+        const { code, only } = checked(withdrawalSchema, jsonOf(call));
+        const withdraw = () =>
+          only === 'motion'
+            ? store.deletion.withdrawMotion(call.study, code, call.at)
+            : store.deletion.withdraw(call.study, code, call.at);
+        return jsonResponse(await guard.withdrawing(call, code, withdraw));
       }),
       effect: 'withdraws',
     },

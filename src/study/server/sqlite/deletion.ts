@@ -39,12 +39,26 @@ export class StudyDeletion implements DeletionStorage {
       commands.delete(study, participant);
       places.clear(study, participant, invitation, reason === 'withdrawn');
       if (reason === 'experimenter') plans.free(study, participant);
-      return database.getOne<Receipt>(
-        `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
-         RETURNING ${receiptColumns}`,
-        ...[study, participant, reason, recordCount, motionFiles, at],
-      );
+      return this.#addReceipt({ study, participant, reason, records: recordCount, motionFiles, at });
     });
+    database.purgeDeleted();
+    return receipt;
+  }
+
+  withdrawMotion(study: string, code: string, at: number): Receipt | null {
+    const { database, places, records, motion, commands } = this.#parts;
+    const participant = places.ownerOf(study, code);
+    if (participant === null) return null;
+    const hadConsent = places.getPresent(study, participant).motion_consent === 1;
+    const receipt = database.transaction(() => {
+      const motionFiles = motion.delete(study, participant);
+      if (hadConsent) {
+        places.setMotionConsent(study, participant, 0);
+        records.addMotionWithdrawal(study, participant, at);
+      }
+      return this.#addReceipt({ study, participant, reason: 'withdrawn', records: 0, motionFiles, at });
+    });
+    if (hadConsent) commands.add(study, participant, { type: 'withdraw-motion' }, at);
     database.purgeDeleted();
     return receipt;
   }
@@ -81,6 +95,15 @@ export class StudyDeletion implements DeletionStorage {
 
   receipts(study: string): readonly Receipt[] {
     return this.#parts.database.all(`SELECT ${receiptColumns} FROM receipts WHERE study = ? ORDER BY number`, study);
+  }
+
+  /** Stores a receipt, in a transaction. */
+  #addReceipt({ study, participant, reason, records, motionFiles, at }: Omit<Receipt, 'number'>): Receipt {
+    return this.#parts.database.getOne<Receipt>(
+      `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
+       RETURNING ${receiptColumns}`,
+      ...[study, participant, reason, records, motionFiles, at],
+    );
   }
 
   /**

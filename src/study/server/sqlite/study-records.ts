@@ -85,6 +85,13 @@ export class StudyRecords implements RecordStorage {
     });
   }
 
+  /** Stores that a participant has withdrawn the consent to motion, in a transaction. */
+  addMotionWithdrawal(study: string, participant: string, at: number): void {
+    const { simulated } = this.#plans.get(study);
+    const about = { version: recordVersion, id: 'motion-withdrawn', study, participant, simulated, at } as const;
+    this.#insert({ ...about, kind: 'event', body: { type: 'motion-withdrawn' } }, 'participant', at);
+  }
+
   all(study: string, participant?: string): readonly StoredRecord[] {
     const rows =
       participant === undefined

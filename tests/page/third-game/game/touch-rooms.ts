@@ -53,10 +53,14 @@ export const touchClientPolicy: ClientPolicy<TouchGame> = {
   arenaFromFloor: floorOf,
 };
 
-const terms = v.strictObject({ seconds: v.exactOptional(v.pipe(v.number(), v.minValue(1), v.maxValue(3600))) });
+const seconds = v.exactOptional(v.pipe(v.number(), v.minValue(1), v.maxValue(3600)));
+const terms = v.strictObject({ seconds, waitSeconds: seconds });
 
-export const touchRoomKind = (seconds: number): RoomKind<v.InferOutput<typeof terms>> => ({
+export const touchRoomKind = (defaultSeconds: number): RoomKind<v.InferOutput<typeof terms>> => ({
   openTerms: terms,
   assignedTerms: terms,
-  createPolicy: (given, everySeat) => touchPolicy({ seconds, ...given, everySeat }),
+  createPolicy: ({ waitSeconds = 60, ...given }, everySeat) => ({
+    ...touchPolicy({ seconds: defaultSeconds, ...given, everySeat }),
+    ...(everySeat && { waitSeconds }),
+  }),
 });

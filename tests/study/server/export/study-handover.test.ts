@@ -108,6 +108,23 @@ describe('verifying an export', () => {
     expect(complaints).toHaveLength(2);
   });
 
+  test('finds an incomplete trial that the table counts, and names the rule', () => {
+    const trial = content.records.findIndex((record) => record.kind === 'trial' && record.body.condition !== null);
+    const records = content.records.map((record, index) =>
+      index === trial && record.kind === 'trial'
+        ? { ...record, body: { ...record.body, outcome: { ...record.body.outcome, ended: 'absence' as const } } }
+        : record,
+    );
+    const whole = exportFiles({ ...content, records });
+    const rule = 'incomplete: given up, a participant was away';
+    expect(whole['trials.csv']).toContain(`"${rule}"`);
+    const broken = { ...whole, 'trials.csv': (whole['trials.csv'] as string).replace(`"${rule}"`, '') };
+    expect(verifyExport(zipOf(whole)).problems).toEqual([]);
+    expect(verifyExport(zipOf(broken)).problems).toContainEqual(
+      expect.stringMatching(`^trials\\.csv, row \\d+, excluded: "", the records give "${rule}"\\.$`),
+    );
+  });
+
   test('finds a row that was taken away, and every row behind it', () => {
     const rows = (files['results/scores-compared.csv'] as string).split('\r\n');
     const complaints = complaintsOf({ 'results/scores-compared.csv': rows.toSpliced(1, 1).join('\r\n') });

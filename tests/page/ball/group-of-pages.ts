@@ -1,0 +1,224 @@
+import { allReleased, type Buttons } from 'threepoint/core';
+import { ballTask } from '../../../src/page/ball/ball-task';
+import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { createMatchRunner } from '../../../src/page/people/match/match-runner';
+import { absenceRuleOf, type StudyPlan } from '../../../src/study/model/plan/plan';
+import { isPlayed, scheduleFor } from '../../../src/study/model/plan/schedule';
+import type { ProgressEvent } from '../../../src/study/model/progress/apply-event';
+import type { StudyRecord } from '../../../src/study/model/records/study-record';
+import { LossyWire } from '../../rooms/client/lossy-wire';
+import { fists, holding, opening, releaseOf, shownAt, visitor } from '../../rooms/client/people';
+import { createTestRoom } from '../../rooms/room/test-room';
+import { session } from '../../study/model/studies';
+import { trialOf } from '../../study/participant/played-trial';
+import { activityServices } from '../activity-services';
+
+type Trial = ReturnType<typeof trialOf>;
+
+const released: Buttons = { left: allReleased, right: allReleased };
+const wristsOn = (seat: number) => (seat === 2 ? holding(opening) : fists(releaseOf(seat)));
+/** The frames of a page per second. */
+const rateHz = 10;
+/** The time from a reload, or from the sheet after an interruption, to the press on Start [s]. */
+const startsAfter = 1;
+
+/** A page of a participant of the group, from the sheet before the match to the step after it. */
+class GroupPage {
+  readonly participant: string;
+  readonly #plan: StudyPlan;
+  readonly #room: ReturnType<typeof createTestRoom>;
+  readonly #seat: number;
+  readonly #session: ReturnType<typeof session>;
+  readonly #step: string;
+  #pages = 0;
+  #wire!: LossyWire;
+  #play!: BallPlay;
+  #runner!: ReturnType<typeof createMatchRunner>;
+  #trial: Trial | null = null;
+  #startAt = 0;
+  #isHere = true;
+
+  /** `othersAreOver`: whether another of the group has gone on from the trial. */
+  constructor(
+    plan: StudyPlan,
+    participant: string,
+    room: ReturnType<typeof createTestRoom>,
+    private readonly othersAreOver: () => boolean,
+  ) {
+    const schedule = scheduleFor(plan, participant);
+    this.#plan = plan;
+    this.participant = participant;
+    this.#room = room;
+    this.#seat = schedule.groups.ball?.members.indexOf(participant) ?? 0;
+    this.#session = session(schedule);
+    this.#session.doUntil((step) => step.kind === 'trial');
+    this.#step = this.#session.step.id;
+    this.#open();
+  }
+
+  get records(): readonly StudyRecord[] {
+    return this.#session.records;
+  }
+
+  /** Whether the participant has gone on from the trial. */
+  get isOver(): boolean {
+    return this.#session.step.id !== this.#step;
+  }
+
+  get standing(): boolean {
+    return this.#trial?.standing ?? false;
+  }
+
+  get awaited() {
+    return this.#runner.awaited;
+  }
+
+  get attempt(): number {
+    return this.#session.progress.attempt;
+  }
+
+  /** The connection is lost, and the server notices. */
+  lose(): void {
+    this.#wire.lose();
+    this.#isHere = false;
+  }
+
+  /** The page draws and sends nothing, as with a network that drops what it should carry. */
+  fallSilent(): void {
+    this.#isHere = false;
+  }
+
+  comeBack(): void {
+    if (this.#isHere) return;
+    this.#isHere = true;
+    if (this.#wire.status.phase !== 'joined') this.#wire.connect();
+  }
+
+  /** The page is closed, and opened again later by `loadAgain`. */
+  close(): void {
+    this.lose();
+    this.#trial = null;
+  }
+
+  loadAgain(): void {
+    this.#isHere = true;
+    if (!this.isOver) this.#apply({ type: 'reload' });
+    this.#open();
+  }
+
+  frame(time: number): void {
+    if (!this.#isHere || this.isOver) return;
+    this.#play.begin(time);
+    this.#play.follow(time, null, released);
+    this.#wire.sendPose(time, shownAt(this.#wire, this.#seat, wristsOn(this.#seat)));
+    this.#runner.played();
+    if (!this.#trial && time >= this.#startAt) this.#start();
+    // The server answers so to a page that asks for its seat.
+    if (this.#trial?.waitingFor && this.othersAreOver()) this.#apply({ type: 'missed' });
+    this.#followTrial(time);
+  }
+
+  #followTrial(time: number): void {
+    const trial = this.#trial;
+    if (!trial) return;
+    for (const absence of trial.takeAbsences()) this.#apply({ type: 'absence', absence });
+    if (trial.interrupted) {
+      this.#apply({ type: 'reload' });
+      trial.abort();
+      this.#trial = null;
+      this.#open();
+      return;
+    }
+    const finished = trial.follow(time, null);
+    if (finished) this.#apply({ type: 'trial-finished', outcome: finished.outcome });
+  }
+
+  #open(): void {
+    this.#pages += 1;
+    this.#startAt = this.#room.time + startsAfter;
+    this.#wire = new LossyWire(this.#room, 100 * this.#pages, { name: this.participant, seat: this.#seat });
+    const wire = this.#wire;
+    const play = new BallPlay({
+      connect: () => wire,
+      visitor: visitor(this.participant, { seat: this.#seat }),
+      bots: () => false,
+      readyByItself: () => false,
+      seed: 7,
+    });
+    this.#play = play;
+    const { settings, writer } = activityServices();
+    this.#runner = createMatchRunner(ballTask, {
+      settings,
+      writer,
+      opened: () => ({ play }),
+      open: async () => ({ play }),
+      leave: () => play.leave(),
+    });
+    const { members = [] } = scheduleFor(this.#plan, this.participant).groups.ball ?? {};
+    const task = this.#plan.tasks.find(({ id }) => id === 'ball');
+    void this.#runner.prepare({
+      ...{ participant: this.participant, members, seconds: task?.trialSeconds ?? 0 },
+      seat: async () => ({ room: 'here', token: '' }),
+      afterAbsence: absenceRuleOf(task ?? {}).after,
+    });
+  }
+
+  #start(): void {
+    const { step, progress } = this.#session;
+    if (!isPlayed(step)) return;
+    this.#apply({ type: 'start' });
+    this.#trial = trialOf(this.#runner, { task: 'ball', seconds: step.seconds, key: `${progress.attempt}` });
+  }
+
+  #apply(event: ProgressEvent): void {
+    const refusal = this.#session.tell(event);
+    if (refusal !== null) throw new Error(`${this.participant}: ${refusal}`);
+  }
+}
+
+/** Three pages of one group in the room of their first ball match. `absence` is the rule of the plan. */
+export async function groupOfPages(plan: StudyPlan) {
+  const task = plan.tasks.find(({ id }) => id === 'ball');
+  if (!task) throw new Error('the plan has no ball game');
+  const { waitSeconds } = absenceRuleOf(task);
+  const room = createTestRoom({
+    ...{ assigned: true, pausable: true },
+    ball: { everySeat: true, seconds: task.trialSeconds, waitSeconds },
+  });
+  const { members = [] } = scheduleFor(plan, 'P01').groups.ball ?? {};
+  const pages: GroupPage[] = members.map(
+    (participant) => new GroupPage(plan, participant, room, () => pages.some(({ isOver }) => isOver)),
+  );
+  // The runners are prepared after a turn of the event loop.
+  await new Promise((resolve) => setTimeout(resolve));
+  let startedAt: number | null = null;
+  let endedAt: number | null = null;
+  return {
+    room,
+    pages,
+    pageOf: (seat: number) => pages[seat] as GroupPage,
+    /** Seconds from the start of the match that ended last to its end, by the clock of the wall; null: none ended. */
+    get wallSeconds(): number | null {
+      return startedAt === null || endedAt === null ? null : endedAt - startedAt;
+    },
+    get records(): readonly StudyRecord[] {
+      return pages.flatMap((page) => page.records);
+    },
+    get isOver(): boolean {
+      return pages.every((page) => page.isOver);
+    },
+    async pass(seconds: number): Promise<void> {
+      for (let i = 0; i < Math.round(seconds * rateHz); i++) {
+        for (let tick = 0; tick < 60 / rateHz; tick++) {
+          const before = room.room.match.phase;
+          room.tick();
+          const { phase } = room.room.match;
+          if (before !== 'running' && phase === 'running') startedAt = room.time;
+          if (before === 'running' && phase !== 'running') endedAt = room.time;
+        }
+        for (const page of pages) page.frame(room.time);
+        await Promise.resolve();
+      }
+    },
+  };
+}
