@@ -67,7 +67,7 @@ export interface Avatar {
    */
   setMouth(open: number): void;
   /**
-   * Sets what the eyes turn to from the next `setPose` on, floor frame [m], while it is less than 35° from where the
+   * Sets what the eyes turn to from the next `setPose` on, floor frame [m], while it is less than 38° from where the
    * face points; the place is copied. null: they look ahead.
    */
   setGaze(target: Vec3 | null): void;
@@ -185,7 +185,7 @@ class VrmAvatar implements Avatar {
     this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
-    // The object's number differs from that of every other avatar, and so do the times at which it blinks.
+    // The object's number differs from that of every other avatar, and so do the times at which it blinks and breathes.
     this.face = new Face(vrm, object.id);
     this.idle = new IdleMotion(object.id);
     this.setCalibration(averageBody);
