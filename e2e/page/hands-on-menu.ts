@@ -39,8 +39,8 @@ export async function waitForCanvasText(page: Page, text: string, width: number 
 }
 
 /** The menu's centre [m] and yaw in the floor frame, as set in the page's shell/panels/vr-menu. */
-const menuAt = [1.1, 1.3, -1.15] as const;
-const menuYaw = -0.74;
+const menuAt = [1.08, 1.3, -0.97] as const;
+const menuYaw = -0.84;
 /** The head pose that looks at the menu from a distance of 1 m. */
 export const lookingAtMenu = {
   position: [menuAt[0] + Math.sin(menuYaw), 1.3, menuAt[2] + Math.cos(menuYaw)],

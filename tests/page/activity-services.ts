@@ -1,6 +1,7 @@
 import { Group, Scene } from 'three';
 import { createPageClock, defaultAvatar, defaultCalibration, MutablePointer } from 'threepoint/core';
 import { vec3 } from 'threepoint/math';
+import { GazeTargets } from 'threepoint/three';
 import type { StudyRun } from 'threepoint-study/participant';
 import { type Notice, ServerPresence } from 'threepoint-ui';
 import type { ActivityServices } from '../../src/page/activity/activity-context';
@@ -82,6 +83,7 @@ export function activityServices(address = '?seed=5&quality=low') {
     body: { calibration: defaultCalibration },
     avatar: { isBuiltIn: true, worn: defaultAvatar },
     fetchBuiltInAvatar,
+    gazeTargets: new GazeTargets(),
     server: new ServerPresence('http://127.0.0.1:9', () => undefined),
     notices: { show: (level, text) => void notices.push({ level, text }), withdraw: () => undefined },
     study,

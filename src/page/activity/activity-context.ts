@@ -1,5 +1,6 @@
 import type { BuiltInBody, Calibration, PageClock, Pointer } from 'threepoint/core';
 import type { Pose, Ray, Side } from 'threepoint/math';
+import type { GazeTargets } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
 import type { StudyRun, TaskPlace } from 'threepoint-study/participant';
 import type { Notices, ServerPresence } from 'threepoint-ui';
@@ -73,6 +74,8 @@ export interface ActivityServices {
   /** The user's avatar; `isBuiltIn`: it is a built-in one, not a file. */
   readonly avatar: { readonly isBuiltIn: boolean; readonly worn: OwnAvatar };
   fetchBuiltInAvatar(name: BuiltInBody): Promise<ArrayBuffer>;
+  /** What attracts the eyes of avatars in this frame, floor frame; the page clears it. */
+  readonly gazeTargets: GazeTargets;
   readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
   readonly notices: Pick<Notices, 'show' | 'withdraw'>;
   /** The study that the user takes part in; `run`: null without one. */

@@ -1,4 +1,5 @@
 import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/math';
+import type { GazeTargets } from 'threepoint/three';
 import { type BallEvent, type BallGame, type BallState, stations } from 'threepoint-games/ball';
 import type { DisplayedMatch } from '../people/view/displayed-match';
 import { type PeopleScene, PeopleView } from '../people/view/people-view';
@@ -99,6 +100,10 @@ export class BallView {
     this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
     const station = me === null ? undefined : stations[ballGame.stationOf(state, me)];
     this.#ring.show(station?.position ?? null, eyes);
+  }
+
+  addGazeTargets(targets: GazeTargets): void {
+    this.#balls.addGazeTargets(targets, this.#floorFromArena);
   }
 
   /** Plays and captions the events since the last frame, and writes them on the board. Call it after `show`. */

@@ -55,7 +55,7 @@ const panRadius = 0.9;
 
 /** The body in front of the mirror. The room ends 3 m from the body. */
 export const studioScene: CameraScene = {
-  front: { offset: { x: 1.4, y: 0.4, z: -2.1 }, aim: neckBase, fovDegrees: 44 },
+  front: { offset: { x: 1.15, y: 0.42, z: -2.25 }, aim: neckBase, fovDegrees: 44 },
   'third-person': { offset: { x: 1.05, y: 0.6, z: 2.4 }, aim: neckBase, fovDegrees: 50 },
   initial: 'front',
   maxDistance: 2.7,

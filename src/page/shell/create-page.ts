@@ -1,7 +1,7 @@
 import type { Object3D } from 'three';
 import { createPageClock, firstLine, TrackingDegradation } from 'threepoint/core';
 import { sides } from 'threepoint/math';
-import { type Avatar, BodyTracker } from 'threepoint/three';
+import { type Avatar, BodyTracker, GazeTargets } from 'threepoint/three';
 import { Pointing } from 'threepoint/webxr';
 import { createMouseAim, pageElement, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createActor } from '../emulator/actor';
@@ -87,6 +87,8 @@ function createParts(context: PageContext, loading: PageLoading) {
     headset: new Headset(context, tracker, renderer, quality),
     study: { run: null, runners: {} },
     server: new ServerPresence(pageFolder(), onChange),
+    calm: matchMedia('(prefers-reduced-motion: reduce)'),
+    gazeTargets: new GazeTargets(),
     onChange,
   };
   const { headset } = sessionParts;
@@ -121,8 +123,7 @@ function createParts(context: PageContext, loading: PageLoading) {
     difference: new DeviceDifference(),
   };
 
-  const calm = matchMedia('(prefers-reduced-motion: reduce)');
-  const actor = createActor(() => calm.matches);
+  const actor = createActor(() => sessionParts.calm.matches);
   const parts: InputParts = { ...stageParts, pointers, source: new TrackingSource(stageParts, pointers, actor) };
   const controls = new Controls(parts);
   const isCovered = () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken);

@@ -9,7 +9,7 @@ import {
   type TrackingFrame,
 } from 'threepoint/core';
 import type { Side } from 'threepoint/math';
-import { handShapeFromButtons } from 'threepoint/three';
+import { GazeChoice, handShapeFromButtons } from 'threepoint/three';
 import { defaultSavings } from 'threepoint/webxr';
 import type { FrameParts } from './frame-loop';
 import type { InputParts } from './input/input-parts';
@@ -29,6 +29,7 @@ export class PageFrame implements FrameParts<XRFrame> {
   readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
   readonly #solved: Partial<Mutable<TrackingFrame>> = { fingers: this.#fingers };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
+  readonly #gaze = new GazeChoice();
   /** The newest tracked frame as the body has it. */
   #embodied: TrackingFrame | null = null;
   #count = 0;
@@ -85,13 +86,14 @@ export class PageFrame implements FrameParts<XRFrame> {
     if (!frame) return;
     difference.observe(frame, pose, body.calibration);
     tracker.avatar?.setMouth(activities.current?.mouth ?? 0);
+    tracker.avatar?.setIdleMotion(this.#idles);
     tracker.draw(frame.time);
     activities.current?.send?.(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
   }
 
   render(time: number, frame: TrackingFrame | null): void {
-    const { study, stage, activities } = this.#parts;
+    const { study, stage, activities, gazeTargets } = this.#parts;
     this.#count += 1;
     if (this.#waiting.length > 0) for (const tell of this.#waiting.splice(0)) tell();
     study.run?.frame(time, frame);
@@ -99,8 +101,26 @@ export class PageFrame implements FrameParts<XRFrame> {
     this.#turn(time);
     const shot = this.#shot(time, frame);
     stage.look(shot);
+    // A spectator has no body here.
+    const body = shot.watched ? null : frame;
+    if (body) gazeTargets.add(this, body.head.position);
     activities.show(time, frame);
+    if (body) this.#look(body);
+    gazeTargets.clear();
     stage.draw(shot);
+  }
+
+  /** A body that a person or the actor moves lives; one from a file, and all of a study, are as they were measured. */
+  get #idles(): boolean {
+    const { calm, study, activities } = this.#parts;
+    return !calm.matches && study.run === null && activities.inputSource !== 'recording';
+  }
+
+  /** Turns the eyes of the user's avatar to what its face points to: at the desktop also the viewer. */
+  #look({ head }: TrackingFrame): void {
+    const { tracker, headset, stage, gazeTargets } = this.#parts;
+    if (!headset.worn) gazeTargets.add(stage.view, stage.view.camera.position);
+    tracker.avatar?.setGaze(this.#gaze.choose(gazeTargets, head));
   }
 
   fail(error: unknown): void {

@@ -5,6 +5,8 @@ import type { Quality } from '../scene/renderer';
 
 /** The user stands at the origin and looks along −Z, at the mirror on the wall [m]. */
 export const wallDistance = 1.4;
+/** The wide mirror reaches further to the left: the menu hangs right of it, in sight and beside every reflection [m]. */
+const wide = { width: 3.1, height: 2.4, middle: -0.6 };
 /** A mirror at the user's right is out of the way of what flies ahead [m, rad]. */
 const aside = { x: 1.95, z: -0.1, turned: -1.3 };
 
@@ -22,7 +24,8 @@ export class Mirrors {
   constructor(quality: Quality) {
     const samples = quality === 'high' ? {} : { samples: 0 };
     const frame = new MeshStandardMaterial({ color: '#8a6140', roughness: 0.55 });
-    this.#wall = new Mirror({ distance: wallDistance, width: 3.6, height: 2.4, frame, ...samples });
+    this.#wall = new Mirror({ width: wide.width, height: wide.height, frame, ...samples });
+    this.#wall.place(wide.middle, -wallDistance, 0);
     this.#standing = new Mirror({ resolution: standingResolution, ...samples });
     this.#standingHeight = this.#standing.object.position.y;
     this.#current = this.#wall;

@@ -1,7 +1,7 @@
 import type { Object3D } from 'three';
 import { type AvatarRef, defaultAvatar, firstLine, type RemotePerson, reasonOf } from 'threepoint/core';
 import type { Vec3 } from 'threepoint/math';
-import { type Avatar, RemoteAvatars } from 'threepoint/three';
+import { type Avatar, type GazeTargets, RemoteAvatars } from 'threepoint/three';
 import type { RoomView } from '../client/connection';
 import { type OwnAvatar, SharedAvatar } from '../client/shared-avatar';
 import type { HostedGame } from '../room/match-policy';
@@ -26,6 +26,8 @@ export interface RoomBodiesOptions extends RoomAvatarLoaderOptions {
   mouthOf?(seat: number): number;
   /** Whether a soft shadow lies under each body. Default: false. */
   readonly shadows?: boolean;
+  /** What attracts the eyes of the bodies apart from each other, floor frame; the owner clears it in every frame. */
+  readonly gazeTargets?: GazeTargets;
 }
 
 /**
@@ -40,11 +42,20 @@ export class RoomBodies {
 
   constructor(options: RoomBodiesOptions) {
     const { exchange, wear, send, notify, plain = () => false, mouthOf = () => 0, shadows = false } = options;
+    const { gazeTargets } = options;
     this.#options = options;
     this.#seen = new RoomAvatarLoader(options);
     const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
     const onRefused = (avatar: AvatarRef, reason: unknown) => this.#notifyRejected(avatar, reason);
-    this.#drawn = new RemoteAvatars({ load, plain: defaultAvatar, onlyPlain: plain, mouthOf, onRefused, shadows });
+    this.#drawn = new RemoteAvatars({
+      load,
+      plain: defaultAvatar,
+      onlyPlain: plain,
+      mouthOf,
+      onRefused,
+      shadows,
+      gazeTargets,
+    });
     this.#shared = new SharedAvatar({ exchange, wear, send, notify });
   }
 

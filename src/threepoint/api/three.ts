@@ -4,6 +4,7 @@ export { createBlobShadow } from '../avatar/blob-shadow';
 export { bodyLabelOf, bodyLabels } from '../avatar/built-in-body-labels';
 export { createDebugSkeleton } from '../avatar/debug-skeleton';
 export { showToEyesOnly } from '../avatar/eye-layers';
+export { GazeChoice, GazeTargets } from '../avatar/gaze-targets';
 export { fingersFromButtons, handShapeFromButtons } from '../avatar/hands/button-fingers';
 export { ObjectHolds } from '../avatar/hands/hold-object';
 export { createHeadLossFade } from '../avatar/head-loss-fade';

@@ -19,6 +19,7 @@ import { type Mutable, recordOf } from '../core/records';
 import { betweenFrames, type Steps } from './between-frames';
 import { Face } from './face';
 import { HandFingers } from './hands/hand-fingers';
+import { IdleMotion } from './idle-motion';
 import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
@@ -66,10 +67,15 @@ export interface Avatar {
    */
   setMouth(open: number): void;
   /**
-   * Sets what the eyes turn to from the next `setPose` on, floor frame [m], while it is less than 35° from where the
+   * Sets what the eyes turn to from the next `setPose` on, floor frame [m], while it is less than 38° from where the
    * face points; the place is copied. null: they look ahead.
    */
   setGaze(target: Vec3 | null): void;
+  /**
+   * Lets the drawn body breathe and shift its weight by a few millimetres from the next `setPose` on; default: it does
+   * not. Head, elbows, hands and standing feet stay where the pose has them.
+   */
+  setIdleMotion(on: boolean): void;
   /**
    * Sets the bend of a hand's fingers for poses that have none, from the next `setPose` on; the shape is copied. null:
    * not seen, they keep their bend for a while and relax.
@@ -145,6 +151,7 @@ class VrmAvatar implements Avatar {
   readonly object: Group;
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
+  private readonly idle: IdleMotion;
   private readonly trunk: RigTrunk;
   private readonly arms: ArmHelperJoints;
   private readonly legs: Legs;
@@ -178,8 +185,9 @@ class VrmAvatar implements Avatar {
     this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
-    // The object's number differs from that of every other avatar, and so do the times at which it blinks.
+    // The object's number differs from that of every other avatar, and so do the times at which it blinks and breathes.
     this.face = new Face(vrm, object.id);
+    this.idle = new IdleMotion(object.id);
     this.setCalibration(averageBody);
   }
 
@@ -232,6 +240,7 @@ class VrmAvatar implements Avatar {
 
   private applyBody({ head, feet }: AvatarPose, body: UpperBodyPose, deltaSeconds: number): void {
     const joints = forwardKinematics(this.skeleton, body, this.joints);
+    this.idle.apply(joints, deltaSeconds);
     this.trunk.apply(joints);
     this.arms.untwist(joints);
     for (let i = 0; i < jointNames.length; i++) {
@@ -311,6 +320,10 @@ class VrmAvatar implements Avatar {
 
   setGaze(target: Vec3 | null): void {
     this.face.setGaze(target);
+  }
+
+  setIdleMotion(on: boolean): void {
+    this.idle.isOn = on;
   }
 
   setFingers(side: Side, shape: HandShape | null): void {

@@ -33,7 +33,7 @@ const mouthStill = 1 / 256;
  */
 const widestGaze = 11;
 /** The angle [degrees] up to which eyes are turned to a target that is set, and the half-life of that turn [s]. */
-const widestTarget = 35;
+const widestTarget = 38;
 const gazeHalfLife = 0.025;
 /** The share of the expression "surprised" with an open mouth: brows go with speech; and the half-life of that [s]. */
 const browShare = 0.3;

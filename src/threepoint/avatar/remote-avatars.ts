@@ -6,10 +6,10 @@ import type { PersonalAvatar, RemotePerson } from '../core/body/remote-person';
 import { TransientError } from '../core/errors/transient-error';
 import { type MutableTransform, makeTransform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
-import { copyVec3, type Vec3 } from '../core/math/vec3';
+import { copyVec3, type Vec3, vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
 import { createBlobShadow } from './blob-shadow';
-import { gazeTargetOf } from './gaze-targets';
+import { GazeChoice, GazeTargets } from './gaze-targets';
 import { meshesOf } from './scene-meshes';
 
 interface RemoteAvatarsOptions<Wanted, Id> {
@@ -28,7 +28,14 @@ interface RemoteAvatarsOptions<Wanted, Id> {
   onRefused(avatar: Wanted, reason: unknown): void;
   /** Whether a soft shadow lies under each body. Default: true. */
   readonly shadows?: boolean;
+  /**
+   * What attracts the eyes of the bodies apart from each other, floor frame; the owner clears it in every frame, and
+   * `show` adds the heads. Default: nothing.
+   */
+  readonly gazeTargets?: GazeTargets | undefined;
 }
+
+const head = vec3(0, 0, 0);
 
 /** The time [s] after which a failed load is repeated. */
 const againSeconds = 5;
@@ -81,6 +88,7 @@ function isAmong<Id>(people: readonly { readonly id: Id }[], id: Id | null): boo
 export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef, Id = number> {
   readonly object = new Group();
   readonly #options: RemoteAvatarsOptions<Wanted, Id>;
+  readonly #gazeTargets: GazeTargets;
   readonly #bodies: RemoteBody<Wanted, Id>[] = [];
   /** The queues in which an avatar is loading. */
   readonly #loading = new Set<string>();
@@ -93,6 +101,7 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
 
   constructor(options: RemoteAvatarsOptions<Wanted, Id>) {
     this.#options = options;
+    this.#gazeTargets = options.gazeTargets ?? new GazeTargets();
     this.object.name = 'other people';
   }
 
@@ -101,6 +110,7 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
     this.#now = time;
     const { plain, onlyPlain, mouthOf } = this.#options;
     const only = onlyPlain?.() === true;
+    this.#addHeads(people);
     for (const person of people) {
       const { id, opacity } = person;
       const visible = opacity > 0;
@@ -109,7 +119,7 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
       body.usedAt = time;
       body.place.visible = visible;
       if (!visible) continue;
-      body.avatar.setGaze(gazeTargetOf(person, people));
+      body.look(person, this.#gazeTargets);
       body.draw(person, mouthOf(id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {
@@ -118,6 +128,14 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
       body.id = null;
       body.place.visible = false;
       if (time - body.usedAt > spareSeconds(body.of)) this.#drop(i);
+    }
+  }
+
+  #addHeads(people: readonly RemotePerson<Wanted, Id>[]): void {
+    const targets = this.#gazeTargets;
+    if (!this.#options.gazeTargets) targets.clear();
+    for (const { id, opacity, placement, pose } of people) {
+      if (opacity > 0) targets.add(id, transformPoint(placement, pose.head.position, head));
     }
   }
 
@@ -245,6 +263,7 @@ class RemoteBody<Wanted, Id> {
   readonly place = new Group();
   readonly placement: MutableTransform<'floor', 'floor'> = makeTransform();
   readonly #shadow: Mesh<PlaneGeometry, MeshBasicMaterial> | null;
+  readonly #gaze = new GazeChoice();
   #fitted: Calibration | null = null;
   #palette: string | null = null;
   #opacity = 1;
@@ -257,6 +276,11 @@ class RemoteBody<Wanted, Id> {
     this.place.visible = false;
     this.place.add(avatar.object);
     if (this.#shadow) this.place.add(this.#shadow);
+  }
+
+  /** Turns the eyes to what the face points to. */
+  look({ pose, placement }: RemotePerson<Wanted, Id>, targets: GazeTargets): void {
+    this.avatar.setGaze(this.#gaze.choose(targets, pose.head, placement));
   }
 
   /** Poses the body at a time [s]. `mouth`: 0 shut to 1. */

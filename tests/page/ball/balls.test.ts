@@ -1,5 +1,6 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
-import { distance, vec3 } from 'threepoint/math';
+import { distance, fromAxisAngle, isFiniteVec3, up, vec3 } from 'threepoint/math';
+import { GazeTargets } from 'threepoint/three';
 import { fallTime } from 'threepoint-games';
 import { ballInAir, ballRadius, ballRules, defaultBallOptions } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
@@ -31,6 +32,26 @@ test.each([1, 4, 7, 10, 20])(
     for (const { look, side } of balls) expect(look).toBe(side < 0 ? 0 : 1);
   },
 );
+
+test('balls in the air and in hands attract eyes, and those in a rack do not', () => {
+  const fresh = ballRules.start(['a', 'b', 'c'], 1);
+  const launch = { time: 1, position: vec3(0, 1.5, -0.5), velocity: vec3(0, 3, -2) };
+  const balls = fresh.balls.map((place, ball) => {
+    if (ball === 0) return { on: 'air', launch, thrower: 0, missed: false } as const;
+    return ball === 1 ? ({ on: 'hand', player: 2, side: 'left' } as const) : place;
+  });
+  const palm = vec3(1, 1.2, -2);
+  const view = new Balls(20, 'low');
+  view.show({ ...fresh, balls }, 1.25, () => palm, null);
+  const targets = new GazeTargets();
+  view.addGazeTargets(targets, { position: vec3(0.5, 0, -1), orientation: fromAxisAngle(up, Math.PI) });
+  const places = Array.from({ length: targets.count }, (_, i) => targets.at(i).position);
+  const seen = places.filter(isFiniteVec3);
+  expect(seen).toHaveLength(2);
+  const flying = ballInAir(launch, 1.25);
+  expect(distance(seen[0]!, vec3(0.5 - flying.x, flying.y, -1 - flying.z))).toBeLessThan(1e-9);
+  expect(distance(seen[1]!, vec3(-0.5, 1.2, 1))).toBeLessThan(1e-9);
+});
 
 describe('a ball that has not been told to be caught', () => {
   const opening = { position: vec3(0, 1.1, -4.5), normal: vec3(0, 1, 0) };

@@ -1,3 +1,4 @@
+import { GazeTargets } from 'threepoint/three';
 import { expect, test } from 'vitest';
 import type { InputParts } from '../../../src/page/shell/input/input-parts';
 import { PageFrame } from '../../../src/page/shell/page-frame';
@@ -17,6 +18,7 @@ function page(draw: () => void = () => undefined): PageFrame {
     study: { run: null },
     stage: { look: () => undefined, draw },
     tracker: { avatar: null },
+    gazeTargets: new GazeTargets(),
     mocap: { aside: 0 },
   });
   return new PageFrame(parts, fake<Controls>({ point: () => undefined }), fake<PassthroughHost>({}));

@@ -16,17 +16,23 @@ function glassOf(mirror: Object3D) {
   return { ...glass.geometry.parameters, middle, faces: new Vector3(0, 0, 1).transformDirection(glass.matrixWorld) };
 }
 
-test('the mirror of the studio fills the wall ahead of the user, and faces the user', () => {
+test('the mirror of the studio hangs on the wall ahead of the user, and faces the user', () => {
   const [wall, ...others] = shown(new Mirrors('high'));
   expect(others).toEqual([]);
   const { width, height, middle, faces } = glassOf(wall!);
-  expect([width, height]).toEqual([3.6, 2.4]);
+  expect([width, height]).toEqual([3.1, 2.4]);
   expect(faces.z).toBeCloseTo(1, 9);
   expect(middle.z).toBeCloseTo(-1.4, 9);
   // The whole of it, frame included, hangs before the wall and between its floor and ceiling.
   expect(middle.z - 0.044).toBeGreaterThan(room.from[2]);
   expect(middle.y + height / 2 + 0.035).toBeLessThan(room.to[1]);
   expect(middle.y - height / 2).toBeGreaterThan(0.035);
+  expect(middle.x - width / 2).toBeGreaterThan(room.from[0]);
+  // One sees a hand in the mirror halfway between it and the eyes: here half a metre aside with outstretched arms.
+  for (const aside of [-0.5, 0.5]) {
+    const seenAt = aside + Math.sign(aside) * 0.375;
+    expect(Math.abs(seenAt - middle.x)).toBeLessThan(width / 2);
+  }
 });
 
 test('one mirror is shown at a time: on the wall, beside a game, or hidden', () => {

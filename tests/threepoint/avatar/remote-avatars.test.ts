@@ -18,6 +18,7 @@ import {
 import { distance, fromAxisAngle, transformPoint, up, vec3 } from 'threepoint/math';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { createAvatarBetweenFrames } from '../../../src/threepoint/avatar/avatar';
+import { GazeTargets } from '../../../src/threepoint/avatar/gaze-targets';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { RemoteAvatars } from '../../../src/threepoint/avatar/remote-avatars';
 import { FlatPartsMaterial } from '../../../src/threepoint/avatar/rig/flat-parts';
@@ -43,11 +44,15 @@ const person = (id: number, more: Partial<RemotePerson> = {}): RemotePerson => (
 });
 
 /** Draws these people until each of them has a body. */
-async function gathered(people: readonly RemotePerson[]): Promise<RemoteAvatars> {
+async function gathered(
+  people: readonly RemotePerson[],
+  options: { gazeTargets?: GazeTargets } = {},
+): Promise<RemoteAvatars> {
   const others = new RemoteAvatars<AvatarRef>({
     load: (avatar) => (isBuiltInAvatar(avatar) ? load(bodyOf(avatar)) : Promise.reject(avatar)),
     plain: defaultAvatar,
     mouthOf: () => 0,
+    ...options,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
   });
   for (let i = 0; i < 5000 && !people.every(({ id, avatar }) => others.drawnAs(id) === avatar); i++) {
@@ -95,6 +100,23 @@ describe('bodies of others', () => {
     expect(second).toBeCloseTo(-0.149, 2);
     for (let i = 1; i < 60; i++) others.show(people.slice(0, 1), 11 + i / 60);
     expect(eyeYaw()[0]).toBeCloseTo(0, 3);
+    others.dispose();
+  });
+
+  test('turn their eyes to what the page adds, and to each other without it', async () => {
+    const head = { position: vec3(0, 1.59, 0), orientation: fromAxisAngle(up, 0), tracking: 'tracked' as const };
+    const pose = poseOf(estimator, { ...actorFrame(9.5, defaultCalibration), head });
+    const placement = { position: vec3(0, 0, 0), orientation: fromAxisAngle(up, 0) };
+    const gazeTargets = new GazeTargets();
+    const alone = [person(1, { avatar: builtInAvatarOf('woman', 'tan'), pose, placement })];
+    const others = await gathered(alone, { gazeTargets });
+    const eye = others.object.getObjectByName('leftEye')!;
+    for (let i = 1; i < 60; i++) {
+      gazeTargets.clear();
+      gazeTargets.add('ball', vec3(-0.3, 1.59, -2));
+      others.show(alone, 10 + i / 60);
+    }
+    expect(new Euler().setFromQuaternion(eye.quaternion, 'YXZ').y).toBeCloseTo(0.149, 2);
     others.dispose();
   });
 

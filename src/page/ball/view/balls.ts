@@ -19,9 +19,12 @@ import {
   type MutableVec3,
   reject,
   subtract,
+  type Transform,
+  transformPoint,
   type Vec3,
   vec3,
 } from 'threepoint/math';
+import type { GazeTargets } from 'threepoint/three';
 import {
   type BallPlace,
   type BallState,
@@ -126,6 +129,7 @@ function turnedBy(
 
 /** A full basket shows three layers of balls: those below them are hidden. */
 const maxInBasket = 15;
+const nowhere: Vec3 = vec3(Number.NaN, Number.NaN, Number.NaN);
 const gone = new Matrix4().makeScale(0, 0, 0);
 const one = new Vector3(1, 1, 1);
 const upward = new Vector3(0, 1, 0);
@@ -140,10 +144,13 @@ export class Balls {
   readonly #shadows: ShadowDiscs;
   /** By ball. */
   readonly #approaches: readonly Approach[];
+  /** The places of balls that fly or are held, by ball; NaN: another ball. */
+  readonly #attracting: readonly MutableVec3[];
   readonly #matrix = new Matrix4();
   readonly #at = new Vector3();
   readonly #turn = new Quaternion();
   readonly #axis = new Vector3();
+  readonly #inFloor = vec3(0, 0, 0);
   readonly #rolled = new Quaternion();
   readonly #basketTurn = new Quaternion();
 
@@ -158,6 +165,7 @@ export class Balls {
     ];
     this.#shadows = createShadowDiscs(most);
     this.#approaches = Array.from({ length: most }, makeApproach);
+    this.#attracting = Array.from({ length: most }, () => copyVec3(nowhere));
     this.object.name = 'balls';
     this.object.add(...this.#meshes, this.#shadows.object);
   }
@@ -177,11 +185,20 @@ export class Balls {
       // The event of the catch arrives later: until then the ball stays in the basket.
       if (place.on === 'air' && !place.missed && position && opening)
         position = stopInBasket(opening, position, place.launch.time, this.#approaches[ball]!);
+      const attracts = place.on === 'air' || place.on === 'hand';
+      copyVec3((attracts && position) || nowhere, this.#attracting[ball]!);
       if (position) this.#put(ball, place, position, time);
       else this.#hide(ball);
     }
     for (const mesh of this.#meshes) mesh.instanceMatrix.needsUpdate = true;
     this.#shadows.update();
+  }
+
+  /** Adds the balls that fly or are held. */
+  addGazeTargets(targets: GazeTargets, floorFromArena: Transform<'floor', 'arena'>): void {
+    for (let ball = 0; ball < this.#attracting.length; ball++) {
+      targets.add(this.#approaches[ball], transformPoint(floorFromArena, this.#attracting[ball]!, this.#inFloor));
+    }
   }
 
   /** Returns the position in the basket of the ball that was caught after `index` others. */

@@ -10,6 +10,7 @@ import {
   type TrackingFrame,
 } from 'threepoint/core';
 import type { Pose, Ray, Transform } from 'threepoint/math';
+import type { GazeTargets } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import { bannerText } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
@@ -52,6 +53,8 @@ export interface MatchView<Game extends HostedGame, Frame extends MatchFrame<Gam
   /** Shows or hides the boards. A phone's window is covered by the bar, which has their figures. */
   showBoards?(visible: boolean): void;
   show(scene: MatchScene<Game, Frame>): void;
+  /** Adds what attracts eyes, as the newest `show` drew it, floor frame. */
+  addGazeTargets?(targets: GazeTargets): void;
   /** Plays and captions the events since the last frame. Called after `show`. */
   playEvents?(events: readonly Game['event'][], frame: Frame): void;
   dispose(): void;
@@ -200,6 +203,7 @@ export abstract class MatchActivity<
     const newest = this.play.newest;
     const bodies = newest?.bodies ?? none;
     this.voices.seats.locate(bodies);
+    this.#parts.view.addGazeTargets?.(this.context.gazeTargets);
     this.#bodies.show(this.blocked.visible(bodies), time);
     if (!newest) return;
     const { headset, stage } = this.context;

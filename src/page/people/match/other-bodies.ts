@@ -9,7 +9,7 @@ import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';
 
 export interface OtherBodiesOptions {
-  readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'fetchBuiltInAvatar'>;
+  readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'gazeTargets' | 'fetchBuiltInAvatar'>;
   /** null: avatar files are not exchanged in this room. */
   readonly exchange: AvatarExchange | null;
   /** The file of the body that other players have. */
@@ -57,5 +57,6 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
     plain: () => settings.plainOthers,
     mouthOf: (seat) => voices.seats.mouthOf(seat),
     shadows: true,
+    gazeTargets: context.gazeTargets,
   });
 }

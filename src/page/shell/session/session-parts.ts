@@ -1,6 +1,6 @@
 import type { Body, BodySolverOptions } from 'threepoint';
 import type { PageClock } from 'threepoint/core';
-import type { Avatar, BodyTracker } from 'threepoint/three';
+import type { Avatar, BodyTracker, GazeTargets } from 'threepoint/three';
 import type { ServerPresence } from 'threepoint-ui';
 import type { Quality } from '../../scene/renderer';
 import type { FrameTiming } from './frame-timing';
@@ -23,6 +23,10 @@ export interface SessionParts extends PageContext {
   readonly headset: Headset;
   readonly study: PageStudy;
   readonly server: ServerPresence;
+  /** Whether the user asks for less motion. */
+  readonly calm: { readonly matches: boolean };
+  /** What attracts the eyes of avatars in this frame, floor frame. */
+  readonly gazeTargets: GazeTargets;
   /** Something changed that is on the screen. */
   onChange(): void;
 }

@@ -1,4 +1,4 @@
-import { Group, Vector3 } from 'three';
+import { Group, Raycaster, Vector3 } from 'three';
 import { defaultCalibration, GazePointer, MutablePointer, type Pointer, type TrackingFrame } from 'threepoint/core';
 import { fromAxes, identity, type Ray, vec3 } from 'threepoint/math';
 import { DeviceCommands } from 'threepoint/webxr';
@@ -32,6 +32,7 @@ import {
 import type { PageStudy } from '../../../../src/page/shell/session/page-study';
 import { createSettings, SettingsWriter } from '../../../../src/page/shell/session/settings';
 import { readSwitches } from '../../../../src/page/shell/session/switches';
+import { Mirrors } from '../../../../src/page/studio/mirrors';
 import { allocatedPerFrame } from '../../../allocated-bytes';
 import { studyRun } from '../../activity-services';
 import { drawNowhere } from '../drawing-in-node';
@@ -148,6 +149,21 @@ describe('in the headset', () => {
     expect([menu.visible, rays.objects.visible]).toEqual([true, true]);
     controls.setWorn(false);
     expect([menu.visible, rays.objects.visible]).toEqual([false, false]);
+  });
+
+  test('the menu hides no part of the mirror from a user who stands on the mark', () => {
+    const { menu, onMenu } = headset();
+    const [mirror] = new Mirrors('low').object.children;
+    mirror!.updateWorldMatrix(true, true);
+    const eyes = new Vector3(0, 1.6, 0);
+    const covers = (x: number, y: number) => {
+      const sight = onMenu(x, y).sub(eyes).normalize();
+      return new Raycaster(eyes, sight).intersectObject(mirror!).length > 0;
+    };
+    for (const y of [0, menuHeight / 2, menuHeight]) expect(covers(0, y)).toBe(false);
+    // Ten centimetres further left it would.
+    menu.position.x -= 0.1;
+    expect(covers(0, menuHeight / 2)).toBe(true);
   });
 
   test('a sheet of the game takes the press of the hand that presses', () => {

@@ -9,8 +9,8 @@ import { drawFrameTimes, drawMenu, frameTimesHeight, frameTimesWidth } from './m
 
 const pixelsPerMetre = 1000;
 
-/** The place of the menu beside the mirror. */
-const beside = { position: [1.1, 1.3, -1.15], turned: -0.74 } as const;
+/** The place of the menu, right of the mirror as its user sees it. */
+const beside = { position: [1.08, 1.3, -0.97], turned: -0.84 } as const;
 /** The place of a menu that was brought: this far ahead of the eyes and below them [m], in reach of a finger. */
 const brought = { ahead: 0.52, below: 0.14, scale: 0.5 };
 
