@@ -55,7 +55,9 @@ await main(async () => {
     training,
   );
   if (trained.code !== 0) return trained.code;
-  const model = createHash('sha256').update(readFileSync(join(models, 'paper.onnx'))).update(given.mocap);
+  const model = createHash('sha256')
+    .update(readFileSync(join(models, 'paper.onnx')))
+    .update(given.mocap);
   const path = join(stages, `path-${model.digest('hex').slice(0, 16)}.json`);
   if (existsSync(path)) console.log('path: finished before');
   else {

@@ -42,7 +42,7 @@ async function main(): Promise<void> {
     };
     for (const name of methods) {
       addClip(measures[name], driven[name], index.rateHz);
-      times[name].push(...driven[name].map(({ milliseconds }) => milliseconds));
+      times[name].push(...driven[name].map(({ cpuMilliseconds }) => cpuMilliseconds));
     }
     addPictures(pictures, clip.name, driven, index.rateHz);
   }

@@ -52,7 +52,7 @@ _MSE_OF_METHODS = {"ik": 0.8066, "paper": 0.0448}
 _RIGHT_SHOULDER_MAE = {"ik": 0.1587, "paper": 0.0610}
 _MPJPE_CM = {"train": 2.4026, "test": 1.7301}
 _TIMES = {"ik": ((3.81, 19.65, 10.23), (4.28, 22.41, 16.78)), "paper": ((3.19, 14.75, 6.73), (3.36, 17.01, 9.21))}
-_METHODS = {"ik": "IK", "paper": "the paper's network", "paper-published": "the same with section 3.5"}
+_METHODS = {"ik": "IK", "paper": "the network"}
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def tables_2_and_3(page: Json, ik: Json, path: Json) -> str:
         )
     published = path["methods"]["paper-published"]
     rows.append(
-        ["the network with section 3.5", *["–"] * 4, f"{published['mseCm2']:.1f}", f"{published['mpjpeCm']['mean']:.2f}"]
+        ["with section 3.5", *[""] * 4, f"{published['mseCm2']:.1f}", f"{published['mpjpeCm']['mean']:.2f}"]
     )
     head = ["test frames", "MSE: paper", "ours [cm²]", "MAE of j7: paper", "ours [cm]"]
     return table([*head, "new people: MSE [cm²]", "MPJPE [cm]"], rows)
@@ -135,21 +135,18 @@ def tables_5_and_6(path: Json) -> str:
     for method, label in _METHODS.items():
         measured = path["methods"][method]["times"]
         for number, times in enumerate(measured):
-            published = _TIMES[method][number] if method in _TIMES else None
-            cells = [" / ".join(f"{value:.2f}" for value in published) if published else "–", f"{times['frames']:,}"]
-            cells.append(" / ".join(f"{times[key]:.2f}" for key in ("minimum", "maximum", "average")))
+            ours = (times[key] for key in ("minimum", "maximum", "average"))
+            cells = [f"{value:.2f}" for value in (*_TIMES[method][number], *ours)]
             rows.append([f"{label}, table {5 + number}", *cells])
-    return table(["minimum / maximum / average [ms]", "paper: whole frame", "our frames", "ours: method alone"], rows)
+    return table(["[ms]", "paper: least", "most", "mean", "ours: least", "most", "mean"], rows)
 
 
 def sections(readings: dict[str, Json], ik: Json | None, held_out: Json | None, path: Json) -> dict[str, str | None]:
     """Returns the page's tables by their marks; None keeps a table whose stage was not run."""
     page = readings.get("page")
-    frames = f"{page['frames']:,} frames of {', '.join(page['people'])}" if page else ""
+    frames = f"{page['frames']:,} frames of {len(page['people'])} people" if page else ""
     return {
-        "corpus": f"Trained and tested on {frames}; new people: {', '.join(path['people'])}, {path['frames']:,} frames."
-        if page
-        else None,
+        "corpus": f"{frames}; {path['frames']:,} frames of {len(path['people'])} new people." if page else None,
         "table-1": table_1(page, held_out) if page else None,
         "tables-2-3": tables_2_and_3(page, ik, path) if page and ik else None,
         "table-4": table_4(readings) if readings else None,
