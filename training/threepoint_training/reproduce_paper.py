@@ -203,14 +203,19 @@ def _ik_differences(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) 
         yield in_room.reshape(-1, OUTPUTS)
 
 
-def _stages(corpus: PreparedCorpus, people: tuple[str, ...], config: ReproductionConfig) -> dict[str, tuple[Json, Callable[[], Json]]]:
-    """Each stage: the options on which its figures depend, and its measurement."""
+# The options on which the figures of a stage depend, and its measurement.
+_Stage = tuple[Json, Callable[[], Json]]
+
+
+def _stages(corpus: PreparedCorpus, people: tuple[str, ...], config: ReproductionConfig) -> dict[str, _Stage]:
+    """Every stage by its name, in the order in which they run."""
+
     def at(reading: Reading) -> Reading:
         return replace(reading, train=replace(reading.train, epochs=config.epochs, seed=config.seed))
 
     beside = {"seed": config.seed, "people": people}
     page = at(READINGS["page"])
-    stages: dict[str, tuple[Json, Callable[[], Json]]] = {
+    stages: dict[str, _Stage] = {
         "ik": (beside, lambda: measure_ik(corpus, people, config.seed)),
         "held-out": (
             beside | {"reading": asdict(page)},

@@ -196,7 +196,7 @@ export class Pipeline implements PoseEstimator {
     return this.#estimate;
   }
 
-  /** Writes the body by torso and arm fitting (stage 5). */
+  /** Writes the body by limits of speed, torso and arm fitting (stages 4 and 5). */
   #fit(frame: TrackingFrame, head: TrackedPose, completed: CompletedFrame, step: number): void {
     const { state } = this;
     const body = this.#body;
