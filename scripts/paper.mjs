@@ -22,7 +22,7 @@ function options() {
   });
 }
 
-/** Measures the page's code path on people whom its paper network was not trained on; resolves to an exit code. */
+/** Measures the page's code path on people that its paper network was not trained on; resolves to an exit code. */
 async function measurePath(given, file) {
   const { code, output } = await runTraining('threepoint_training.report_people', passedOn(given, ['mocap']), {
     capture: true,

@@ -26,7 +26,7 @@ def test_tables_are_of_everyone_outside_the_lockbox_where_one_of_them_is_missing
     assert there == {"tables": ["005", "anna"], "elsewhere": [], "paper": ["anna"]}
 
 
-def test_the_paper_s_network_is_measured_on_people_whom_it_knows_where_there_are_no_others(tmp_path: Path) -> None:
+def test_the_paper_s_network_is_measured_on_people_it_knows_where_there_are_no_others(tmp_path: Path) -> None:
     assert report_people.main(folder_of(tmp_path, "005", "135", "901"))["paper"] == ["005"]
 
 

@@ -102,7 +102,7 @@ def test_missing_people_get_a_sentence_and_lose_no_other_stage(corpus, config, t
         people={name: person for name, person in corpus.people.items() if name in set(corpus.clip_people) - {"002"}},
     )
     printed = run_again(others, replace(config, out=tmp_path, stages=("held-out", "ik")))
-    assert printed[0].startswith("Missing of the people whom the page's network was trained on: 002")
+    assert printed[0].startswith("The page's network was also trained on people that are missing here: 002")
     assert printed[1] == "held-out is left out: it needs 014, 127, 002 and others besides them"
     assert printed[2].startswith("ik: MPJPE")
 

@@ -15,8 +15,8 @@ def main(mocap: Path) -> dict[str, list[str]]:
     """tables: the people of the tables of docs/accuracy.md: the VARIED subjects outside the lockbox; all people outside
     the lockbox where one of those is missing.
 
-    elsewhere: the evaluation-only subjects (never trained on) in the folder. paper: the people whom the page's paper
-    network was not trained on, outside the lockbox; all people outside the lockbox where there are none.
+    elsewhere: the evaluation-only subjects (never trained on) in the folder. paper: people outside the
+    lockbox that the page's paper network was not trained on; all people outside the lockbox where there are none.
     """
     people = {source.person for source in motion_files(mocap, None)}
     varied = trainable(VARIED)

@@ -239,7 +239,7 @@ def main(corpus: PreparedCorpus, config: ReproductionConfig, report: Callable[[s
     if not people:
         raise MocapError("no one of this motion may be trained on")
     if missing := sorted(set(trainable(VARIED)) - set(corpus.people)):
-        report(f"Missing of the people whom the page's network was trained on: {', '.join(missing)}.")
+        report(f"The page's network was also trained on people that are missing here: {', '.join(missing)}.")
     folder = config.out / corpus.corpus_hash[:16]
     stages = _stages(corpus, people, config)
     if unknown := set(config.stages) - set(stages):
